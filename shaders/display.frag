@@ -1,0 +1,26 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Exposure, tone map and encoding: linear radiance to the 8-bit picture.
+#include "params.glsl"
+
+layout(location = 0) in vec2 uv;
+layout(location = 0) out vec4 display;
+
+uniform sampler2D source;
+
+vec3 toneMap(vec3 c) {
+    if (params.tone_map == TONE_MAP_REINHARD) return c / (c + 1.0); // thesis, Algorithm 3
+    if (params.tone_map == TONE_MAP_ACES) // Narkowicz 2015
+        return clamp(c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0);
+    return clamp(c, 0.0, 1.0);
+}
+
+vec3 encode(vec3 c) {
+    if (params.encoding == ENCODING_GAMMA22) return pow(c, vec3(1.0 / 2.2)); // thesis, Algorithm 3
+    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+
+void main() {
+    vec3 c = max(texelFetch(source, ivec2(gl_FragCoord.xy), 0).rgb, 0.0);
+    display = vec4(encode(toneMap(c * exp2(params.exposure))), 1.0);
+}

@@ -1,0 +1,64 @@
+// Reflectance of a surface (thesis, Section 4.5.1; Karis 2013, "Real Shading in Unreal Engine 4").
+// Every function returns the BRDF [1/sr]; irradiance and the cosine are the caller's.
+#ifndef BRDF_GLSL
+#define BRDF_GLSL
+
+const float PI = 3.14159265359;
+
+struct Surface {
+    vec3 normal; // shading normal, facing the viewer
+    vec3 albedo; // diffuse reflectance: base colour * (1 - metallic)
+    vec3 f0; // reflectance at normal incidence
+    float roughness; // clamped: 0 makes GGX 0/0
+};
+
+Surface makeSurface(vec3 normal, vec3 base_color, float roughness, float metallic) {
+    return Surface(normal, base_color * (1.0 - metallic), mix(vec3(0.04), base_color, metallic), clamp(roughness, 0.03, 1.0));
+}
+
+vec3 fresnel(vec3 f0, float cosine) {
+    return f0 + (1.0 - f0) * pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0);
+}
+
+// Trowbridge-Reitz. The thesis writes alpha = roughness; Burley and Unreal Engine 4 alpha = roughness^2.
+float distribution(float n_h, float roughness) {
+    float alpha = params.ggx_alpha == GGX_ALPHA_SQUARED ? roughness * roughness : roughness;
+    float a2 = alpha * alpha;
+    float d = n_h * n_h * (a2 - 1.0) + 1.0;
+    return a2 / (PI * d * d);
+}
+
+// Smith-Schlick G / (4 n.l n.v), k = (roughness + 1)^2 / 8; the cosines cancel.
+float visibility(float n_l, float n_v, float roughness) {
+    float k = (roughness + 1.0) * (roughness + 1.0) / 8.0;
+    return 0.25 / ((n_l * (1.0 - k) + k) * (n_v * (1.0 - k) + k));
+}
+
+vec3 specularBrdf(Surface s, vec3 v, vec3 l) {
+    vec3 h = normalize(v + l);
+    float n_h = max(dot(s.normal, h), 0.0);
+    float v_h = max(dot(v, h), 0.0);
+    if (SHADING_MODEL == SHADING_MODEL_BLINN_PHONG) {
+        // Exponent matched to GGX's width, normalised to conserve energy.
+        float a2 = pow(s.roughness, 4.0);
+        float exponent = 2.0 / a2 - 2.0;
+        return s.f0 * (exponent + 8.0) / (8.0 * PI) * pow(n_h, exponent);
+    }
+    float n_l = max(dot(s.normal, l), 1e-4);
+    float n_v = max(dot(s.normal, v), 1e-4);
+    return distribution(n_h, s.roughness) * visibility(n_l, n_v, s.roughness) * fresnel(s.f0, v_h);
+}
+
+vec3 diffuseBrdf(Surface s) {
+    return s.albedo / PI;
+}
+
+// Integral of the specular BRDF over the lobe, f0 * scale + bias (Karis 2014, "Physically Based Shading on Mobile").
+vec3 environmentBrdf(vec3 f0, float roughness, float n_v) {
+    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float a = min(r.x * r.x, exp2(-9.28 * n_v)) * r.x + r.y;
+    vec2 ab = vec2(-1.04, 1.04) * a + r.zw;
+    return f0 * ab.x + ab.y;
+}
+
+#endif

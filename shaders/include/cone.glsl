@@ -1,0 +1,85 @@
+// Voxel cone tracing (thesis, Section 4.5.2 and Listing 4.1). The march runs in world space with lengths
+// in local level-0 cells, so it is the same under every warp. With opacity "stored", step "radius" and no
+// clearance it is the thesis's listing to the letter.
+#ifndef CONE_GLSL
+#define CONE_GLSL
+#include "volume.glsl"
+
+uniform sampler3D voxelRadiance; // premultiplied by opacity; border clamped
+
+struct ConeOrigin {
+    vec3 position; // off the surface
+    vec3 normal; // geometric: the plane that cones must stay above
+    float height; // of position above the surface [m]
+    float reach; // half the local cell's extent across the surface [m]
+};
+
+// `geometric` keeps the start outside the voxels of its own surface; the thesis goes `bias` voxels along the
+// shading normal, which can point into the geometry.
+ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
+    float reach = cellReach(volume.grid, p, geometric);
+    if (params.cone_origin == CONE_ORIGIN_SHADING) {
+        vec3 start = p + params.bias * cellAlong(volume.grid, p, shading) * shading;
+        return ConeOrigin(start, geometric, max(dot(start - p, geometric), 0.0), reach);
+    }
+    float height = 2.0 * params.bias * reach;
+    return ConeOrigin(p + height * geometric, geometric, height, reach);
+}
+
+// Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
+vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
+    Grid g = volume.grid;
+    float last = float(textureQueryLevels(voxelRadiance) - 1);
+    float v0 = cellAlong(g, o.position, d), v = v0;
+    float rise = max(dot(d, o.normal), 0.0);
+    float s = params.cone_height * v0;
+    vec3 color = vec3(0.0);
+    float alpha = 0.0;
+    for (int i = 0; i < steps; i++) {
+        vec3 p = o.position + s * d;
+        vec3 u = worldToVolume(g, p);
+        // Past the border the clamped lookup gives the border cells once more: a coarse cell that holds the
+        // outermost wall reaches to the border, and stopping short of it would let light out.
+        bool outside = !inVolume(u);
+        if (outside && (i == 0 || WARP == WARP_PERSPECTIVE || OPACITY == OPACITY_STORED)) break;
+        if (WARP != WARP_NONE) v = cellAlong(g, p, d);
+        float radius = s * tan_half;
+        float lod = log2(max(2.0 * radius / v, 1.0)) + params.lod_offset;
+        if (params.lod_clearance) {
+            // A trilinear lookup reads 1.5 cells to each side. Coarser levels than fit above the surface
+            // would read the surface itself, and an open plane would shadow itself. Whole levels, because
+            // a fraction would blend in the coarser one.
+            float cells = (o.height + s * rise) * v0 / (3.0 * o.reach * v);
+            lod = min(lod, floor(log2(max(cells, 1.0)) + 1e-3));
+        }
+        lod = clamp(lod, 0.0, last);
+        float cell = v * exp2(lod);
+        float ds = max(CONE_STEP == CONE_STEP_RADIUS ? radius : params.step_factor * cell, 0.05 * v);
+
+        vec4 texel = textureLod(voxelRadiance, u, lod);
+        if (texel.a > 1e-5) {
+            float remaining = 1.0 - alpha;
+            float a;
+            // Layers: a mean opacity belongs to a voxel, and a step crosses ds / v of them, one behind the other.
+            if (OPACITY == OPACITY_LAYERS) a = remaining * (1.0 - pow(1.0 - min(texel.a, 1.0), ds / v));
+            // Coverage: surfaces one voxel thick that fill this share of the volume cover this much of the
+            // cone, side by side. Thin walls stay closed at every level; corners darken too much.
+            else if (OPACITY == OPACITY_COVERAGE) a = min(texel.a * ds / v, remaining);
+            // Cell: one layer a mip cell, corrected for the step alone; thin walls leak.
+            else if (OPACITY == OPACITY_CELL) a = remaining * (1.0 - pow(1.0 - min(texel.a, 1.0), ds / cell));
+            else a = remaining * texel.a;
+            color += texel.rgb * (a / texel.a);
+            alpha += a;
+            if (1.0 - alpha < params.stop_transmittance) {
+                // What is left would hit something too: spread it over what was hit.
+                if (params.cone_renormalize) return vec4(color / alpha, 1.0);
+                break;
+            }
+        }
+        if (outside) break;
+        s += ds;
+    }
+    return vec4(color, min(alpha, 1.0));
+}
+
+#endif

@@ -1,0 +1,82 @@
+// Camera, scene and geometry: the fixed resources every pass may read. World units are metres, y is up,
+// the world is right-handed; clip space is Vulkan's (y down, depth 0 at the near plane).
+#ifndef SCENE_GLSL
+#define SCENE_GLSL
+
+layout(std140) uniform Camera {
+    mat4 view;
+    mat4 projection;
+    mat4 view_projection;
+    mat4 inverse_view_projection;
+    mat4 previous_view_projection;
+    vec3 position;
+    float near;
+    vec3 direction;
+    float far;
+    vec3 up;
+    float fov_y; // radians
+    vec3 previous_position;
+    float time; // seconds
+    uvec2 size; // pixels
+    uint frame;
+    float delta_time;
+} camera;
+
+layout(std140) uniform SceneInfo {
+    vec3 bounds_min;
+    uint light_count;
+    vec3 bounds_max;
+    uint shadow_views;
+    vec3 sky; // radiance
+    uint triangle_count;
+    uint draw_count;
+    uint vertex_count;
+    uint instance_count;
+    uint pad;
+} sceneInfo;
+
+struct Instance {
+    mat4 model;
+    mat4 previous_model;
+    mat4 normal_matrix; // inverse transpose of the model's 3x3
+};
+
+struct Draw {
+    uint instance;
+    uint material;
+    uint first_index;
+    uint index_count;
+};
+
+struct VertexAttributes {
+    vec3 normal;
+    vec4 tangent; // w: sign of the bitangent
+    vec2 uv;
+};
+
+layout(std430) readonly buffer Instances { Instance instances[]; } instances;
+layout(std430) readonly buffer Draws { Draw draws[]; } draws;
+layout(std430) readonly buffer Positions { float positions[]; } positions;
+layout(std430) readonly buffer Attributes { vec4 attributes[]; } attributes;
+
+vec3 loadPosition(uint vertex) {
+    uint i = 3 * vertex;
+    return vec3(positions.positions[i], positions.positions[i + 1], positions.positions[i + 2]);
+}
+
+VertexAttributes loadAttributes(uint vertex) {
+    vec4 a = attributes.attributes[3 * vertex];
+    vec4 b = attributes.attributes[3 * vertex + 1];
+    vec4 c = attributes.attributes[3 * vertex + 2];
+    return VertexAttributes(a.xyz, b, vec2(a.w, c.x));
+}
+
+vec3 toWorld(uint instance, vec3 position) {
+    return (instances.instances[instance].model * vec4(position, 1.0)).xyz;
+}
+
+vec3 normalToWorld(uint instance, vec3 normal) {
+    return mat3(instances.instances[instance].normal_matrix) * normal;
+}
+
+#endif

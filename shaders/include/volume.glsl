@@ -1,0 +1,136 @@
+// The voxel volume: world <-> volume coordinates u in [0,1]^3, after warping (thesis, Section 4.6).
+// Cells are not cubes in general, and under a warp not equal: every length below is local.
+#ifndef VOLUME_GLSL
+#define VOLUME_GLSL
+
+struct Grid {
+    vec3 minimum; // world corner [m]
+    vec3 size; // [m]
+    vec3 cell; // size / voxel_dim, before warping [m]
+    vec3 eye; // perspective warp: the camera
+    vec3 axis_x; // half width of the frustum at unit depth, world
+    vec3 axis_y; // half height, downwards
+    vec3 axis_z; // view direction
+    vec2 range; // near, far [m]
+};
+
+#ifndef VOLUME_ACCESS
+#define VOLUME_ACCESS readonly
+#endif
+layout(std430) VOLUME_ACCESS buffer Volume { Grid grid; } volume;
+
+// Monotonic bijections of [0,1] with their densest point at .5; the inverses are exact.
+vec3 warp(vec3 x) {
+    if (WARP == WARP_SPLINE) {
+        float a = params.warp_alpha;
+        return x * (a + x * (3.0 - 3.0 * a + x * (2.0 * a - 2.0)));
+    }
+    if (WARP == WARP_LOGISTIC) {
+        float s = params.warp_steepness;
+        return 0.5 + 0.5 * tanh(0.5 * s * (x - 0.5)) / tanh(0.25 * s);
+    }
+    return x;
+}
+
+// w'(x): local density of cells against no warp.
+vec3 warpSlope(vec3 x) {
+    if (WARP == WARP_SPLINE) {
+        float a = params.warp_alpha;
+        return a + x * (6.0 - 6.0 * a + x * (6.0 * a - 6.0));
+    }
+    if (WARP == WARP_LOGISTIC) {
+        float s = params.warp_steepness;
+        vec3 t = tanh(0.5 * s * (x - 0.5));
+        return 0.25 * s * (1.0 - t * t) / tanh(0.25 * s);
+    }
+    return vec3(1.0);
+}
+
+vec3 unwarp(vec3 y) {
+    if (WARP == WARP_SPLINE) {
+        // Newton on the convex lower half from its upper end: monotonic, no overshoot.
+        vec3 folded = 0.5 - abs(y - 0.5);
+        vec3 x = vec3(0.5);
+        for (int i = 0; i < 10; i++) x -= (warp(x) - folded) / warpSlope(x);
+        return mix(x, 1.0 - x, greaterThan(y, vec3(0.5)));
+    }
+    if (WARP == WARP_LOGISTIC) {
+        float s = params.warp_steepness;
+        return 0.5 + 2.0 / s * atanh(clamp((2.0 * y - 1.0) * tanh(0.25 * s), -0.9999999, 0.9999999));
+    }
+    return y;
+}
+
+// Outside the volume the result is outside [0,1]; behind the camera of a perspective warp it is -1.
+vec3 worldToVolume(Grid g, vec3 p) {
+    if (WARP != WARP_PERSPECTIVE) {
+        vec3 x = (p - g.minimum) / g.size;
+        if (WARP == WARP_NONE) return x;
+        return mix(x, warp(x), equal(clamp(x, 0.0, 1.0), x));
+    }
+    vec3 d = p - g.eye;
+    float w = dot(d, g.axis_z);
+    if (w < 0.5 * g.range.x) return vec3(-1.0);
+    vec2 xy = vec2(dot(d, g.axis_x) / dot(g.axis_x, g.axis_x), dot(d, g.axis_y) / dot(g.axis_y, g.axis_y)) / w;
+    return vec3(xy * 0.5 + 0.5, (w - g.range.x) / (g.range.y - g.range.x)); // depth linear in metres
+}
+
+vec3 volumeToWorld(Grid g, vec3 u) {
+    if (WARP != WARP_PERSPECTIVE) return g.minimum + unwarp(u) * g.size;
+    float w = mix(g.range.x, g.range.y, u.z);
+    return g.eye + w * (g.axis_z + (2.0 * u.x - 1.0) * g.axis_x + (2.0 * u.y - 1.0) * g.axis_y);
+}
+
+// Columns: the world vectors that span the level-0 cell at p [m].
+mat3 cellAxes(Grid g, vec3 p) {
+    if (WARP != WARP_PERSPECTIVE) {
+        vec3 x = clamp((p - g.minimum) / g.size, 0.0, 1.0);
+        vec3 c = g.cell / warpSlope(x);
+        return mat3(c.x, 0, 0, 0, c.y, 0, 0, 0, c.z);
+    }
+    vec3 d = p - g.eye;
+    float w = clamp(dot(d, g.axis_z), g.range.x, g.range.y);
+    float dim = float(params.voxel_dim);
+    vec3 along = g.axis_z + (dot(d, g.axis_x) / dot(g.axis_x, g.axis_x) * g.axis_x + dot(d, g.axis_y) / dot(g.axis_y, g.axis_y) * g.axis_y) / w;
+    return mat3(2.0 * w / dim * g.axis_x, 2.0 * w / dim * g.axis_y, (g.range.y - g.range.x) / dim * along);
+}
+
+// Edge lengths of the level-0 cell at p [m].
+vec3 cellSize(Grid g, vec3 p) {
+    mat3 a = cellAxes(g, p);
+    return vec3(length(a[0]), length(a[1]), length(a[2]));
+}
+
+// Length of the level-0 cell at p along the unit vector d [m]: 1 / (cells crossed per metre).
+float cellAlong(Grid g, vec3 p, vec3 d) {
+    if (WARP == WARP_NONE) return 1.0 / length(d / g.cell);
+    if (WARP != WARP_PERSPECTIVE) return 1.0 / length(d * warpSlope(clamp((p - g.minimum) / g.size, 0.0, 1.0)) / g.cell);
+    return 1.0 / max(length(inverse(cellAxes(g, p)) * d), 1e-6);
+}
+
+// Half the extent of a cell across a plane of normal n: a plane through the cell's centre moved by this
+// along n just leaves the cell [m].
+float cellReach(Grid g, vec3 p, vec3 n) {
+    vec3 a = abs(n * cellAxes(g, p));
+    return 0.5 * (a.x + a.y + a.z);
+}
+
+// Density of cells against no warp, by hue: red below 1/2, green 1, blue from 2 (thesis, Figure 5.7). One
+// axis of a warp function; for the perspective warp the mean edge.
+vec3 densityColor(Grid g, vec3 p) {
+    float density = WARP == WARP_PERSPECTIVE
+        ? pow(g.cell.x * g.cell.y * g.cell.z / max(abs(determinant(cellAxes(g, p))), 1e-20), 1.0 / 3.0)
+        : warpSlope(clamp((p - g.minimum) / g.size, 0.0, 1.0))[clamp(params.density_axis, 0, 2)];
+    float t = clamp(log2(max(density, 1e-6)), -1.0, 1.0);
+    return t < 0.0 ? mix(vec3(0, 1, 0), vec3(1, 0, 0), -t) : mix(vec3(0, 1, 0), vec3(0, 0, 1), t);
+}
+
+bool inVolume(vec3 u) {
+    return all(equal(clamp(u, 0.0, 1.0), u));
+}
+
+bool inGrid(ivec3 cell) {
+    return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(params.voxel_dim)));
+}
+
+#endif

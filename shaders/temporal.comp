@@ -1,0 +1,29 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Blends last frame's radiance into this frame's (thesis, Section 4.7.2), looked up where the cell was last
+// frame, so that a moving volume does not smear. The history is rgba16f: in 8 bits the decay would stick.
+#include "params.glsl"
+#include "volume.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+uniform sampler3D voxelLight; // this frame's
+uniform sampler3D lastHistory;
+layout(std430) readonly buffer LastVolume { Grid grid; uint frames; } lastVolume;
+uniform writeonly image3D voxelHistory;
+uniform writeonly image3D voxelRadiance;
+
+void main() {
+    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    if (!inGrid(cell)) return;
+    vec4 value = texelFetch(voxelLight, cell, 0);
+    if (lastVolume.frames > 0) {
+        vec3 center = (vec3(cell) + 0.5) / float(params.voxel_dim);
+        vec3 u = worldToVolume(lastVolume.grid, volumeToWorld(volume.grid, center));
+        // A volume that moved by whole voxels finds its cell's centre again, to rounding.
+        if (inVolume(u)) value = mix(value, textureLod(lastHistory, u, 0.0), params.temporal_factor);
+    }
+    value = mix(vec4(0.0), value, greaterThan(value, vec4(1e-6))); // let the tail die: halves slow down near 0
+    imageStore(voxelHistory, cell, value);
+    imageStore(voxelRadiance, cell, value);
+}

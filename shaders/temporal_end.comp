@@ -1,0 +1,14 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Keeps where the volume lay, for the next frame's look into the history.
+#include "params.glsl"
+#include "volume.glsl"
+
+layout(local_size_x = 1) in;
+
+layout(std430) buffer LastVolume { Grid grid; uint frames; } lastVolume;
+
+void main() {
+    lastVolume.grid = volume.grid;
+    lastVolume.frames = min(lastVolume.frames, 0xfffffffeu) + 1;
+}

@@ -1,0 +1,35 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Clears the voxels that last frame's list names: clearing the whole volume would cost more than voxelizing.
+#define SLOTS_ACCESS
+#include "params.glsl"
+#include "voxels.glsl"
+
+layout(local_size_x = 128) in;
+
+layout(r32ui) uniform writeonly uimage3D voxelIndex;
+uniform writeonly image3D voxelColor;
+uniform writeonly image3D voxelNormal;
+uniform writeonly image3D injected;
+
+void clearCell(ivec3 cell) {
+    imageStore(voxelIndex, cell, uvec4(0));
+    imageStore(voxelColor, cell, vec4(0));
+    imageStore(voxelNormal, cell, vec4(0));
+    imageStore(injected, cell, vec4(0));
+}
+
+void main() {
+    uint dim = uint(params.voxel_dim);
+    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.clear_count; i += stride) {
+        ivec3 cell;
+        if (voxelCounter.clear_all != 0) {
+            if (i < dim * dim * dim) clearCell(ivec3(i % dim, i / dim % dim, i / (dim * dim)));
+        } else if (cellOfSlot(i, cell)) {
+            clearCell(cell);
+        }
+        if (i < uint(params.voxel_capacity))
+            for (uint word = 0; word < SLOT_WORDS; word++) voxelSlots.words[i * SLOT_WORDS + word] = 0;
+    }
+}

@@ -1,0 +1,87 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Tessellation levels such that points lie at most one local cell apart (thesis, Section 4.1.2).
+#include "params.glsl"
+#include "volume.glsl"
+
+layout(vertices = 3) out;
+
+layout(location = 0) in vec3 in_position[];
+layout(location = 1) in vec3 in_normal[];
+layout(location = 2) in vec2 in_uv[];
+layout(location = 3) flat in uint in_material[];
+
+layout(location = 0) out vec3 position[];
+layout(location = 1) out vec3 normal[];
+layout(location = 2) out vec2 uv[];
+layout(location = 3) patch out uint material;
+layout(location = 4) patch out float footprint; // texture coordinates a cell
+layout(location = 5) patch out uint single; // 1: the whole triangle lies in one cell
+
+// Cells along an edge: its length over the smallest cell on the way.
+float cellsAlong(Grid g, vec3 a, vec3 b) {
+    float edge = distance(a, b);
+    if (edge == 0.0) return 0.0;
+    vec3 d = (b - a) / edge;
+    float cell = cellAlong(g, 0.5 * (a + b), d);
+    if (WARP != WARP_NONE) cell = min(cell, min(cellAlong(g, a, d), cellAlong(g, b, d)));
+    if (params.tess_levels == TESS_LEVELS_THESIS) cell = dot(abs(d), cellSize(g, 0.5 * (a + b)));
+    return edge / cell;
+}
+
+bool outside(Grid g, vec3 a, vec3 b, vec3 c) {
+    if (WARP == WARP_PERSPECTIVE) {
+        vec3 w = vec3(dot(a - g.eye, g.axis_z), dot(b - g.eye, g.axis_z), dot(c - g.eye, g.axis_z));
+        if (all(lessThan(w, vec3(g.range.x))) || all(greaterThan(w, vec3(g.range.y)))) return true;
+        if (any(lessThan(w, vec3(g.range.x)))) return false;
+    }
+    vec3 u = worldToVolume(g, a), v = worldToVolume(g, b), w = worldToVolume(g, c);
+    return any(lessThan(max(u, max(v, w)), vec3(0.0))) || any(greaterThan(min(u, min(v, w)), vec3(1.0)));
+}
+
+void main() {
+    position[gl_InvocationID] = in_position[gl_InvocationID];
+    normal[gl_InvocationID] = in_normal[gl_InvocationID];
+    uv[gl_InvocationID] = in_uv[gl_InvocationID];
+    if (gl_InvocationID != 0) return;
+
+    // Only inputs are read below: other invocations' outputs would need a barrier.
+    Grid g = volume.grid;
+    vec3 a = in_position[0], b = in_position[1], c = in_position[2];
+    material = in_material[0];
+    if (outside(g, a, b, c)) {
+        gl_TessLevelOuter = float[4](0.0, 0.0, 0.0, 0.0); // discards the patch
+        gl_TessLevelInner = float[2](0.0, 0.0);
+        footprint = 0.0;
+        single = 0;
+        return;
+    }
+    vec3 cells = vec3(cellsAlong(g, b, c), cellsAlong(g, c, a), cellsAlong(g, a, b)) * params.tess_rate;
+    float longest = max(cells.x, max(cells.y, cells.z));
+
+    // Outer level i belongs to the edge opposite vertex i. A level of 0 would drop the patch, so small
+    // triangles get 1.
+    gl_TessLevelOuter = float[4](max(cells.x, 1.0), max(cells.y, 1.0), max(cells.z, 1.0), 1.0);
+    float inner = longest;
+    vec3 face = cross(b - a, c - a);
+    if (params.tess_levels == TESS_LEVELS_THESIS) { // largest altitude; leaves holes in obtuse triangles
+        float shortest = min(distance(a, b), min(distance(b, c), distance(c, a)));
+        vec3 cell = cellSize(g, (a + b + c) / 3.0);
+        inner = params.tess_rate * length(face) / max(shortest, 1e-12) / ((cell.x + cell.y + cell.z) / 3.0);
+    }
+    gl_TessLevelInner = float[2](max(inner, 1.0), 1.0);
+
+    ivec3 home = ivec3(floor(worldToVolume(g, a) * float(params.voxel_dim)));
+    single = uint(home == ivec3(floor(worldToVolume(g, b) * float(params.voxel_dim)))
+               && home == ivec3(floor(worldToVolume(g, c) * float(params.voxel_dim))));
+    if (single != 0) {
+        gl_TessLevelOuter = float[4](1.0, 1.0, 1.0, 1.0);
+        gl_TessLevelInner = float[2](1.0, 1.0);
+    }
+
+    // Square root of the ratio of areas: texture coordinates against cells.
+    vec2 s = in_uv[1] - in_uv[0], t = in_uv[2] - in_uv[0];
+    vec3 size = cellSize(g, (a + b + c) / 3.0);
+    float area = max(length(face), 1e-20);
+    footprint = sqrt(abs(s.x * t.y - s.y * t.x) / area) * (size.x + size.y + size.z) / 3.0;
+}

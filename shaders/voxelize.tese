@@ -1,0 +1,35 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One point a tessellated vertex, stored without any rasterisation (thesis, Section 4.1.2).
+#include "params.glsl"
+#include "materials.glsl"
+#include "volume.glsl"
+#include "store_voxel.glsl"
+
+layout(triangles, equal_spacing, point_mode) in;
+
+layout(location = 0) in vec3 position[];
+layout(location = 1) in vec3 normal[];
+layout(location = 2) in vec2 uv[];
+layout(location = 3) patch in uint material;
+layout(location = 4) patch in float footprint;
+layout(location = 5) patch in uint single;
+
+void main() {
+    gl_Position = vec4(0.0);
+    vec3 b = gl_TessCoord;
+    if (single != 0) { // one write for the whole triangle, from one of its three points
+        if (b.x < 0.5) return;
+        b = vec3(1.0 / 3.0);
+    }
+    vec3 p = mat3(position[0], position[1], position[2]) * b;
+    ivec3 cell = ivec3(floor(worldToVolume(volume.grid, p) * float(params.voxel_dim)));
+    if (!inGrid(cell)) return;
+    vec2 at = mat3x2(uv[0], uv[1], uv[2]) * b;
+    Gradient g = Gradient(vec2(footprint, 0.0), vec2(0.0, footprint));
+    Material m = materials.materials[material];
+    vec4 base = baseColor(m, at, g);
+    if (base.a < m.alpha_cutoff) return;
+    vec3 n = mat3(normal[0], normal[1], normal[2]) * b;
+    storeVoxel(cell, base.rgb, dot(n, n) > 0.0 ? normalize(n) : n, emission(m, at, g));
+}

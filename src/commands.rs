@@ -1,0 +1,128 @@
+//! The command line.
+
+mod check;
+mod graph;
+mod render;
+
+use crate::lab::LabError;
+use crate::vulkan::{GpuOptions, list_devices};
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// A research workbench for voxel cone tracing.
+#[derive(Debug, Parser)]
+#[command(name = "conelab", version, about)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Render an experiment to a picture, and its timings to JSON.
+    Render(render::RenderArgs),
+    /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
+    Graph(graph::GraphArgs),
+    /// Print a scene's counts, bounds, materials and missing files, or write it to another format.
+    Scene(SceneArgs),
+    /// Check graphs, shaders, experiments and scenes without a window; exit 1 on any error.
+    Check(check::CheckArgs),
+    /// List the Vulkan devices.
+    Devices,
+}
+
+/// Which device.
+#[derive(Debug, Args)]
+struct DeviceArgs {
+    /// Part of a device's name, or its number in `conelab devices`.
+    #[arg(long, env = "CONELAB_DEVICE")]
+    device: Option<String>,
+    /// Turn on the Vulkan validation layer; any message is an error.
+    #[arg(long, env = "CONELAB_VALIDATION")]
+    validate: bool,
+}
+
+impl DeviceArgs {
+    fn options(&self) -> GpuOptions {
+        GpuOptions { device: self.device.clone(), validation: self.validate, cache: None }
+    }
+}
+
+#[derive(Debug, Args)]
+struct SceneArgs {
+    /// A built-in scene's name, a scene RON, or a model file (.obj, .gltf, .glb).
+    scene: String,
+    /// Write the scene to this file (.obj, .gltf or .glb) instead of describing it.
+    #[arg(long)]
+    export: Option<PathBuf>,
+}
+
+/// Runs a command; the error is for the user.
+///
+/// # Errors
+/// Everything that a command can fail with.
+pub fn run(cli: Cli) -> Result<(), LabError> {
+    match cli.command {
+        Command::Render(args) => render::run(&args),
+        Command::Graph(args) => graph::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Scene(args) => scene(&args),
+        Command::Devices => devices(),
+    }
+}
+
+/// Opens a scene with a progress bar.
+fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
+    let bar = indicatif::ProgressBar::new(1000).with_style(
+        indicatif::ProgressStyle::with_template("{msg:40} {bar:30} {percent}%")
+            .unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()),
+    );
+    let scene = crate::scene::Scene::open(name, &|what, part| {
+        bar.set_message(what.to_string());
+        bar.set_position((part.clamp(0.0, 1.0) * 1000.0) as u64);
+    });
+    bar.finish_and_clear();
+    let scene = scene?;
+    for warning in &scene.warnings {
+        eprintln!("warning: {warning}");
+    }
+    Ok(scene)
+}
+
+fn scene(args: &SceneArgs) -> Result<(), LabError> {
+    let scene = open_scene(&args.scene)?;
+    match &args.export {
+        Some(path) => {
+            scene.export(path)?;
+            println!("wrote {}", path.display());
+        }
+        None => print!("{}", scene.summary()),
+    }
+    Ok(())
+}
+
+fn devices() -> Result<(), LabError> {
+    for (number, (info, refused)) in list_devices()?.iter().enumerate() {
+        println!("{number}: {} ({}, {}), Vulkan {}", info.name, info.kind, info.driver, info.api);
+        match refused {
+            Some(why) => println!("   cannot be used: {why}"),
+            None => {
+                let f = &info.features;
+                let list = [
+                    ("geometry shaders", f.geometry),
+                    ("tessellation", f.tessellation),
+                    ("stores in fragment shaders", f.fragment_stores),
+                    ("stores in vertex stages", f.vertex_stores),
+                    ("conservative rasterisation", f.conservative_rasterization),
+                    ("BC textures", f.bc),
+                    ("timestamps", info.timestamp_ns > 0.0),
+                ];
+                for (name, has) in list {
+                    println!("   {} {name}", if has { "yes" } else { "no " });
+                }
+                println!("   {:.1} GiB of device memory", info.heap as f64 / (1u64 << 30) as f64);
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,99 @@
+//! `conelab check`.
+
+use crate::experiment::Experiment;
+use crate::graph::source::Severity;
+use crate::lab::{Home, LabError, params_of};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Files to check; all graphs, experiments and scenes of the program when none is given.
+    files: Vec<PathBuf>,
+}
+
+/// What a RON file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// A pass graph.
+    Graph,
+    /// An experiment.
+    Experiment,
+    /// A scene.
+    Scene,
+}
+
+/// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights.
+pub fn kind(path: &str) -> FileKind {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let has = |field: &str| {
+        text.lines().any(|l| l.trim_start().trim_start_matches('(').trim_start().starts_with(&format!("{field}:")))
+    };
+    if has("graph") {
+        FileKind::Experiment
+    } else if has("models") || has("lights") || has("cameras") {
+        FileKind::Scene
+    } else {
+        FileKind::Graph
+    }
+}
+
+fn ron_files(folder: &Path) -> Vec<PathBuf> {
+    let mut list: Vec<PathBuf> = std::fs::read_dir(folder)
+        .map(|entries| entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "ron")).collect())
+        .unwrap_or_default();
+    list.sort();
+    list
+}
+
+/// Checks files; every finding is printed.
+pub fn run(args: &CheckArgs) -> Result<(), LabError> {
+    let home = Home::find()?;
+    let mut files = args.files.clone();
+    if files.is_empty() {
+        for folder in ["passes", "configs", "configs/scenes"] {
+            files.extend(ron_files(&home.root.join(folder)));
+        }
+    }
+    let mut wrong = 0;
+    for file in &files {
+        let name = file.to_string_lossy();
+        let findings = match kind(&name) {
+            FileKind::Graph => match home.graph(&name) {
+                Ok((_, _, warnings)) => warnings,
+                Err(errors) => errors,
+            },
+            FileKind::Experiment => check_experiment(&home, file),
+            FileKind::Scene => {
+                if let Err(e) = crate::scene::Scene::open(&name, &|_, _| {}) {
+                    wrong += 1;
+                    println!("{e}");
+                }
+                Vec::new()
+            }
+        };
+        let errors = findings.iter().filter(|f| f.severity == Severity::Error).count();
+        wrong += errors;
+        for finding in &findings {
+            println!("{finding}");
+        }
+    }
+    println!("checked {} files, {wrong} errors", files.len());
+    if wrong > 0 { Err(LabError::Request(format!("{wrong} errors"))) } else { Ok(()) }
+}
+
+fn check_experiment(home: &Home, file: &Path) -> Vec<crate::graph::source::Diagnostic> {
+    let experiment = match Experiment::read(file) {
+        Ok(e) => e,
+        Err(errors) => return errors,
+    };
+    let graph = match home.graph(&experiment.graph) {
+        Ok((graph, ..)) => graph,
+        Err(errors) => return errors,
+    };
+    match params_of(&graph, &experiment) {
+        Err(LabError::Input(errors)) => errors,
+        _ => Vec::new(),
+    }
+}

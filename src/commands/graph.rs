@@ -1,0 +1,73 @@
+//! `conelab graph`.
+
+use crate::experiment::Experiment;
+use crate::graph::plan::{PlanInput, plan};
+use crate::graph::report;
+use crate::lab::{Home, LabError, any_device, environment, params_of};
+use clap::Args;
+
+/// Arguments of `graph`.
+#[derive(Debug, Args)]
+pub struct GraphArgs {
+    /// Graph file (passes/vct.ron) or experiment (configs/default.ron).
+    file: String,
+    /// The scene whose counts decide repetitions.
+    #[arg(long)]
+    scene: Option<String>,
+    /// Picture size.
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
+    size: String,
+    /// Set a parameter; may be given many times.
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Resources that are wanted beside the picture.
+    #[arg(long, value_name = "NAME")]
+    want: Vec<String>,
+    /// Print the parameters with their ranges and help.
+    #[arg(long)]
+    params: bool,
+    /// Print a Graphviz picture.
+    #[arg(long)]
+    dot: bool,
+}
+
+/// Prints a graph's plan.
+pub fn run(args: &GraphArgs) -> Result<(), LabError> {
+    let home = Home::find()?;
+    let experiment = match crate::commands::check::kind(&args.file) {
+        crate::commands::check::FileKind::Experiment => {
+            Some(Experiment::read(args.file.as_ref()).map_err(LabError::Input)?)
+        }
+        _ => None,
+    };
+    let name = experiment.as_ref().map_or(args.file.as_str(), |e| e.graph.as_str());
+    let (graph, linked, warnings) = home.graph(name).map_err(LabError::Input)?;
+    for warning in warnings {
+        eprintln!("{warning}");
+    }
+    if args.params {
+        print!("{}", report::params(&graph.params));
+        return Ok(());
+    }
+    let mut params = match &experiment {
+        Some(e) => params_of(&graph, e)?,
+        None => graph.params.clone(),
+    };
+    for setting in &args.set {
+        let (name, value) =
+            setting.split_once('=').ok_or_else(|| LabError::Request(format!("--set {setting}: expected NAME=VALUE")))?;
+        params.set(name, value).map_err(LabError::Request)?;
+    }
+    let size = super::render::parse_size(&args.size)?;
+    let size = experiment.as_ref().map_or(size, |e| e.size);
+    let scene_name = args.scene.clone().or(experiment.as_ref().map(|e| e.scene.clone())).unwrap_or("cornell".into());
+    let scene = super::open_scene(&scene_name)?;
+    let mut wanted: Vec<String> = graph.output.iter().chain(&graph.hdr).chain(&args.want).cloned().collect();
+    wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
+    let device = any_device();
+    let env = environment(&scene, size, 0.0);
+    let input = PlanInput { params: &params, env, wanted, device: &device };
+    let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
+    print!("{}", if args.dot { report::dot(&graph, &linked, &plan) } else { report::text(&graph, &plan) });
+    Ok(())
+}

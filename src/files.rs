@@ -1,0 +1,65 @@
+//! Files that are whole or absent: written under a temporary name and renamed, read back only when their checksum fits.
+
+use sha2::{Digest, Sha256};
+use std::io::Write;
+use std::path::Path;
+
+/// Writes `bytes` to `path`: a reader sees the old file or the new one, never a part.
+///
+/// # Errors
+/// The folder cannot be made or written to, or the disk is full; the old file is untouched then.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_with(path, |file| file.write_all(bytes))
+}
+
+/// Like [`write_whole`], with a closure that does the writing.
+///
+/// # Errors
+/// As [`write_whole`], and those of the closure.
+pub fn write_with(path: &Path, write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> std::io::Result<()> {
+    let folder = match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    };
+    std::fs::create_dir_all(folder)?;
+    let mut file = tempfile::Builder::new().prefix(".conelab-").tempfile_in(folder)?;
+    write(file.as_file_mut())?;
+    make_readable(file.as_file())?;
+    file.persist(path).map_err(|e| e.error)?;
+    Ok(())
+}
+
+/// Temporary files are private to their owner; what is kept should be as readable as any other file.
+fn make_readable(file: &std::fs::File) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        file.set_permissions(std::fs::Permissions::from_mode(0o644))?;
+    }
+    let _ = file;
+    Ok(())
+}
+
+/// Writes a cache file: SHA-256 of the content, then the content.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_checked(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_with(path, |file| {
+        file.write_all(&Sha256::digest(bytes))?;
+        file.write_all(bytes)
+    })
+}
+
+/// Reads a cache file; `None` when it is absent, too large (256 MiB) or not what was written.
+pub fn read_checked(path: &Path) -> Option<Vec<u8>> {
+    if std::fs::metadata(path).ok()?.len() > 256 << 20 {
+        return None;
+    }
+    let mut bytes = std::fs::read(path).ok()?;
+    if bytes.len() < 32 {
+        return None;
+    }
+    let content = bytes.split_off(32);
+    (bytes == Sha256::digest(&content)[..]).then_some(content)
+}

@@ -1,0 +1,57 @@
+//! The fixed named resources that a scene offers to every graph. The graph knows their names and kinds, not what they
+//! mean; `shaders/include/scene.glsl` declares their layouts.
+
+/// Kind of an external resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ExternalKind {
+    /// A uniform block.
+    Uniform,
+    /// A read-only storage buffer.
+    Storage,
+    /// A sampled 2D array.
+    TextureArray,
+}
+
+/// A resource that exists outside the graph.
+#[derive(Clone, Copy, Debug)]
+pub struct External {
+    /// Name in shaders.
+    pub name: &'static str,
+    /// Kind.
+    pub kind: ExternalKind,
+}
+
+const fn external(name: &'static str, kind: ExternalKind) -> External {
+    External { name, kind }
+}
+
+/// Number of arrays that material textures are spread over.
+pub const MATERIAL_ARRAYS: usize = 12;
+
+use ExternalKind::{Storage, TextureArray, Uniform};
+
+/// All of them.
+pub const EXTERNALS: &[External] = &[
+    external("params", Uniform),
+    external("camera", Uniform),
+    external("sceneInfo", Uniform),
+    external("lights", Storage),
+    external("shadowViews", Storage),
+    external("materials", Storage),
+    external("instances", Storage),
+    external("draws", Storage),
+    external("positions", Storage),
+    external("attributes", Storage),
+    external("materialTexture0", TextureArray),
+    external("materialTexture1", TextureArray),
+    external("materialTexture2", TextureArray),
+    external("materialTexture3", TextureArray),
+    external("materialTexture4", TextureArray),
+    external("materialTexture5", TextureArray),
+    external("materialTexture6", TextureArray),
+    external("materialTexture7", TextureArray),
+    external("materialTexture8", TextureArray),
+    external("materialTexture9", TextureArray),
+    external("materialTexture10", TextureArray),
+    external("materialTexture11", TextureArray),
+];

@@ -1,0 +1,386 @@
+//! What stands in a graph file, field by field.
+
+use super::expr::Expr;
+use super::param::Decl;
+use super::source::{Entries, Items, Loc, TwoOrThree};
+use serde::Deserialize;
+
+/// A graph file.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GraphFile {
+    /// Files whose sections come before this one's.
+    pub include: Items<String>,
+    /// Parameters.
+    pub params: Items<Decl>,
+    /// Textures by name.
+    pub textures: Entries<TextureDecl>,
+    /// Buffers by name.
+    pub buffers: Entries<BufferDecl>,
+    /// Passes, in order.
+    pub passes: Items<PassDecl>,
+    /// The display-encoded picture.
+    pub output: Option<Loc<String>>,
+    /// The linear picture.
+    pub hdr: Option<Loc<String>>,
+    /// Further results that may be asked for.
+    pub outputs: Items<String>,
+    /// What the graph needs of the scene's geometry.
+    pub scene: Option<Loc<SceneNeeds>>,
+    /// Words of buffers that must be zero after a frame.
+    pub checks: Items<CheckDecl>,
+}
+
+/// An expression with its place.
+pub type Ex = Loc<Expr>;
+
+/// Geometry prepared for the graph.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneNeeds {
+    /// World length (m) above which triangle edges are split at load.
+    pub max_edge: Ex,
+    /// When that is needed.
+    pub when: Option<Ex>,
+}
+
+/// A word of a buffer that must be zero.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CheckDecl {
+    /// The buffer.
+    pub buffer: Loc<String>,
+    /// Index of the 32-bit word.
+    pub word: u32,
+    /// What it means when it is not zero, and what to do.
+    pub message: String,
+}
+
+/// A texture.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TextureDecl {
+    /// Two sizes for 2D, three for 3D.
+    pub size: TwoOrThree<Expr>,
+    /// A format, or a choice parameter whose options are formats.
+    pub format: Loc<String>,
+    /// Formats it may also be viewed as.
+    #[serde(default)]
+    pub views: Items<String>,
+    /// Mip levels; 1 when absent.
+    pub mips: Option<Ex>,
+    /// Layers of a 2D array; a plain 2D texture when absent.
+    pub layers: Option<Ex>,
+    /// How it is sampled.
+    pub sampler: Option<SamplerDecl>,
+    /// Keep last frame's content beside this frame's.
+    #[serde(default)]
+    pub history: bool,
+}
+
+/// How a texture is sampled.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SamplerDecl {
+    /// Between texels.
+    pub filter: FilterMode,
+    /// Between mips; as `filter` when absent.
+    pub mip_filter: Option<FilterMode>,
+    /// Outside [0, 1].
+    pub address: AddressMode,
+    /// Depth comparison.
+    pub compare: Option<Compare>,
+}
+
+/// Filtering.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum FilterMode {
+    /// The nearest texel.
+    Nearest,
+    /// Interpolated.
+    #[default]
+    Linear,
+}
+
+/// Addressing outside a texture.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum AddressMode {
+    /// The edge texel.
+    #[default]
+    Clamp,
+    /// Tiled.
+    Repeat,
+    /// Tiled and mirrored.
+    Mirror,
+    /// Zero.
+    BorderZero,
+    /// One.
+    BorderOne,
+}
+
+/// A comparison.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "named after Vulkan's VkCompareOp")]
+pub enum Compare {
+    Never,
+    Less,
+    Equal,
+    LessOrEqual,
+    Greater,
+    NotEqual,
+    GreaterOrEqual,
+    Always,
+}
+
+/// A buffer.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BufferDecl {
+    /// Bytes.
+    pub size: Ex,
+    /// Whether dispatches and draws read their size from it.
+    #[serde(default)]
+    pub indirect: bool,
+}
+
+/// A pass.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PassDecl {
+    /// Name, for people and timings.
+    pub name: Loc<String>,
+    /// Condition; always when absent.
+    pub when: Option<Ex>,
+    /// Shader files.
+    #[serde(default)]
+    pub shaders: Items<String>,
+    /// Compute grid.
+    pub dispatch: Option<Loc<Dispatch>>,
+    /// What is drawn.
+    pub draw: Option<Loc<Draw>>,
+    /// Primitives.
+    #[serde(default)]
+    pub topology: Topology,
+    /// Repetition over mips.
+    pub each_mip: Option<Loc<EachMip>>,
+    /// Repetition by a count.
+    pub repeat: Option<Ex>,
+    /// What the shaders' names stand for, where they differ from the graph's.
+    #[serde(default)]
+    pub bind: Entries<Bind>,
+    /// Colour attachments by location.
+    #[serde(default)]
+    pub color: Items<ColorTarget>,
+    /// Depth attachment.
+    pub depth: Option<Loc<DepthTarget>>,
+    /// Raster state.
+    #[serde(default)]
+    pub raster: Raster,
+    /// The texture or buffer that is cleared.
+    pub clear: Option<Loc<String>>,
+    /// The mip that is cleared; all when absent.
+    pub mip: Option<Ex>,
+    /// The value it is cleared to.
+    pub value: Option<(f64, f64, f64, f64)>,
+    /// A copy.
+    pub copy: Option<Loc<CopyDecl>>,
+    /// Run every frame even when nothing it reads has changed.
+    #[serde(default)]
+    pub always: bool,
+    /// A note to readers.
+    pub comment: Option<String>,
+}
+
+/// Size of a compute grid.
+#[derive(Clone, Debug, Deserialize)]
+pub enum Dispatch {
+    /// One thread a texel of a binding or texture.
+    Cover(Loc<String>),
+    /// So many threads.
+    Threads(Ex, Ex, Ex),
+    /// So many groups.
+    Groups(Ex, Ex, Ex),
+    /// Groups read from a buffer at a byte offset (VkDispatchIndirectCommand).
+    Indirect(Loc<String>, u64),
+}
+
+/// What a raster pass draws.
+#[derive(Clone, Debug, Deserialize)]
+pub enum Draw {
+    /// The scene's triangles.
+    Scene {
+        /// Which.
+        #[serde(default)]
+        what: Which,
+    },
+    /// One triangle over the whole picture.
+    Fullscreen,
+    /// So many vertices without a buffer.
+    Vertices(Ex),
+    /// Counts read from a buffer at a byte offset (VkDrawIndirectCommand).
+    Indirect(Loc<String>, u64),
+}
+
+/// Which triangles of the scene.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Which {
+    /// All.
+    #[default]
+    All,
+    /// Those without alpha mask.
+    Opaque,
+    /// Those with.
+    Masked,
+}
+
+/// Primitives.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Topology {
+    /// Triangles.
+    #[default]
+    Triangles,
+    /// Points.
+    Points,
+    /// Lines.
+    Lines,
+    /// Patches of three vertices.
+    Patches,
+}
+
+/// Repetition over the mips of a texture.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EachMip {
+    /// The texture.
+    pub texture: Loc<String>,
+    /// First mip.
+    #[serde(default)]
+    pub from: u32,
+}
+
+/// What a shader's name stands for.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bind {
+    /// Texture or buffer.
+    pub of: Loc<String>,
+    /// One mip.
+    pub mip: Option<Ex>,
+    /// One layer.
+    pub layer: Option<Ex>,
+    /// Viewed as another format.
+    #[serde(rename = "as")]
+    pub format: Option<Loc<String>>,
+    /// Last frame's content.
+    #[serde(default)]
+    pub history: bool,
+    /// Sampled otherwise.
+    pub sampler: Option<SamplerDecl>,
+}
+
+/// A colour attachment.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ColorTarget {
+    /// The texture.
+    pub to: Loc<String>,
+    /// Cleared to this first; kept when absent.
+    pub clear: Option<(f32, f32, f32, f32)>,
+    /// The mip.
+    pub mip: Option<Ex>,
+    /// The layer.
+    pub layer: Option<Ex>,
+    /// Blending.
+    #[serde(default)]
+    pub blend: BlendMode,
+}
+
+/// Blending.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum BlendMode {
+    /// Replace.
+    #[default]
+    Off,
+    /// Over.
+    Alpha,
+    /// Sum.
+    Add,
+}
+
+/// A depth attachment.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DepthTarget {
+    /// The texture.
+    pub to: Loc<String>,
+    /// Cleared to this first; kept when absent.
+    pub clear: Option<f32>,
+    /// The layer.
+    pub layer: Option<Ex>,
+    /// The test.
+    pub test: Option<Compare>,
+    /// Whether depth is written.
+    #[serde(default = "yes")]
+    pub write: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Raster state.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Raster {
+    /// Viewport without attachments.
+    pub size: Option<Loc<(Ex, Ex)>>,
+    /// Samples without attachments.
+    pub samples: Option<Ex>,
+    /// Culled faces.
+    pub cull: Cull,
+    /// Clamp depth instead of clipping.
+    pub depth_clamp: bool,
+    /// Constant and slope bias.
+    pub depth_bias: Option<(f32, f32)>,
+    /// Conservative rasterisation.
+    pub conservative: Option<Conservative>,
+    /// No rasterisation.
+    pub discard: bool,
+}
+
+/// Culling.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Cull {
+    /// Both faces are drawn.
+    #[default]
+    None,
+    /// Back faces are not.
+    Back,
+    /// Front faces are not.
+    Front,
+}
+
+/// Conservative rasterisation by the device.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Conservative {
+    /// Every touched pixel.
+    Overestimate,
+}
+
+/// A copy.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CopyDecl {
+    /// From.
+    pub from: Loc<String>,
+    /// To.
+    pub to: Loc<String>,
+}

@@ -1,0 +1,398 @@
+//! Shaders against the graph: every name a shader binds is looked up, and what it expects is compared with what is there.
+
+use super::externals::{EXTERNALS, ExternalKind};
+use super::file::{Bind, PassDecl, TextureDecl};
+use super::load::Graph;
+use super::param::Kind;
+use super::source::{At, Diagnostic, Place, Severity};
+use crate::shader::{Compiled, Resource, ShaderCompiler, Shape, Source};
+use crate::vulkan::Stage;
+use crate::vulkan::format::{Channels, Format};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, HashSet};
+use std::path::Path;
+
+/// What a shader's name was found to be.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// Index in [`EXTERNALS`].
+    External(usize),
+    /// Index of a buffer.
+    Buffer(usize),
+    /// Index of a texture.
+    Texture(usize),
+}
+
+/// One binding of one stage.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// Stage.
+    pub stage: Stage,
+    /// Binding number.
+    pub binding: u32,
+    /// Name in the shader.
+    pub name: String,
+    /// What the shader expects.
+    pub resource: Resource,
+    /// What it is.
+    pub target: Target,
+    /// Index in the pass's `bind`, where it is renamed or narrowed there.
+    pub bind: Option<usize>,
+}
+
+/// A pass with its shaders.
+#[derive(Clone, Debug, Default)]
+pub struct Linked {
+    /// Compiled stages, in pipeline order.
+    pub stages: Vec<Compiled>,
+    /// All bindings.
+    pub bound: Vec<Bound>,
+}
+
+/// Compiles all shaders of a graph in parallel and links them. Warnings come with a good result too.
+///
+/// # Errors
+/// All mistakes of all shaders.
+pub fn link(
+    graph: &Graph,
+    compiler: &ShaderCompiler,
+    shaders: &Path,
+) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let params = graph.params.glsl();
+    let mut files: BTreeMap<&str, Stage> = BTreeMap::new();
+    for pass in &graph.passes {
+        for shader in &pass.value.shaders.0 {
+            if let Some(stage) = Stage::of_file(&shader.value) {
+                files.insert(&shader.value, stage);
+            }
+        }
+    }
+    let results: Vec<_> = files
+        .par_iter()
+        .map(|(file, stage)| (*file, compiler.compile(&Source { file: (*file).to_string(), stage: *stage }, &params)))
+        .collect();
+    let mut findings = Vec::new();
+    let mut compiled = BTreeMap::new();
+    for (file, result) in results {
+        match result {
+            Ok(shader) => drop(compiled.insert(file, shader)),
+            Err(list) => findings.extend(list.into_iter().filter(|d| !findings.contains(d)).collect::<Vec<_>>()),
+        }
+    }
+    if !findings.is_empty() {
+        return Err(findings);
+    }
+    let mut linker = Linker { graph, shaders, findings, used: HashSet::new() };
+    let linked = graph.passes.iter().map(|p| linker.pass(&p.value, &compiled)).collect();
+    linker.unused(&compiled);
+    let findings = linker.findings;
+    if findings.iter().any(|f| f.severity == Severity::Error) { Err(findings) } else { Ok((linked, findings)) }
+}
+
+struct Linker<'g> {
+    graph: &'g Graph,
+    shaders: &'g Path,
+    findings: Vec<Diagnostic>,
+    used: HashSet<String>,
+}
+
+impl Linker<'_> {
+    fn pass(&mut self, pass: &PassDecl, compiled: &BTreeMap<&str, Compiled>) -> Linked {
+        let mut stages: Vec<Compiled> =
+            pass.shaders.0.iter().filter_map(|s| compiled.get(s.value.as_str()).cloned()).collect();
+        stages.sort_by_key(|s| s.stage);
+        let mut bound = Vec::new();
+        for shader in &stages {
+            for binding in &shader.interface.bindings {
+                if let Some((target, bind)) = self.resolve(pass, shader, &binding.name, &binding.resource) {
+                    bound.push(Bound {
+                        stage: shader.stage,
+                        binding: binding.binding,
+                        name: binding.name.clone(),
+                        resource: binding.resource.clone(),
+                        target,
+                        bind,
+                    });
+                }
+            }
+        }
+        for (key, _) in &pass.bind.0 {
+            if !bound.iter().any(|b| b.name == key.value) && !stages.is_empty() {
+                let names: Vec<&str> =
+                    stages.iter().flat_map(|s| s.interface.bindings.iter().map(|b| b.name.as_str())).collect();
+                let found = self.graph.sources.error(
+                    key.at,
+                    format!("no shader of pass '{}' uses the name '{}'", pass.name.value, key.value),
+                );
+                self.findings.push(found.nearest(&key.value, names));
+            }
+        }
+        self.outputs(pass, &stages);
+        self.mark_used(pass);
+        Linked { stages, bound }
+    }
+
+    fn mark_used(&mut self, pass: &PassDecl) {
+        let names = pass.color.0.iter().map(|c| &c.value.to).chain(pass.depth.iter().map(|d| &d.value.to));
+        let names = names.chain(&pass.clear).chain(pass.copy.iter().flat_map(|c| [&c.value.from, &c.value.to]));
+        self.used.extend(names.map(|n| n.value.clone()));
+        for indirect in [
+            pass.dispatch.as_ref().and_then(|d| match &d.value {
+                super::file::Dispatch::Indirect(name, _) => Some(name),
+                _ => None,
+            }),
+            pass.draw.as_ref().and_then(|d| match &d.value {
+                super::file::Draw::Indirect(name, _) => Some(name),
+                _ => None,
+            }),
+        ] {
+            self.used.extend(indirect.map(|n| n.value.clone()));
+        }
+    }
+
+    fn outputs(&mut self, pass: &PassDecl, stages: &[Compiled]) {
+        let Some(fragment) = stages.iter().find(|s| s.stage == Stage::Fragment) else { return };
+        let declared = pass.color.0.len();
+        for location in &fragment.interface.outputs {
+            if *location as usize >= declared {
+                let message = format!(
+                    "'{}' writes location {location}, but pass '{}' declares {declared} colour attachments",
+                    fragment.file, pass.name.value
+                );
+                self.findings.push(self.graph.sources.error(pass.name.at, message));
+            }
+        }
+        for (location, target) in pass.color.0.iter().enumerate() {
+            if !fragment.interface.outputs.iter().any(|o| *o as usize == location) {
+                let message = format!(
+                    "pass '{}' declares '{}' as colour {location}, but '{}' does not write that location",
+                    pass.name.value, target.value.to.value, fragment.file
+                );
+                self.findings.push(self.graph.sources.error(target.at, message));
+            }
+        }
+    }
+
+    /// An error at the line where a shader declares a name.
+    fn at_declaration(&self, shader: &Compiled, name: &str, message: String) -> Diagnostic {
+        let is_word = |line: &str| {
+            line.match_indices(name).any(|(i, _)| {
+                let edge = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_');
+                edge(line[..i].chars().next_back()) && edge(line[i + name.len()..].chars().next())
+            })
+        };
+        // The declaration stands after `uniform` or `buffer`, or closes a block: `} name;`.
+        let declares = |line: &str| {
+            is_word(line) && (line.contains("uniform") || line.contains("buffer") || line.trim_start().starts_with('}'))
+        };
+        let main = std::iter::once(&shader.file).chain(shader.texts.keys());
+        for file in main {
+            let Some(text) = shader.texts.get(file) else { continue };
+            if let Some((number, line)) = (1u32..).zip(text.lines()).find(|(_, l)| declares(l)) {
+                let path = [self.shaders.join(file), self.shaders.join("include").join(file)];
+                let path = path.iter().find(|p| p.is_file()).unwrap_or(&path[0]).clone();
+                let place = Place { file: path, line: number, column: 0 };
+                return Diagnostic { source: Some(line.trim().into()), ..Diagnostic::error(place, message) };
+            }
+        }
+        Diagnostic::error(Place { file: self.shaders.join(&shader.file), ..Place::default() }, message)
+    }
+
+    fn resolve(
+        &mut self,
+        pass: &PassDecl,
+        shader: &Compiled,
+        name: &str,
+        resource: &Resource,
+    ) -> Option<(Target, Option<usize>)> {
+        let bind = pass.bind.0.iter().position(|(key, _)| key.value == name);
+        let decl = bind.map(|i| &pass.bind.0[i].1.value);
+        let resource_name = decl.map_or(name, |d| d.of.value.as_str());
+        self.used.insert(resource_name.to_string());
+        let external = EXTERNALS.iter().position(|e| e.name == resource_name);
+        let buffer = self.graph.buffers.iter().position(|b| b.0 == resource_name);
+        let texture = self.graph.textures.iter().position(|t| t.0 == resource_name);
+        let fail = |linker: &mut Self, message: String, help: Option<String>| {
+            let message = format!("{message} (pass '{}')", pass.name.value);
+            let found = linker.at_declaration(shader, name, message).help(help);
+            if !linker.findings.contains(&found) {
+                linker.findings.push(found);
+            }
+            None
+        };
+        match (external, buffer, texture) {
+            (Some(i), _, _) => {
+                let fits = match EXTERNALS[i].kind {
+                    ExternalKind::Uniform => *resource == Resource::Uniform,
+                    ExternalKind::Storage => matches!(resource, Resource::Buffer { write: false, .. }),
+                    ExternalKind::TextureArray => {
+                        matches!(resource, Resource::Sampled { shape: Shape::D2Array, compare: false, integer: false })
+                    }
+                };
+                if !fits {
+                    let expected = match EXTERNALS[i].kind {
+                        ExternalKind::Uniform => "a uniform block",
+                        ExternalKind::Storage => "a readonly buffer",
+                        ExternalKind::TextureArray => "a sampler2DArray",
+                    };
+                    return fail(self, format!("'{name}' is the scene's {expected}, and the shader declares {}", describe(resource)), None);
+                }
+                Some((Target::External(i), None))
+            }
+            (_, Some(i), _) => match resource {
+                Resource::Buffer { .. } | Resource::Uniform => Some((Target::Buffer(i), bind)),
+                other => fail(self, format!("'{resource_name}' is a buffer of the graph, and the shader declares {}", describe(other)), None),
+            },
+            (_, _, Some(i)) => {
+                let texture = &self.graph.textures[i].1.value;
+                match mismatch(self.graph, resource_name, texture, decl, resource) {
+                    Some((message, help)) => fail(self, message, help),
+                    None => Some((Target::Texture(i), bind)),
+                }
+            }
+            _ => {
+                let known = self.graph.textures.iter().map(|t| t.0.as_str());
+                let known = known.chain(self.graph.buffers.iter().map(|b| b.0.as_str()));
+                let known = known.chain(EXTERNALS.iter().map(|e| e.name)).chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
+                let help = super::source::nearest(name, known);
+                fail(
+                    self,
+                    format!("'{name}' is {} that neither the graph nor the scene declares", describe(resource)),
+                    help.or(Some(format!("declare it in the graph, or rename it: bind: {{\"{name}\": (of: \"...\")}}"))),
+                )
+            }
+        }
+    }
+
+    /// Warnings for what is declared and never used.
+    fn unused(&mut self, compiled: &BTreeMap<&str, Compiled>) {
+        let graph = self.graph;
+        let mut wanted: HashSet<&str> = graph.outputs.iter().map(String::as_str).collect();
+        wanted.extend(graph.output.as_deref());
+        wanted.extend(graph.hdr.as_deref());
+        wanted.extend(graph.checks.iter().map(|c| c.buffer.value.as_str()));
+        let warn = |at: At, message: String| {
+            let d = graph.sources.error(at, message);
+            Diagnostic { severity: Severity::Warning, ..d }
+        };
+        let resources = graph.textures.iter().map(|t| (&t.0, t.1.at)).chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
+        for (name, at) in resources {
+            if !self.used.contains(name) && !wanted.contains(name.as_str()) {
+                self.findings.push(warn(at, format!("'{name}' is declared and never used")));
+            }
+        }
+        let texts: HashSet<&String> =
+            compiled.values().flat_map(|c| c.texts.iter()).filter(|(f, _)| *f != "params.glsl").map(|(_, t)| t).collect();
+        for (i, param) in graph.params.list.iter().enumerate() {
+            let in_shader = if param.constant { param.name.to_uppercase() } else { format!("params.{}", param.name) };
+            let in_graph = super::plan::all_expressions(graph).any(|e| {
+                e.value.variables().iter().any(|v| *v == param.name || v.strip_prefix(&param.name).is_some_and(|r| r.starts_with('_')))
+            });
+            let as_format = graph.textures.iter().any(|t| t.1.value.format.value == param.name);
+            if !in_graph && !as_format && !texts.iter().any(|t| t.contains(&in_shader)) {
+                let at = graph.params_at.get(i).copied().unwrap_or_default();
+                self.findings.push(warn(at, format!("parameter '{}' is declared and never used", param.name)));
+            }
+        }
+    }
+}
+
+/// What a shader declares, in words.
+pub fn describe(resource: &Resource) -> String {
+    match resource {
+        Resource::Uniform => "a uniform block".into(),
+        Resource::Buffer { read: true, write: false } => "a readonly buffer".into(),
+        Resource::Buffer { read: false, write: true } => "a writeonly buffer".into(),
+        Resource::Buffer { .. } => "a buffer".into(),
+        Resource::Sampled { shape, compare, integer } => format!(
+            "a {}sampler{}{}",
+            if *integer { "u" } else { "" },
+            shape.name(),
+            if *compare { "Shadow" } else { "" }
+        ),
+        Resource::Storage { shape, format, .. } => {
+            format!("an image{} of format {}", shape.name(), format.unwrap_or("(none)"))
+        }
+    }
+}
+
+/// Shape of a texture as a binding sees it.
+pub fn bound_shape(texture: &TextureDecl, decl: Option<&Bind>) -> Shape {
+    match (texture.size.0.len(), &texture.layers, decl.and_then(|d| d.layer.as_ref())) {
+        (3, ..) => Shape::D3,
+        (_, Some(_), None) => Shape::D2Array,
+        _ => Shape::D2,
+    }
+}
+
+/// Why a texture does not fit what a shader declares, and what would.
+fn mismatch(
+    graph: &Graph,
+    name: &str,
+    texture: &TextureDecl,
+    decl: Option<&Bind>,
+    resource: &Resource,
+) -> Option<(String, Option<String>)> {
+    let (shape, wanted) = match resource {
+        Resource::Sampled { shape, .. } | Resource::Storage { shape, .. } => (*shape, bound_shape(texture, decl)),
+        other => return Some((format!("'{name}' is a texture, and the shader declares {}", describe(other)), None)),
+    };
+    if shape != wanted {
+        return Some((
+            format!("'{name}' is {}, and the shader declares {}", wanted.name(), describe(resource)),
+            Some(format!("declare it as {}", wanted.name())),
+        ));
+    }
+    let view = decl.and_then(|d| d.format.as_ref()).map_or(texture.format.value.as_str(), |f| f.value.as_str());
+    let formats: Vec<Format> = match Format::named(view) {
+        Some(f) => vec![f],
+        None => match graph.params.list.iter().find(|p| p.name == view).map(|p| &p.kind) {
+            Some(Kind::Choice(options)) => options.iter().filter_map(|o| Format::named(o)).collect(),
+            _ => vec![],
+        },
+    };
+    match resource {
+        Resource::Storage { format, read, write, .. } => {
+            if formats.iter().any(|f| f.is_depth()) {
+                return Some((format!("'{name}' is a depth texture, which cannot be a storage image"), None));
+            }
+            if *write && decl.is_some_and(|d| d.history) {
+                return Some((format!("the history of '{name}' is read-only"), None));
+            }
+            match format {
+                Some(declared) if formats.iter().any(|f| f.name != *declared) => Some((
+                    format!("'{name}' has format {view}, and the shader declares {declared}"),
+                    Some(if formats.len() == 1 {
+                        format!("write layout({view}), or bind it as another declared view")
+                    } else {
+                        "its format is a choice: write to a `writeonly` image without a format, and read by sampler".into()
+                    }),
+                )),
+                None if *read => Some((
+                    format!("'{name}' is read as an image without a format"),
+                    Some(format!("write layout({view}), or mark it writeonly")),
+                )),
+                _ => None,
+            }
+        }
+        Resource::Sampled { compare, integer, .. } => {
+            let wants = formats.iter().any(|f| matches!(f.channels, Channels::Uint | Channels::Int));
+            if wants != *integer {
+                let better = if wants { "a usampler" } else { "a sampler" };
+                return Some((format!("'{name}' has format {view}, and the shader declares {}", describe(resource)), Some(format!("declare {better}"))));
+            }
+            let sampler = decl.and_then(|d| d.sampler).or(texture.sampler);
+            let compares = sampler.is_some_and(|s| s.compare.is_some());
+            if compares != *compare {
+                let help = if *compare {
+                    "bind it with sampler: (compare: less_or_equal)"
+                } else {
+                    "declare a Shadow sampler, or bind it with a sampler that does not compare"
+                };
+                return Some((format!("the sampler of '{name}' does not fit: the shader declares {}", describe(resource)), Some(help.into())));
+            }
+            None
+        }
+        _ => None,
+    }
+}

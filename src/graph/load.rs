@@ -1,0 +1,544 @@
+//! Reading a graph with its includes, and checking everything that needs no shader.
+
+use super::expr::Expr;
+use super::file::{Dispatch, Draw, Ex, GraphFile, PassDecl, SceneNeeds, CheckDecl, BufferDecl, TextureDecl};
+use super::param::{Kind, Param, Params};
+use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
+use crate::vulkan::{Format, Stage};
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+/// Where graphs and shaders are found.
+#[derive(Clone, Debug)]
+pub struct Folders {
+    /// Graphs.
+    pub passes: PathBuf,
+    /// Shaders, with `include/` inside.
+    pub shaders: PathBuf,
+}
+
+/// A graph that was read and checked.
+#[derive(Debug)]
+pub struct Graph {
+    /// Its name: the file's stem.
+    pub name: String,
+    /// Parameters at their defaults.
+    pub params: Params,
+    /// Where each parameter is declared.
+    pub params_at: Vec<At>,
+    /// Textures by name.
+    pub textures: Vec<(String, Loc<TextureDecl>)>,
+    /// Buffers by name.
+    pub buffers: Vec<(String, Loc<BufferDecl>)>,
+    /// Passes in order.
+    pub passes: Vec<Loc<PassDecl>>,
+    /// The display-encoded picture.
+    pub output: Option<String>,
+    /// The linear picture.
+    pub hdr: Option<String>,
+    /// Further results.
+    pub outputs: Vec<String>,
+    /// Needs of the geometry.
+    pub scene: Option<Loc<SceneNeeds>>,
+    /// Words that must be zero.
+    pub checks: Vec<CheckDecl>,
+    /// The files it came from.
+    pub sources: Sources,
+}
+
+/// Variables that every expression may use beside parameters.
+pub const BUILTIN_VARIABLES: &[&str] = &[
+    "width", "height", "mip", "index", "shadow_views", "light_count", "triangle_count", "scene_size", "scene_min_x",
+    "scene_min_y", "scene_min_z", "scene_max_x", "scene_max_y", "scene_max_z", "time", "frame",
+];
+
+/// Reads `path` and what it includes.
+///
+/// # Errors
+/// All mistakes of all files.
+pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
+    let mut sources = Sources::default();
+    let mut errors = Vec::new();
+    let mut files = Vec::new();
+    let mut broken = Vec::new();
+    include(path, None, folders, &mut sources, &mut files, &mut Vec::new(), &mut errors, &mut broken);
+    let mut graph = Graph {
+        name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
+        params: Params::default(),
+        params_at: Vec::new(),
+        textures: Vec::new(),
+        buffers: Vec::new(),
+        passes: Vec::new(),
+        output: None,
+        hdr: None,
+        outputs: Vec::new(),
+        scene: None,
+        checks: Vec::new(),
+        sources,
+    };
+    let mut wanted = Vec::new();
+    let mut decls = Vec::new();
+    let mut checks = Vec::new();
+    for file in files {
+        decls.extend(file.params.0);
+        graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
+        graph.buffers.extend(file.buffers.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
+        graph.passes.extend(file.passes.0);
+        graph.scene = file.scene.or(graph.scene);
+        checks.extend(file.checks.0);
+        for (slot, name) in [(&mut graph.output, file.output), (&mut graph.hdr, file.hdr)] {
+            if let Some(name) = name {
+                *slot = Some(name.value.clone());
+                wanted.push(name);
+            }
+        }
+        graph.outputs.extend(file.outputs.0.iter().map(|o| o.value.clone()));
+        wanted.extend(file.outputs.0);
+    }
+    let list = check_params(&decls, &graph.sources, &mut errors);
+    graph.params_at = list.iter().map(|p| declared_at(&decls, &p.name)).collect();
+    graph.params = Params::new(list);
+    let mut check = Check { graph: &graph, folders, errors, broken, variables: HashSet::new() };
+    check.names();
+    check.textures();
+    for pass in &graph.passes {
+        check.pass(&pass.value, pass.at);
+    }
+    for name in &wanted {
+        check.texture_name(name);
+    }
+    for item in &checks {
+        check.buffer_name(&item.value.buffer);
+    }
+    if let Some(needs) = &graph.scene {
+        check.expr(&needs.value.max_edge);
+        check.exprs(needs.value.when.as_ref());
+    }
+    let mut errors = check.errors;
+    graph.checks = checks.into_iter().map(|c| c.value).collect();
+    if errors.iter().any(|e| e.severity == Severity::Error) {
+        errors.sort_by(|a, b| a.place.cmp(&b.place));
+        errors.dedup();
+        return Err(errors);
+    }
+    Ok(graph)
+}
+
+#[expect(clippy::too_many_arguments, reason = "one recursive walk that fills several lists")]
+fn include(
+    path: &Path,
+    from: Option<At>,
+    folders: &Folders,
+    sources: &mut Sources,
+    files: &mut Vec<GraphFile>,
+    stack: &mut Vec<PathBuf>,
+    errors: &mut Vec<Diagnostic>,
+    broken: &mut Vec<String>,
+) {
+    if sources.paths().any(|p| p == path) && !stack.iter().any(|p| p == path) {
+        return;
+    }
+    if stack.iter().any(|p| p == path) {
+        let message = format!("'{}' includes itself", path.display());
+        errors.push(from.map_or(Diagnostic::error(Place::default(), message.clone()), |at| sources.error(at, message)));
+        return;
+    }
+    let file = match sources.read(path) {
+        Ok(file) => file,
+        Err(e) => {
+            let known = ron_files(&folders.passes);
+            let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
+            let found = match from {
+                Some(at) => sources.error(at, e.message),
+                None => e,
+            };
+            errors.push(found.nearest(&name, known.iter().map(String::as_str)));
+            return;
+        }
+    };
+    let Some(parsed) = sources.parse::<GraphFile>(file, errors, broken) else { return };
+    stack.push(path.to_path_buf());
+    for name in &parsed.include.0 {
+        include(&folders.passes.join(&name.value), Some(name.at), folders, sources, files, stack, errors, broken);
+    }
+    stack.pop();
+    files.push(parsed);
+}
+
+fn ron_files(folder: &Path) -> Vec<String> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).filter(|n| n.ends_with(".ron")).collect()
+}
+
+fn check_params(decls: &[Loc<super::param::Decl>], sources: &Sources, errors: &mut Vec<Diagnostic>) -> Vec<Param> {
+    let mut list: Vec<Param> = Vec::new();
+    for decl in decls {
+        let name = decl.value.name();
+        if !is_identifier(&name.value) {
+            errors.push(sources.error(name.at, format!("'{}' cannot be a parameter's name", name.value)).help(Some(
+                "letters, digits and underscores, starting with a lower-case letter".into(),
+            )));
+            continue;
+        }
+        if list.iter().any(|p| p.name == name.value) {
+            errors.push(sources.error(name.at, format!("parameter '{}' is declared twice", name.value)));
+            continue;
+        }
+        if BUILTIN_VARIABLES.contains(&name.value.as_str()) {
+            errors.push(sources.error(name.at, format!("'{}' is a variable that every graph has", name.value)));
+            continue;
+        }
+        match decl.value.param() {
+            Ok(param) => list.push(param),
+            Err(message) => errors.push(sources.error(decl.at, message)),
+        }
+    }
+    let names: HashSet<&str> = list.iter().map(|p| p.name.as_str()).collect();
+    for decl in decls {
+        if let super::param::Decl::Choice(fields) = &decl.value {
+            for option in &fields.options {
+                if !is_identifier(&option.value) {
+                    errors.push(sources.error(option.at, format!("'{}' cannot be an option's name", option.value)).help(
+                        Some("letters, digits and underscores, starting with a lower-case letter".into()),
+                    ));
+                } else if names.contains(option.value.as_str()) || BUILTIN_VARIABLES.contains(&option.value.as_str()) {
+                    errors.push(sources.error(
+                        option.at,
+                        format!("option '{}' has the name of a parameter or variable, which expressions could not tell apart", option.value),
+                    ));
+                }
+            }
+        }
+    }
+    list
+}
+
+fn declared_at(decls: &[Loc<super::param::Decl>], name: &str) -> At {
+    decls.iter().find(|d| d.value.name().value == name).map_or(At::default(), |d| d.value.name().at)
+}
+
+/// Names that GLSL and expressions can use.
+fn is_identifier(name: &str) -> bool {
+    name.starts_with(|c: char| c.is_ascii_lowercase())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+        && !name.contains("__")
+}
+
+struct Check<'g> {
+    graph: &'g Graph,
+    folders: &'g Folders,
+    errors: Vec<Diagnostic>,
+    /// Names in items that could not be read: not reported again where they are used.
+    broken: Vec<String>,
+    variables: HashSet<String>,
+}
+
+impl Check<'_> {
+    fn error(&mut self, at: At, message: String) {
+        self.errors.push(self.graph.sources.error(at, message));
+    }
+
+    fn names(&mut self) {
+        let graph = self.graph;
+        self.variables = BUILTIN_VARIABLES.iter().map(|v| (*v).to_string()).collect();
+        for param in &graph.params.list {
+            let components = match param.kind {
+                Kind::Vector(n) => n,
+                Kind::Colour => 3,
+                _ => 0,
+            };
+            if components == 0 {
+                self.variables.insert(param.name.clone());
+            }
+            for c in ["x", "y", "z", "w"].iter().take(components) {
+                self.variables.insert(format!("{}_{c}", param.name));
+            }
+        }
+        self.variables.extend(graph.params.option_names().map(String::from));
+        let mut seen: HashMap<&str, ()> = HashMap::new();
+        let resources = graph.textures.iter().map(|(n, t)| (n, t.at)).chain(graph.buffers.iter().map(|(n, b)| (n, b.at)));
+        for (name, at) in resources {
+            if !name.starts_with(|c: char| c.is_ascii_alphabetic())
+                || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            {
+                self.error(at, format!("'{name}' cannot be a resource's name: letters, digits and underscores only"));
+            }
+            if super::externals::EXTERNALS.iter().any(|e| e.name == *name) {
+                self.error(at, format!("'{name}' is a resource that every scene offers; choose another name"));
+            }
+            if seen.insert(name, ()).is_some() {
+                self.error(at, format!("resource '{name}' is declared twice"));
+            }
+        }
+        let mut passes: HashSet<&str> = HashSet::new();
+        for pass in &graph.passes {
+            let name = &pass.value.name;
+            if !passes.insert(&name.value) {
+                self.error(name.at, format!("two passes are named '{}'; timings could not tell them apart", name.value));
+            }
+        }
+    }
+
+    fn expr(&mut self, ex: &Ex) {
+        if let Some(mistake) = ex.value.mistake() {
+            self.error(ex.at, format!("'{}' is no expression: {mistake}", ex.value.text));
+        }
+        for name in unknown(&ex.value, &self.variables) {
+            if self.broken.contains(&name) {
+                continue;
+            }
+            let found = self.graph.sources.error(ex.at, format!("unknown variable '{name}' in '{}'", ex.value.text));
+            self.errors.push(found.nearest(&name, self.variables.iter().map(String::as_str)));
+        }
+    }
+
+    fn exprs<'a>(&mut self, list: impl IntoIterator<Item = &'a Ex>) {
+        for ex in list {
+            self.expr(ex);
+        }
+    }
+
+    fn texture_name(&mut self, name: &Loc<String>) -> bool {
+        self.resource(name, "texture", |g, n| g.textures.iter().any(|t| t.0 == n), |g| {
+            g.textures.iter().map(|t| t.0.as_str()).collect()
+        })
+    }
+
+    fn buffer_name(&mut self, name: &Loc<String>) -> bool {
+        self.resource(name, "buffer", |g, n| g.buffers.iter().any(|t| t.0 == n), |g| {
+            g.buffers.iter().map(|t| t.0.as_str()).collect()
+        })
+    }
+
+    fn resource(
+        &mut self,
+        name: &Loc<String>,
+        what: &str,
+        exists: impl Fn(&Graph, &str) -> bool,
+        known: impl Fn(&Graph) -> Vec<&str>,
+    ) -> bool {
+        if exists(self.graph, &name.value) {
+            return true;
+        }
+        if self.broken.contains(&name.value) {
+            return false;
+        }
+        let found = self.graph.sources.error(name.at, format!("no {what} is named '{}'", name.value));
+        self.errors.push(found.nearest(&name.value, known(self.graph)));
+        false
+    }
+
+    fn textures(&mut self) {
+        for (name, texture) in &self.graph.textures {
+            let t = &texture.value;
+            if t.size.0.len() == 3 && t.layers.is_some() {
+                self.error(texture.at, format!("'{name}' is 3D and cannot have layers"));
+            }
+            self.exprs(t.size.0.iter().chain(&t.mips).chain(&t.layers));
+            self.format(&t.format, true);
+            for view in &t.views.0 {
+                self.format(view, false);
+            }
+        }
+        for (_, buffer) in &self.graph.buffers {
+            self.expr(&buffer.value.size);
+        }
+    }
+
+    fn format(&mut self, name: &Loc<String>, or_choice: bool) {
+        if Format::named(&name.value).is_some() || self.broken.contains(&name.value) {
+            return;
+        }
+        let choice = self.graph.params.list.iter().find(|p| p.name == name.value).map(|p| &p.kind);
+        if let (true, Some(Kind::Choice(options))) = (or_choice, choice) {
+            for option in options {
+                if Format::named(option).is_none() {
+                    self.error(name.at, format!("option '{option}' of '{}' is no format", name.value));
+                }
+            }
+            return;
+        }
+        let choices = self.graph.params.list.iter().filter(|p| or_choice && matches!(p.kind, Kind::Choice(_)));
+        let mut known: Vec<&str> = Format::names().collect();
+        known.extend(choices.map(|p| p.name.as_str()));
+        let found = self.graph.sources.error(name.at, format!("no format is named '{}'", name.value));
+        self.errors.push(found.nearest(&name.value, known));
+    }
+
+    fn pass(&mut self, pass: &PassDecl, at: At) {
+        let name = &pass.name.value;
+        let kinds = [pass.dispatch.is_some(), pass.draw.is_some(), pass.clear.is_some(), pass.copy.is_some()];
+        match kinds.iter().filter(|k| **k).count() {
+            0 => self.error(at, format!("pass '{name}' does nothing: give it dispatch, draw, clear or copy")),
+            1 => {}
+            _ => self.error(at, format!("pass '{name}' does several things: dispatch, draw, clear and copy exclude each other")),
+        }
+        self.exprs(pass.when.iter().chain(&pass.repeat).chain(&pass.mip));
+        if pass.repeat.is_some() && pass.each_mip.is_some() {
+            self.error(at, format!("pass '{name}' has both repeat and each_mip"));
+        }
+        if let Some(each) = &pass.each_mip {
+            self.texture_name(&each.value.texture);
+        }
+        self.stages(pass, at);
+        match pass.dispatch.as_ref().map(|d| &d.value) {
+            Some(Dispatch::Cover(target)) => {
+                if !pass.bind.0.iter().any(|(key, _)| key.value == target.value) {
+                    self.texture_name(target);
+                }
+            }
+            Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) => self.exprs([x, y, z]),
+            Some(Dispatch::Indirect(buffer, _)) => self.indirect(buffer),
+            None => {}
+        }
+        match pass.draw.as_ref().map(|d| &d.value) {
+            Some(Draw::Vertices(n)) => self.expr(n),
+            Some(Draw::Indirect(buffer, _)) => self.indirect(buffer),
+            _ => {}
+        }
+        for (_, bind) in &pass.bind.0 {
+            self.bind(&bind.value);
+        }
+        self.attachments(pass, at);
+        if let Some(target) = &pass.clear {
+            let buffer = self.graph.buffers.iter().any(|b| b.0 == target.value);
+            if !buffer {
+                self.texture_name(target);
+            }
+        }
+        if let Some(copy) = &pass.copy {
+            self.copy(&copy.value);
+        }
+    }
+
+    fn copy(&mut self, copy: &super::file::CopyDecl) {
+        let is_buffer = |n: &str| self.graph.buffers.iter().any(|b| b.0 == n);
+        match (is_buffer(&copy.from.value), is_buffer(&copy.to.value)) {
+            (true, true) => {}
+            (true, false) => drop(self.buffer_name(&copy.to)),
+            (false, true) => drop(self.buffer_name(&copy.from)),
+            (false, false) => {
+                self.texture_name(&copy.from);
+                self.texture_name(&copy.to);
+            }
+        }
+    }
+
+    fn stages(&mut self, pass: &PassDecl, at: At) {
+        let name = &pass.name.value;
+        let mut stages = Vec::new();
+        for shader in &pass.shaders.0 {
+            let Some(stage) = Stage::of_file(&shader.value) else {
+                self.error(shader.at, format!("'{}' is no shader: expected .vert, .tesc, .tese, .geom, .frag or .comp", shader.value));
+                continue;
+            };
+            if stages.contains(&stage) {
+                self.error(shader.at, format!("pass '{name}' has two {stage:?} shaders"));
+            }
+            stages.push(stage);
+            if !self.folders.shaders.join(&shader.value).is_file() {
+                let known = files_of(&self.folders.shaders);
+                let found = self.graph.sources.error(shader.at, format!("no shader file '{}'", shader.value));
+                self.errors.push(found.nearest(&shader.value, known.iter().map(String::as_str)));
+            }
+        }
+        if pass.dispatch.is_some() && stages != [Stage::Compute] {
+            self.error(at, format!("pass '{name}' dispatches: it needs one .comp shader and no other"));
+        }
+        if pass.draw.is_some() && (!stages.contains(&Stage::Vertex) || stages.contains(&Stage::Compute)) {
+            self.error(at, format!("pass '{name}' draws: it needs a .vert shader and no .comp"));
+        }
+        let tessellated = stages.contains(&Stage::TessControl) && stages.contains(&Stage::TessEvaluation);
+        if pass.draw.is_some() && (pass.topology == super::file::Topology::Patches) != tessellated {
+            self.error(at, format!("pass '{name}': patches need both a .tesc and a .tese shader, and they need patches"));
+        }
+        if (pass.clear.is_some() || pass.copy.is_some()) && !pass.shaders.0.is_empty() {
+            self.error(at, format!("pass '{name}' clears or copies: it takes no shaders"));
+        }
+    }
+
+    fn indirect(&mut self, name: &Loc<String>) {
+        if self.buffer_name(name) {
+            let declared = self.graph.buffers.iter().any(|(n, b)| *n == name.value && b.value.indirect);
+            if !declared {
+                self.error(name.at, format!("buffer '{}' is not declared with `indirect: true`", name.value));
+            }
+        }
+    }
+
+    fn bind(&mut self, bind: &super::file::Bind) {
+        let buffer = self.graph.buffers.iter().any(|b| b.0 == bind.of.value);
+        if buffer {
+            if bind.mip.is_some() || bind.layer.is_some() || bind.format.is_some() || bind.history || bind.sampler.is_some() {
+                self.error(bind.of.at, format!("'{}' is a buffer: it has no mip, layer, format, history or sampler", bind.of.value));
+            }
+            return;
+        }
+        if !self.texture_name(&bind.of) {
+            return;
+        }
+        self.exprs(bind.mip.iter().chain(&bind.layer));
+        let Some((_, texture)) = self.graph.textures.iter().find(|t| t.0 == bind.of.value) else { return };
+        if bind.history && !texture.value.history {
+            self.error(bind.of.at, format!("'{}' is not declared with `history: true`", bind.of.value));
+        }
+        if let Some(format) = &bind.format {
+            let known: Vec<&str> = texture.value.views.0.iter().map(|v| v.value.as_str()).collect();
+            if !known.contains(&format.value.as_str()) && texture.value.format.value != format.value {
+                let found = self.graph.sources.error(
+                    format.at,
+                    format!("'{}' is not declared to be viewed as '{}'", bind.of.value, format.value),
+                );
+                self.errors.push(found.help(Some(format!("declare it: views: [\"{}\"]", format.value))));
+            }
+        }
+    }
+
+    fn attachments(&mut self, pass: &PassDecl, at: At) {
+        let name = &pass.name.value;
+        let depth_format = |g: &Graph, n: &str| {
+            g.textures.iter().find(|t| t.0 == n).and_then(|t| Format::named(&t.1.value.format.value)).map(|f| f.is_depth())
+        };
+        for target in &pass.color.0 {
+            let t = &target.value;
+            self.exprs(t.mip.iter().chain(&t.layer));
+            if self.texture_name(&t.to) && depth_format(self.graph, &t.to.value) == Some(true) {
+                self.error(t.to.at, format!("'{}' is a depth texture and cannot be a colour attachment", t.to.value));
+            }
+        }
+        if let Some(depth) = &pass.depth {
+            let t = &depth.value;
+            self.exprs(t.layer.iter());
+            if self.texture_name(&t.to) && depth_format(self.graph, &t.to.value) != Some(true) {
+                self.error(t.to.at, format!("'{}' is no depth texture (d32 or d16)", t.to.value));
+            }
+        }
+        let any = !pass.color.0.is_empty() || pass.depth.is_some();
+        if any && pass.draw.is_none() {
+            self.error(at, format!("pass '{name}' has attachments but draws nothing"));
+        }
+        let raster = &pass.raster;
+        if let Some(size) = &raster.size {
+            self.exprs([&size.value.0, &size.value.1]);
+            if any {
+                self.error(size.at, format!("pass '{name}' has attachments: its size is theirs"));
+            }
+        } else if pass.draw.is_some() && !any && !raster.discard {
+            self.error(at, format!("pass '{name}' draws without attachments: give raster: (size: (\"w\", \"h\"))"));
+        }
+        self.exprs(raster.samples.iter());
+        if raster.samples.is_some() && any {
+            self.error(at, format!("pass '{name}': samples are for drawing without attachments"));
+        }
+    }
+}
+
+fn unknown(expr: &Expr, variables: &HashSet<String>) -> Vec<String> {
+    expr.variables().iter().filter(|v| !variables.contains(*v)).cloned().collect()
+}
+
+fn files_of(folder: &Path) -> Vec<String> {
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    entries.flatten().filter(|e| e.path().is_file()).map(|e| e.file_name().to_string_lossy().into_owned()).collect()
+}
+

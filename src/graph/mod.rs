@@ -1,0 +1,14 @@
+//! The pass graph: parameters, textures, buffers and passes, read from RON. It knows no voxels.
+pub mod expr;
+pub mod externals;
+pub mod file;
+pub mod link;
+mod live;
+pub mod load;
+mod needs;
+pub mod param;
+pub mod plan;
+pub mod report;
+pub mod run;
+pub mod source;
+pub mod usage;

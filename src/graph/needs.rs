@@ -1,0 +1,79 @@
+//! Features that passes need and devices may lack, told with what to choose instead.
+
+use super::file::PassDecl;
+use super::link::Linked;
+use super::load::Graph;
+use super::param::{Kind, Params, Value};
+use super::plan::{Plan, PlanInput};
+use super::source::Diagnostic;
+use crate::shader::Resource;
+use crate::vulkan::Stage;
+
+/// One error for each feature that a pass of the plan needs and the device lacks.
+pub(super) fn check(graph: &Graph, linked: &[Linked], plan: &Plan, input: &PlanInput<'_>) -> Vec<Diagnostic> {
+    let have = &input.device.features;
+    let mut errors = Vec::new();
+    let mut passes: Vec<usize> = plan.steps.iter().map(|s| s.pass).collect();
+    passes.dedup();
+    for number in passes {
+        let pass = &graph.passes[number].value;
+        let link = &linked[number];
+        let has = |stage: Stage| link.stages.iter().any(|s| s.stage == stage);
+        let stores = |fragment: bool| {
+            link.bound.iter().any(|b| {
+                b.stage != Stage::Compute
+                    && (b.stage == Stage::Fragment) == fragment
+                    && matches!(b.resource, Resource::Buffer { write: true, .. } | Resource::Storage { write: true, .. })
+            })
+        };
+        let unformatted = link.bound.iter().any(|b| matches!(b.resource, Resource::Storage { format: None, .. }));
+        let needs = [
+            (pass.raster.conservative.is_some(), have.conservative_rasterization, "conservative rasterisation (VK_EXT_conservative_rasterization)"),
+            (has(Stage::Geometry), have.geometry, "geometry shaders"),
+            (has(Stage::TessControl), have.tessellation, "tessellation"),
+            (stores(true), have.fragment_stores, "stores from fragment shaders"),
+            (stores(false), have.vertex_stores, "stores from vertex, tessellation or geometry shaders"),
+            (pass.raster.depth_clamp, have.depth_clamp, "depth clamping"),
+            (unformatted, have.write_without_format, "writing images without a format"),
+        ];
+        for (needed, available, what) in needs {
+            if needed && !available {
+                let message = format!(
+                    "pass '{}' needs {what}, which {} does not have{}",
+                    pass.name.value,
+                    input.device.name,
+                    because(pass, input.params)
+                );
+                errors.push(graph.sources.error(pass.name.at, message).help(instead(pass, input.params)));
+            }
+        }
+    }
+    errors
+}
+
+fn choices<'p>(pass: &'p PassDecl, params: &'p Params) -> impl Iterator<Item = (&'p str, &'p Value, &'p [String])> {
+    let variables = pass.when.iter().flat_map(|ex| ex.value.variables());
+    variables.filter_map(|v| {
+        let i = params.index(v)?;
+        match &params.list[i].kind {
+            Kind::Choice(options) => Some((params.list[i].name.as_str(), &params.values[i], options.as_slice())),
+            _ => None,
+        }
+    })
+}
+
+fn because(pass: &PassDecl, params: &Params) -> String {
+    let list: Vec<String> = choices(pass, params).map(|(name, value, _)| format!("{name} is {value}")).collect();
+    if list.is_empty() { String::new() } else { format!(" (it runs because {})", list.join(" and ")) }
+}
+
+fn instead(pass: &PassDecl, params: &Params) -> Option<String> {
+    let list: Vec<String> = choices(pass, params)
+        .map(|(name, value, options)| {
+            let others: Vec<&str> =
+                options.iter().map(String::as_str).filter(|o| Value::Choice((*o).to_string()) != *value).collect();
+            format!("--set {name}={}", others.join("|"))
+        })
+        .collect();
+    (!list.is_empty()).then(|| format!("use {}", list.join(" or ")))
+}

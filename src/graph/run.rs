@@ -1,0 +1,803 @@
+//! A plan on a device: resources, pipelines, descriptor sets, and the recording of frames.
+
+use super::externals::EXTERNALS;
+use super::file::{
+    AddressMode, BlendMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology, Which,
+};
+use super::link::{Linked, Target, bound_shape};
+use super::load::Graph;
+use super::param::Params;
+use super::plan::{Plan, Step, Work};
+use super::usage::{Barrier, Res, Schedule, schedule};
+use crate::shader::{Resource, Shape};
+use crate::vulkan::{
+    Attachments, BindingDesc, Blend, Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState,
+    FrameSlot, Gpu, Image, ImageDesc, Pipeline, PipelineDesc, Result, Sampler, SamplerDesc, StageDesc, View,
+    ViewDesc, VulkanError, format::Channels, vk,
+};
+use gpu_allocator::MemoryLocation;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The scene's triangles as drawn: the masked draws follow the opaque ones.
+#[derive(Clone)]
+pub struct Geometry {
+    /// 32-bit indices.
+    pub indices: Arc<Buffer>,
+    /// One indexed draw command (20 bytes) a draw.
+    pub commands: Arc<Buffer>,
+    /// (first index, index count) of each draw.
+    pub draws: Vec<(u32, u32)>,
+    /// How many of them have no alpha mask.
+    pub opaque: u32,
+}
+
+/// The scene's resources by the names of [`EXTERNALS`].
+#[derive(Clone)]
+pub struct SceneResources {
+    /// Buffers.
+    pub buffers: HashMap<&'static str, Arc<Buffer>>,
+    /// Material texture arrays.
+    pub textures: HashMap<&'static str, Arc<View>>,
+    /// How those are sampled.
+    pub sampler: Arc<Sampler>,
+    /// What is drawn.
+    pub geometry: Geometry,
+}
+
+/// A graph that is ready to run.
+pub struct Program {
+    gpu: Arc<Gpu>,
+    /// What it runs.
+    pub plan: Plan,
+    schedule: Schedule,
+    scene: SceneResources,
+    steps: Vec<StepGpu>,
+    pool: DescriptorPool,
+    samplers: HashMap<SamplerDesc, Sampler>,
+    /// Views that the sets refer to.
+    views: Vec<View>,
+    names: Vec<String>,
+    images: Vec<[Option<Arc<Image>>; 2]>,
+    buffers: Vec<Option<Arc<Buffer>>>,
+    params: Arc<Buffer>,
+    slots: Vec<(FrameSlot, f64)>,
+    frame: u64,
+    /// Steps where a pass begins.
+    starts: Vec<usize>,
+}
+
+struct StepGpu {
+    pipeline: Option<Arc<Pipeline>>,
+    push: bool,
+    sets: [Option<DescriptorSet>; 2],
+    color: [Vec<Option<View>>; 2],
+    depth: [Option<View>; 2],
+}
+
+/// Times of one frame that has finished.
+#[derive(Clone, Debug, Default)]
+pub struct FrameTimes {
+    /// (pass number, milliseconds) on the GPU, in order.
+    pub passes: Vec<(usize, f64)>,
+    /// First to last command of the frame on the GPU, ms.
+    pub gpu_ms: f64,
+    /// Recording and submitting on the CPU, ms.
+    pub cpu_ms: f64,
+}
+
+/// Frames recorded ahead of the GPU.
+const FRAMES_IN_FLIGHT: usize = 3;
+
+impl Program {
+    /// Makes everything that the plan needs.
+    ///
+    /// # Errors
+    /// Out of device memory, and what the driver refuses.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        graph: &Graph,
+        linked: &[Linked],
+        plan: Plan,
+        params: &Params,
+        scene: &SceneResources,
+    ) -> Result<Program> {
+        let schedule = schedule(&plan);
+        let images = make_images(gpu, graph, &plan)?;
+        let buffers = make_buffers(gpu, graph, &plan)?;
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        let size = params.uniform_bytes().len() as u64;
+        let params_buffer = Arc::new(Buffer::new(gpu, "params", size, usage, MemoryLocation::GpuOnly)?);
+        let (pipelines, keys) = make_pipelines(gpu, graph, linked, &plan, params)?;
+        let mut program = Program {
+            gpu: gpu.clone(),
+            pool: descriptor_pool(gpu, &plan, linked)?,
+            samplers: HashMap::new(),
+            views: Vec::new(),
+            names: graph.passes.iter().map(|p| p.value.name.value.clone()).collect(),
+            steps: Vec::new(),
+            starts: (0..plan.steps.len()).filter(|i| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass).collect(),
+            plan,
+            schedule,
+            scene: scene.clone(),
+            images,
+            buffers,
+            params: params_buffer,
+            slots: Vec::new(),
+            frame: 0,
+        };
+        let timestamps = u32::try_from(program.starts.len() + 1).unwrap_or(u32::MAX);
+        for _ in 0..FRAMES_IN_FLIGHT {
+            program.slots.push((FrameSlot::new(gpu, timestamps)?, 0.0));
+        }
+        for (i, key) in keys.iter().enumerate() {
+            let step = program.step(graph, linked, i, key.map(|k| pipelines[k].clone()))?;
+            program.steps.push(step);
+        }
+        program.initialise()?;
+        Ok(program)
+    }
+
+    /// Gives every image its first layout and zeroes everything, so that first frames are like any other.
+    fn initialise(&mut self) -> Result<()> {
+        let dst = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        Commands::once(&self.gpu, "initialise", |commands| {
+            for buffer in self.buffers.iter().flatten() {
+                commands.fill(buffer, 0);
+            }
+            for (t, copies) in self.images.iter().enumerate() {
+                for (c, image) in copies.iter().enumerate() {
+                    let Some(image) = image else { continue };
+                    commands.transition(image, vk::ImageLayout::UNDEFINED, dst);
+                    if self.plan.textures[t].format.is_depth() {
+                        commands.clear_depth(image, dst, 1.0);
+                    } else {
+                        commands.clear(image, dst, vk::ClearColorValue::default(), (0, vk::REMAINING_MIP_LEVELS));
+                    }
+                    let barriers: Vec<_> = (0u32..)
+                        .zip(&self.schedule.ends[1][t][c])
+                        .filter(|(_, layout)| **layout != vk::ImageLayout::UNDEFINED)
+                        .map(|(mip, layout)| (&**image, relayout(image, dst, *layout, mip)))
+                        .collect();
+                    commands.barrier(None, &barriers);
+                }
+            }
+            commands.full_barrier();
+        })
+    }
+
+    fn step(
+        &mut self,
+        graph: &Graph,
+        linked: &[Linked],
+        index: usize,
+        pipeline: Option<Arc<Pipeline>>,
+    ) -> Result<StepGpu> {
+        let step = self.plan.steps[index].clone();
+        let link = &linked[step.pass];
+        let pass = &graph.passes[step.pass].value;
+        let mut out = StepGpu {
+            pipeline: pipeline.clone(),
+            push: link.stages.iter().any(|s| s.interface.push),
+            sets: [None, None],
+            color: [Vec::new(), Vec::new()],
+            depth: [None, None],
+        };
+        for parity in 0..2 {
+            out.color[parity] = step
+                .color
+                .iter()
+                .map(|slot| slot.as_ref().map(|a| self.attachment(a, parity)).transpose())
+                .collect::<Result<_>>()?;
+            out.depth[parity] = step.depth.as_ref().map(|a| self.attachment(a, parity)).transpose()?;
+            if let Some(pipeline) = &pipeline
+                && !link.bound.is_empty()
+            {
+                let set = self.set(graph, pass, link, &step, pipeline, parity)?;
+                out.sets[parity] = Some(set);
+            }
+        }
+        Ok(out)
+    }
+
+    fn image(&self, texture: usize, history: bool, parity: usize) -> Result<&Arc<Image>> {
+        let copy = usize::from(self.plan.textures[texture].history && (history != (parity == 1)));
+        self.images[texture][copy].as_ref().ok_or_else(|| VulkanError::Code {
+            what: format!("find texture {texture} of the plan"),
+            code: vk::Result::ERROR_UNKNOWN,
+        })
+    }
+
+    fn attachment(&self, plan: &super::plan::AttachmentPlan, parity: usize) -> Result<View> {
+        let format = self.plan.textures[plan.texture].format;
+        let desc = ViewDesc {
+            kind: vk::ImageViewType::TYPE_2D,
+            format: format.vk,
+            aspect: format.aspect(),
+            mips: (plan.mip, 1),
+            layers: (plan.layer, 1),
+        };
+        View::new(self.image(plan.texture, false, parity)?, &desc)
+    }
+
+    fn set(
+        &mut self,
+        graph: &Graph,
+        pass: &PassDecl,
+        link: &Linked,
+        step: &Step,
+        pipeline: &Pipeline,
+        parity: usize,
+    ) -> Result<DescriptorSet> {
+        let mut views: Vec<Option<View>> = Vec::new();
+        let mut samplers: Vec<Option<SamplerDesc>> = Vec::new();
+        for (i, bound) in link.bound.iter().enumerate() {
+            let Target::Texture(t) = bound.target else {
+                views.push(None);
+                samplers.push(None);
+                continue;
+            };
+            let decl = bound.bind.map(|b| &pass.bind.0[b].1.value);
+            let texture = &graph.textures[t].1.value;
+            let Some(plan) = step.bindings.iter().find(|b| b.bound == i) else { continue };
+            let format = plan.format.unwrap_or(self.plan.textures[t].format);
+            let desc = ViewDesc {
+                kind: match bound_shape(texture, decl) {
+                    Shape::D2 => vk::ImageViewType::TYPE_2D,
+                    Shape::D2Array => vk::ImageViewType::TYPE_2D_ARRAY,
+                    Shape::D3 => vk::ImageViewType::TYPE_3D,
+                },
+                format: format.vk,
+                aspect: format.aspect(),
+                mips: plan.mips,
+                layers: plan.layers,
+            };
+            views.push(Some(View::new(self.image(t, plan.history, parity)?, &desc)?));
+            let sampler = decl.and_then(|d| d.sampler).or(texture.sampler).unwrap_or_default();
+            let integer = matches!(format.channels, Channels::Uint | Channels::Int);
+            let desc = sampler_desc(&sampler, self.plan.textures[t].mips > 1, integer);
+            if let std::collections::hash_map::Entry::Vacant(slot) = self.samplers.entry(desc) {
+                slot.insert(Sampler::new(&self.gpu, &desc)?);
+            }
+            samplers.push(Some(desc));
+        }
+        let mut writes = Vec::new();
+        for (i, bound) in link.bound.iter().enumerate() {
+            let kind = descriptor_type(&bound.resource);
+            let write = match bound.target {
+                Target::External(e) => self.external(EXTERNALS[e].name)?,
+                Target::Buffer(b) => match &self.buffers[b] {
+                    Some(buffer) => DescriptorWrite::Buffer(buffer),
+                    None => continue,
+                },
+                Target::Texture(_) => {
+                    let (Some(view), Some(plan)) = (&views[i], step.bindings.iter().find(|b| b.bound == i)) else {
+                        continue;
+                    };
+                    match samplers[i].and_then(|d| self.samplers.get(&d)) {
+                        Some(sampler) if matches!(bound.resource, Resource::Sampled { .. }) => {
+                            DescriptorWrite::Sampled(view, sampler, plan.layout)
+                        }
+                        _ => DescriptorWrite::Storage(view),
+                    }
+                }
+            };
+            writes.push((bound.binding, kind, write));
+        }
+        let set = self.pool.set(pipeline, &writes)?;
+        drop(writes);
+        self.views.extend(views.into_iter().flatten());
+        Ok(set)
+    }
+
+    fn external(&self, name: &str) -> Result<DescriptorWrite<'_>> {
+        if name == "params" {
+            return Ok(DescriptorWrite::Buffer(&self.params));
+        }
+        if let Some(buffer) = self.scene.buffers.get(name) {
+            return Ok(DescriptorWrite::Buffer(buffer));
+        }
+        match self.scene.textures.get(name) {
+            Some(view) => Ok(DescriptorWrite::Sampled(
+                view,
+                &self.scene.sampler,
+                vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+            )),
+            None => Err(VulkanError::Code { what: format!("find the scene's '{name}'"), code: vk::Result::ERROR_UNKNOWN }),
+        }
+    }
+
+    /// The buffer that holds the parameters.
+    pub fn params_buffer(&self) -> Arc<Buffer> {
+        self.params.clone()
+    }
+
+    /// Records and submits a frame, after writing `updates` into uniform and scene buffers. Returns the times of the
+    /// frame that ran in the same slot before, if one did.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn run(&mut self, updates: &[(Arc<Buffer>, Vec<u8>)]) -> Result<Option<FrameTimes>> {
+        let slot = usize::try_from(self.frame % FRAMES_IN_FLIGHT as u64).unwrap_or(0);
+        let finished = self.finish(slot)?;
+        let parity = usize::try_from(self.frame % 2).unwrap_or(0);
+        let mut slots = std::mem::take(&mut self.slots);
+        let start = Instant::now();
+        let result = slots[slot].0.submit(|commands| self.record(commands, updates, parity));
+        slots[slot].1 = start.elapsed().as_secs_f64() * 1e3;
+        self.slots = slots;
+        result?;
+        self.frame += 1;
+        Ok(finished)
+    }
+
+    /// Waits for all frames and returns their times in order.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn finish_all(&mut self) -> Result<Vec<FrameTimes>> {
+        let mut list = Vec::new();
+        for i in 0..FRAMES_IN_FLIGHT as u64 {
+            let slot = usize::try_from((self.frame + i) % FRAMES_IN_FLIGHT as u64).unwrap_or(0);
+            list.extend(self.finish(slot)?);
+        }
+        Ok(list)
+    }
+
+    fn finish(&mut self, slot: usize) -> Result<Option<FrameTimes>> {
+        let (frame, cpu_ms) = &mut self.slots[slot];
+        let Some(ticks) = frame.wait()? else { return Ok(None) };
+        let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
+        let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass);
+        Ok(Some(FrameTimes {
+            passes: passes.zip(ticks.windows(2)).map(|(pass, t)| (pass, ms(t[0], t[1]))).collect(),
+            gpu_ms: ticks.first().zip(ticks.last()).map_or(0.0, |(a, b)| ms(*a, *b)),
+            cpu_ms: *cpu_ms,
+        }))
+    }
+
+    fn record(&self, commands: &mut Commands<'_>, updates: &[(Arc<Buffer>, Vec<u8>)], parity: usize) {
+        use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
+        if !updates.is_empty() {
+            let barrier = |src, src_access, dst, dst_access| {
+                vk::MemoryBarrier2::default()
+                    .src_stage_mask(src)
+                    .src_access_mask(src_access)
+                    .dst_stage_mask(dst)
+                    .dst_access_mask(dst_access)
+            };
+            let (all, copy) = (Stages::ALL_COMMANDS, Stages::ALL_TRANSFER);
+            commands.barrier(Some(barrier(all, Access::empty(), copy, Access::TRANSFER_WRITE)), &[]);
+            for (buffer, bytes) in updates {
+                commands.update(buffer, bytes);
+            }
+            commands.barrier(Some(barrier(copy, Access::TRANSFER_WRITE, all, Access::MEMORY_READ)), &[]);
+        }
+        for (i, step) in self.plan.steps.iter().enumerate() {
+            if self.starts.contains(&i) {
+                if i > 0 {
+                    commands.end_label();
+                }
+                commands.timestamp();
+                commands.begin_label(&self.names[step.pass]);
+            }
+            self.barriers(commands, &self.schedule.barriers[parity][i]);
+            self.record_step(commands, step, &self.steps[i], parity);
+        }
+        if !self.plan.steps.is_empty() {
+            commands.end_label();
+        }
+        commands.timestamp();
+    }
+
+    fn barriers(&self, commands: &mut Commands<'_>, list: &[Barrier]) {
+        if list.is_empty() {
+            return;
+        }
+        // Buffers join one memory barrier; images have one each, for the mips in question.
+        let mut memory: Option<vk::MemoryBarrier2<'static>> = None;
+        let mut images = Vec::new();
+        for b in list {
+            match b.res {
+                Res::Buffer(_) => {
+                    let m = memory.get_or_insert_default();
+                    m.src_stage_mask |= b.src.0;
+                    m.src_access_mask |= b.src.1;
+                    m.dst_stage_mask |= b.dst.0;
+                    m.dst_access_mask |= b.dst.1;
+                }
+                Res::Texture(t, copy) => {
+                    let Some(image) = &self.images[t][usize::from(copy)] else { continue };
+                    let barrier = vk::ImageMemoryBarrier2::default()
+                        .src_stage_mask(b.src.0)
+                        .src_access_mask(b.src.1)
+                        .dst_stage_mask(b.dst.0)
+                        .dst_access_mask(b.dst.1)
+                        .old_layout(b.layouts.0)
+                        .new_layout(b.layouts.1)
+                        .subresource_range(
+                            vk::ImageSubresourceRange::default()
+                                .aspect_mask(self.plan.textures[t].format.aspect())
+                                .base_mip_level(b.mips.0)
+                                .level_count(b.mips.1)
+                                .layer_count(vk::REMAINING_ARRAY_LAYERS),
+                        );
+                    images.push((&**image, barrier));
+                }
+            }
+        }
+        commands.barrier(memory, &images);
+    }
+
+    fn record_step(&self, commands: &mut Commands<'_>, step: &Step, gpu: &StepGpu, parity: usize) {
+        let raster = matches!(step.work, Work::Scene(_) | Work::Vertices(_) | Work::DrawIndirect(..));
+        if raster {
+            let color: Vec<_> = step
+                .color
+                .iter()
+                .zip(&gpu.color[parity])
+                .map(|(plan, view)| Some((view.as_ref()?, plan.as_ref()?.clear)))
+                .collect();
+            let depth = step.depth.as_ref().zip(gpu.depth[parity].as_ref());
+            let depth = depth.map(|(plan, view)| (view, plan.clear.map(|c| c[0]), plan.write));
+            commands.begin_rendering(step.viewport, &color, depth);
+        }
+        if let Some(pipeline) = &gpu.pipeline {
+            commands.bind(pipeline, gpu.sets[parity]);
+            if gpu.push {
+                commands.push(pipeline, &step.index.to_ne_bytes());
+            }
+        }
+        match &step.work {
+            Work::Dispatch(groups) => commands.dispatch(*groups),
+            Work::DispatchIndirect(b, offset) => {
+                if let Some(buffer) = &self.buffers[*b] {
+                    commands.dispatch_indirect(buffer, *offset);
+                }
+            }
+            Work::Scene(which) => self.draw_scene(commands, *which),
+            Work::Vertices(n) => commands.draw(*n, 1),
+            Work::DrawIndirect(b, offset) => {
+                if let Some(buffer) = &self.buffers[*b] {
+                    commands.draw_indirect(buffer, *offset);
+                }
+            }
+            Work::ClearTexture(t, mips, value) => {
+                if let (Ok(image), Some(u)) = (self.image(*t, false, parity), step.uses.first()) {
+                    commands.clear(image, u.layout, clear_value(self.plan.textures[*t].format.channels, *value), *mips);
+                }
+            }
+            Work::ClearBuffer(b, value) => {
+                if let Some(buffer) = &self.buffers[*b] {
+                    commands.fill(buffer, *value);
+                }
+            }
+            Work::CopyTexture(a, b) => {
+                if let (Ok(from), Ok(to)) = (self.image(*a, false, parity), self.image(*b, false, parity)) {
+                    let layout = |t: usize| {
+                        let found = step.uses.iter().find(|u| u.res == Res::Texture(t, false));
+                        found.map_or(vk::ImageLayout::GENERAL, |u| u.layout)
+                    };
+                    commands.copy_image(from, layout(*a), to, layout(*b));
+                }
+            }
+            Work::CopyBuffer(a, b) => {
+                if let (Some(from), Some(to)) = (&self.buffers[*a], &self.buffers[*b]) {
+                    commands.copy_buffer(from, to, from.size.min(to.size));
+                }
+            }
+        }
+        if raster {
+            commands.end_rendering();
+        }
+    }
+
+    fn draw_scene(&self, commands: &mut Commands<'_>, which: Which) {
+        let g = &self.scene.geometry;
+        let total = u32::try_from(g.draws.len()).unwrap_or(u32::MAX);
+        let (first, count) = match which {
+            Which::All => (0, total),
+            Which::Opaque => (0, g.opaque),
+            Which::Masked => (g.opaque, total - g.opaque),
+        };
+        if count == 0 {
+            return;
+        }
+        commands.bind_indices(&g.indices);
+        if self.gpu.info.features.multi_draw_indirect {
+            commands.draw_indexed_indirect(&g.commands, u64::from(first) * 20, count);
+        } else {
+            for draw in first..first + count {
+                let (first_index, index_count) = g.draws[draw as usize];
+                commands.draw_indexed(index_count, first_index, draw);
+            }
+        }
+    }
+
+    /// Copies one mip and layer of a texture to the CPU: its extent, format and tightly packed texels.
+    ///
+    /// # Errors
+    /// The device was lost, out of memory.
+    pub fn read_texture(&mut self, texture: usize, mip: u32, layer: u32) -> Result<Vec<u8>> {
+        self.finish_all()?;
+        let parity = usize::try_from((self.frame + 1) % 2).unwrap_or(0);
+        let plan = &self.plan.textures[texture];
+        let copy = if plan.history { parity } else { 0 };
+        let image = self.image(texture, false, parity)?.clone();
+        let layout = self.schedule.ends[parity][texture][copy][mip as usize];
+        let [w, h, d] = image.mip_extent(mip);
+        let size = u64::from(w) * u64::from(h) * u64::from(d) * u64::from(plan.format.bytes);
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let target = Buffer::new(&self.gpu, "readback", size, usage, MemoryLocation::GpuToCpu)?;
+        let src = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        Commands::once(&self.gpu, "read a texture", |commands| {
+            if layout != vk::ImageLayout::UNDEFINED {
+                commands.barrier(None, &[(&image, relayout(&image, layout, src, mip))]);
+                commands.read_image(&image, src, mip, layer, &target);
+                commands.barrier(None, &[(&image, relayout(&image, src, layout, mip))]);
+            }
+            commands.full_barrier();
+        })?;
+        Ok(target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec())
+    }
+
+    /// Copies a buffer to the CPU.
+    ///
+    /// # Errors
+    /// The device was lost, out of memory.
+    pub fn read_buffer(&mut self, buffer: usize) -> Result<Vec<u8>> {
+        self.finish_all()?;
+        let Some(from) = self.buffers[buffer].clone() else { return Ok(Vec::new()) };
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let target = Buffer::new(&self.gpu, "readback", from.size, usage, MemoryLocation::GpuToCpu)?;
+        Commands::once(&self.gpu, "read a buffer", |commands| {
+            commands.full_barrier();
+            commands.copy_buffer(&from, &target, from.size);
+            commands.full_barrier();
+        })?;
+        Ok(target.bytes()[..usize::try_from(self.plan.buffers[buffer].size).unwrap_or(0)].to_vec())
+    }
+
+    /// (name, bytes on the device) of every resource made.
+    pub fn memory(&self, graph: &Graph) -> Vec<(String, u64)> {
+        let textures = graph.textures.iter().zip(&self.images).map(|(t, copies)| {
+            (t.0.clone(), copies.iter().flatten().map(|i| i.bytes).sum::<u64>())
+        });
+        let buffers = graph.buffers.iter().zip(&self.buffers).map(|(b, made)| (b.0.clone(), made.as_ref().map_or(0, |m| m.size)));
+        textures.chain(buffers).filter(|(_, bytes)| *bytes > 0).collect()
+    }
+}
+
+fn relayout(
+    image: &Image,
+    from: vk::ImageLayout,
+    to: vk::ImageLayout,
+    mip: u32,
+) -> vk::ImageMemoryBarrier2<'static> {
+    let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+    let access = vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE;
+    let depth = matches!(image.desc.format, vk::Format::D32_SFLOAT | vk::Format::D16_UNORM);
+    vk::ImageMemoryBarrier2::default()
+        .src_stage_mask(all)
+        .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+        .dst_stage_mask(all)
+        .dst_access_mask(access)
+        .old_layout(from)
+        .new_layout(to)
+        .subresource_range(
+            vk::ImageSubresourceRange::default()
+                .aspect_mask(if depth { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR })
+                .base_mip_level(mip)
+                .level_count(1)
+                .layer_count(vk::REMAINING_ARRAY_LAYERS),
+        )
+}
+
+fn make_images(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<[Option<Arc<Image>>; 2]>> {
+    let mut list = Vec::new();
+    for ((name, decl), t) in graph.textures.iter().zip(&plan.textures) {
+        let mut copies = [None, None];
+        if !t.usage.is_empty() {
+            for (c, slot) in copies.iter_mut().enumerate().take(1 + usize::from(t.history)) {
+                let views = decl.value.views.0.iter();
+                let desc = ImageDesc {
+                    name: if c == 0 { name.clone() } else { format!("{name} (other frame)") },
+                    extent: t.extent,
+                    volume: t.volume,
+                    layers: t.layers,
+                    mips: t.mips,
+                    format: t.format.vk,
+                    views: views.filter_map(|v| crate::vulkan::Format::named(&v.value)).map(|f| f.vk).collect(),
+                    usage: t.usage,
+                };
+                *slot = Some(Arc::new(Image::new(gpu, desc)?));
+            }
+        }
+        list.push(copies);
+    }
+    Ok(list)
+}
+
+fn make_buffers(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<Option<Arc<Buffer>>>> {
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+        | vk::BufferUsageFlags::UNIFORM_BUFFER
+        | vk::BufferUsageFlags::INDIRECT_BUFFER
+        | vk::BufferUsageFlags::TRANSFER_SRC
+        | vk::BufferUsageFlags::TRANSFER_DST;
+    graph
+        .buffers
+        .iter()
+        .zip(&plan.buffers)
+        .map(|((name, _), b)| {
+            b.used
+                .then(|| Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly).map(Arc::new))
+                .transpose()
+        })
+        .collect()
+}
+
+fn descriptor_type(resource: &Resource) -> vk::DescriptorType {
+    match resource {
+        Resource::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+        Resource::Buffer { .. } => vk::DescriptorType::STORAGE_BUFFER,
+        Resource::Sampled { .. } => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        Resource::Storage { .. } => vk::DescriptorType::STORAGE_IMAGE,
+    }
+}
+
+fn descriptor_pool(gpu: &Arc<Gpu>, plan: &Plan, linked: &[Linked]) -> Result<DescriptorPool> {
+    let kinds: Vec<_> = plan
+        .steps
+        .iter()
+        .flat_map(|s| linked[s.pass].bound.iter().map(|b| descriptor_type(&b.resource)))
+        .flat_map(|k| [k, k])
+        .collect();
+    DescriptorPool::new(gpu, u32::try_from(plan.steps.len() * 2).unwrap_or(u32::MAX), &kinds)
+}
+
+/// Pipelines in parallel, and which of them each step uses.
+#[expect(clippy::type_complexity, reason = "used once, right above")]
+fn make_pipelines(
+    gpu: &Arc<Gpu>,
+    graph: &Graph,
+    linked: &[Linked],
+    plan: &Plan,
+    params: &Params,
+) -> Result<(Vec<Arc<Pipeline>>, Vec<Option<usize>>)> {
+    let mut descs: Vec<(usize, PipelineDesc)> = Vec::new();
+    let mut keys = Vec::new();
+    for step in &plan.steps {
+        let link = &linked[step.pass];
+        if link.stages.is_empty() {
+            keys.push(None);
+            continue;
+        }
+        let pass = &graph.passes[step.pass].value;
+        let draw = pass.draw.is_some().then(|| draw_state(pass, step, plan));
+        let known = descs.iter().position(|(p, d)| *p == step.pass && d.draw == draw);
+        keys.push(Some(known.unwrap_or_else(|| {
+            descs.push((step.pass, pipeline_desc(pass, link, params, draw)));
+            descs.len() - 1
+        })));
+    }
+    let pipelines = descs.par_iter().map(|(_, d)| Pipeline::new(gpu, d).map(Arc::new)).collect::<Result<_>>()?;
+    Ok((pipelines, keys))
+}
+
+fn pipeline_desc(
+    pass: &PassDecl,
+    link: &Linked,
+    params: &Params,
+    draw: Option<(DrawState, Attachments)>,
+) -> PipelineDesc {
+    let constants = params.constants();
+    let stages: Vec<StageDesc> = link
+        .stages
+        .iter()
+        .map(|s| StageDesc {
+            stage: s.stage,
+            spirv: s.words.clone(),
+            constants: constants.iter().filter(|(id, _)| s.interface.constants.contains(id)).copied().collect(),
+        })
+        .collect();
+    PipelineDesc {
+        name: pass.name.value.clone(),
+        bindings: link
+            .bound
+            .iter()
+            .map(|b| BindingDesc { binding: b.binding, kind: descriptor_type(&b.resource), stage: b.stage })
+            .collect(),
+        push_bytes: if link.stages.iter().any(|s| s.interface.push) { 4 } else { 0 },
+        stages,
+        draw,
+    }
+}
+
+fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachments) {
+    let raster = &pass.raster;
+    let attachments = Attachments {
+        color: step
+            .color
+            .iter()
+            .map(|c| c.as_ref().map_or(vk::Format::UNDEFINED, |a| plan.textures[a.texture].format.vk))
+            .collect(),
+        depth: step.depth.as_ref().map(|d| plan.textures[d.texture].format.vk),
+    };
+    let state = DrawState {
+        topology: match pass.topology {
+            Topology::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
+            Topology::Points => vk::PrimitiveTopology::POINT_LIST,
+            Topology::Lines => vk::PrimitiveTopology::LINE_LIST,
+            Topology::Patches => vk::PrimitiveTopology::PATCH_LIST,
+        },
+        cull: match raster.cull {
+            Cull::None => vk::CullModeFlags::NONE,
+            Cull::Back => vk::CullModeFlags::BACK,
+            Cull::Front => vk::CullModeFlags::FRONT,
+        },
+        depth_test: pass.depth.as_ref().map(|d| compare(d.value.test.unwrap_or(Compare::Less))),
+        depth_write: pass.depth.as_ref().is_some_and(|d| d.value.write),
+        depth_clamp: raster.depth_clamp,
+        depth_bias: raster.depth_bias,
+        samples: step.samples,
+        conservative: raster.conservative.is_some(),
+        discard: raster.discard,
+        blend: pass
+            .color
+            .0
+            .iter()
+            .map(|c| match c.value.blend {
+                BlendMode::Off => Blend::Off,
+                BlendMode::Alpha => Blend::Alpha,
+                BlendMode::Add => Blend::Add,
+            })
+            .collect(),
+    };
+    (state, attachments)
+}
+
+fn compare(c: Compare) -> vk::CompareOp {
+    match c {
+        Compare::Never => vk::CompareOp::NEVER,
+        Compare::Less => vk::CompareOp::LESS,
+        Compare::Equal => vk::CompareOp::EQUAL,
+        Compare::LessOrEqual => vk::CompareOp::LESS_OR_EQUAL,
+        Compare::Greater => vk::CompareOp::GREATER,
+        Compare::NotEqual => vk::CompareOp::NOT_EQUAL,
+        Compare::GreaterOrEqual => vk::CompareOp::GREATER_OR_EQUAL,
+        Compare::Always => vk::CompareOp::ALWAYS,
+    }
+}
+
+fn sampler_desc(s: &SamplerDecl, mips: bool, integer: bool) -> SamplerDesc {
+    let linear = s.filter == FilterMode::Linear && !integer;
+    let mip_linear = mips && !integer && s.mip_filter.unwrap_or(s.filter) == FilterMode::Linear;
+    SamplerDesc {
+        filter: if linear { vk::Filter::LINEAR } else { vk::Filter::NEAREST },
+        mip_filter: if mip_linear { vk::SamplerMipmapMode::LINEAR } else { vk::SamplerMipmapMode::NEAREST },
+        address: match s.address {
+            AddressMode::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
+            AddressMode::Repeat => vk::SamplerAddressMode::REPEAT,
+            AddressMode::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
+            AddressMode::BorderZero | AddressMode::BorderOne => vk::SamplerAddressMode::CLAMP_TO_BORDER,
+        },
+        border: match (s.address == AddressMode::BorderOne, integer) {
+            (true, false) => vk::BorderColor::FLOAT_OPAQUE_WHITE,
+            (false, false) => vk::BorderColor::FLOAT_TRANSPARENT_BLACK,
+            (true, true) => vk::BorderColor::INT_OPAQUE_WHITE,
+            (false, true) => vk::BorderColor::INT_TRANSPARENT_BLACK,
+        },
+        compare: s.compare.map(compare),
+        anisotropic: false,
+    }
+}
+
+fn clear_value(channels: Channels, value: [f64; 4]) -> vk::ClearColorValue {
+    match channels {
+        Channels::Uint => vk::ClearColorValue { uint32: value.map(|v| v as u32) },
+        Channels::Int => vk::ClearColorValue { int32: value.map(|v| v as i32) },
+        _ => vk::ClearColorValue { float32: value.map(|v| v as f32) },
+    }
+}

@@ -1,0 +1,126 @@
+//! Material textures as a few 2D arrays, one for each size and format: works without descriptor indexing.
+
+use crate::graph::externals::MATERIAL_ARRAYS;
+use crate::scene::{Scene, Texture, TextureFormat};
+use crate::vulkan::{Gpu, Image, ImageDesc, Result, Upload, View, ViewDesc, vk};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A handle as shaders see it: slot << 16 | layer.
+pub(super) const NO_TEXTURE: u32 = u32::MAX;
+
+/// Edge of the textures that share an array because their own sizes are too rare for one.
+const SHARED_EDGE: u32 = 512;
+
+/// Width, height, mips and format: what the layers of an array have in common.
+type Class = (u32, u32, u32, TextureFormat);
+
+fn class(texture: &Texture) -> Class {
+    (texture.width, texture.height, u32::try_from(texture.mips.len()).unwrap_or(1), texture.format)
+}
+
+/// The arrays, the handle of each texture, and bytes on the device.
+pub(super) struct MaterialTextures {
+    pub views: Vec<Arc<View>>,
+    pub handles: Vec<u32>,
+    pub bytes: u64,
+}
+
+pub(super) fn upload(gpu: &Arc<Gpu>, scene: &Scene, upload: &mut Upload) -> Result<MaterialTextures> {
+    let textures = fit(scene, gpu.info.features.bc);
+    let mut classes: BTreeMap<Class, Vec<usize>> = BTreeMap::new();
+    for (i, texture) in textures.iter().enumerate() {
+        classes.entry(class(texture)).or_default().push(i);
+    }
+    let mut out = MaterialTextures { views: Vec::new(), handles: vec![NO_TEXTURE; textures.len()], bytes: 0 };
+    for (slot, ((width, height, mips, format), members)) in (0u32..).zip(&classes) {
+        let parts: Vec<Vec<&[u8]>> =
+            members.iter().map(|m| textures[*m].mips.iter().map(Vec::as_slice).collect()).collect();
+        for (layer, member) in (0u32..).zip(members) {
+            out.handles[*member] = slot << 16 | layer;
+        }
+        add(gpu, upload, &mut out, [*width, *height], *mips, vulkan_format(*format), &parts)?;
+    }
+    while out.views.len() < MATERIAL_ARRAYS {
+        add(gpu, upload, &mut out, [1, 1], 1, vk::Format::R8G8B8A8_UNORM, &[vec![&[255; 4]]])?;
+    }
+    Ok(out)
+}
+
+fn add(
+    gpu: &Arc<Gpu>,
+    upload: &mut Upload,
+    out: &mut MaterialTextures,
+    [width, height]: [u32; 2],
+    mips: u32,
+    format: vk::Format,
+    parts: &[Vec<&[u8]>],
+) -> Result<()> {
+    let layers = u32::try_from(parts.len()).unwrap_or(u32::MAX);
+    let desc = ImageDesc {
+        name: format!("materialTexture{}", out.views.len()),
+        extent: [width, height, 1],
+        volume: false,
+        layers,
+        mips,
+        format,
+        views: vec![],
+        usage: vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST,
+    };
+    let image = Arc::new(Image::new(gpu, desc)?);
+    upload.image(&image, parts)?;
+    out.bytes += image.bytes;
+    let desc = ViewDesc {
+        kind: vk::ImageViewType::TYPE_2D_ARRAY,
+        format,
+        aspect: vk::ImageAspectFlags::COLOR,
+        mips: (0, mips),
+        layers: (0, layers),
+    };
+    out.views.push(Arc::new(View::new(&image, &desc)?));
+    Ok(())
+}
+
+/// Textures of at most as many classes as there are arrays: the rarest are resampled to one common size.
+fn fit(scene: &Scene, bc: bool) -> Vec<Cow<'_, Texture>> {
+    let mut list: Vec<Cow<'_, Texture>> = scene
+        .textures
+        .iter()
+        .map(|t| if t.format.is_compressed() && !bc { Cow::Owned(t.resampled(t.width, t.height)) } else { Cow::Borrowed(t) })
+        .collect();
+    let mut texels: BTreeMap<Class, u64> = BTreeMap::new();
+    for texture in &list {
+        *texels.entry(class(texture)).or_default() += u64::from(texture.width) * u64::from(texture.height);
+    }
+    if texels.len() <= MATERIAL_ARRAYS {
+        return list;
+    }
+    let mut by_size: Vec<(u64, Class)> = texels.into_iter().map(|(c, n)| (n, c)).collect();
+    by_size.sort_unstable_by(|a, b| b.cmp(a));
+    // Two arrays, colour and data, take the rest.
+    let kept: Vec<Class> = by_size.iter().take(MATERIAL_ARRAYS - 2).map(|(_, c)| *c).collect();
+    for texture in &mut list {
+        if !kept.contains(&class(texture)) {
+            *texture = Cow::Owned(texture.resampled(SHARED_EDGE, SHARED_EDGE));
+        }
+    }
+    list
+}
+
+fn vulkan_format(format: TextureFormat) -> vk::Format {
+    match format {
+        TextureFormat::Rgba8Srgb => vk::Format::R8G8B8A8_SRGB,
+        TextureFormat::Rgba8Unorm => vk::Format::R8G8B8A8_UNORM,
+        TextureFormat::Bc1Srgb => vk::Format::BC1_RGBA_SRGB_BLOCK,
+        TextureFormat::Bc1Unorm => vk::Format::BC1_RGBA_UNORM_BLOCK,
+        TextureFormat::Bc2Srgb => vk::Format::BC2_SRGB_BLOCK,
+        TextureFormat::Bc2Unorm => vk::Format::BC2_UNORM_BLOCK,
+        TextureFormat::Bc3Srgb => vk::Format::BC3_SRGB_BLOCK,
+        TextureFormat::Bc3Unorm => vk::Format::BC3_UNORM_BLOCK,
+        TextureFormat::Bc4Unorm => vk::Format::BC4_UNORM_BLOCK,
+        TextureFormat::Bc5Unorm => vk::Format::BC5_UNORM_BLOCK,
+        TextureFormat::Bc7Srgb => vk::Format::BC7_SRGB_BLOCK,
+        TextureFormat::Bc7Unorm => vk::Format::BC7_UNORM_BLOCK,
+    }
+}

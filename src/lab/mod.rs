@@ -1,0 +1,332 @@
+//! The lab: a device and what is loaded on it; turns an experiment into frames.
+
+mod materials;
+mod scene;
+mod view;
+
+pub use scene::SceneGpu;
+pub use view::Viewpoint;
+
+use crate::experiment::{CameraChoice, Experiment};
+use crate::graph::expr::{Env, Var};
+use crate::graph::link::{Linked, link};
+use crate::graph::load::{Folders, Graph, load};
+use crate::graph::param::Params;
+use crate::graph::plan::{PlanInput, plan};
+use crate::graph::run::{FrameTimes, Program};
+use crate::graph::source::{Diagnostic, nearest};
+use crate::scene::{Scene, SceneError};
+use crate::shader::ShaderCompiler;
+use crate::vulkan::{DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What can go wrong between an experiment and its picture.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// Mistakes in graphs, shaders or experiments, with their places.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Input(Vec<Diagnostic>),
+    /// A scene that cannot be opened.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The device.
+    #[error(transparent)]
+    Vulkan(#[from] VulkanError),
+    /// Anything else that the user asked for and cannot have.
+    #[error("{0}")]
+    Request(String),
+}
+
+/// Where the program's own folders are.
+#[derive(Clone, Debug)]
+pub struct Home {
+    /// The folder with `passes`, `shaders` and `configs`.
+    pub root: PathBuf,
+    /// Folder for compiled shaders and pipelines.
+    pub cache: Option<PathBuf>,
+}
+
+impl Home {
+    /// Finds the folders: `CONELAB_HOME`, else upwards from the working folder, else beside the program.
+    ///
+    /// # Errors
+    /// None of them has the folders.
+    pub fn find() -> Result<Home, LabError> {
+        let fits = |p: &Path| p.join("passes").is_dir() && p.join("shaders").is_dir();
+        let named = std::env::var_os("CONELAB_HOME").map(PathBuf::from);
+        let working = std::env::current_dir().ok();
+        let program = std::env::current_exe().ok();
+        let upwards = working.iter().flat_map(|p| p.ancestors()).chain(program.iter().flat_map(|p| p.ancestors()));
+        let root = match &named {
+            Some(path) if fits(path) => Some(path.clone()),
+            Some(path) => {
+                let message = format!("CONELAB_HOME is '{}', which has no passes and shaders folders", path.display());
+                return Err(LabError::Request(message));
+            }
+            None => upwards.into_iter().find(|p| fits(p)).map(Path::to_path_buf),
+        };
+        let root = root.ok_or_else(|| {
+            LabError::Request("cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into())
+        })?;
+        let cache = std::env::var_os("CONELAB_CACHE")
+            .map(PathBuf::from)
+            .or_else(|| std::env::var_os("XDG_CACHE_HOME").map(|p| PathBuf::from(p).join("conelab")))
+            .or_else(|| std::env::var_os("HOME").map(|p| PathBuf::from(p).join(".cache/conelab")));
+        Ok(Home { root, cache })
+    }
+
+    /// Folders of graphs and shaders.
+    pub fn folders(&self) -> Folders {
+        Folders { passes: self.root.join("passes"), shaders: self.root.join("shaders") }
+    }
+
+    /// A graph with its shaders compiled and checked, and warnings; needs no device.
+    ///
+    /// # Errors
+    /// All mistakes.
+    pub fn graph(&self, name: &str) -> Result<(Graph, Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let folders = self.folders();
+        let given = Path::new(name);
+        let path = if given.is_file() { given.to_path_buf() } else { folders.passes.join(name) };
+        let graph = load(&path, &folders)?;
+        let compiler = ShaderCompiler::new(&folders.shaders, self.cache.as_deref());
+        let (linked, warnings) = link(&graph, &compiler, &folders.shaders)?;
+        Ok((graph, linked, warnings))
+    }
+}
+
+/// A device that runs experiments.
+pub struct Lab {
+    /// Its folders.
+    pub home: Home,
+    /// The device.
+    pub gpu: Arc<Gpu>,
+}
+
+/// A graph on a scene, ready to make frames.
+pub struct Session {
+    /// The graph.
+    pub graph: Graph,
+    /// Present parameter values.
+    pub params: Params,
+    /// What runs.
+    pub program: Program,
+    /// The scene.
+    pub scene: Arc<Scene>,
+    scene_gpu: SceneGpu,
+    viewpoint: Viewpoint,
+    size: (u32, u32),
+    time: f64,
+    frame: u32,
+    sent_params: bool,
+}
+
+/// The texels of one mip and layer of a texture.
+#[derive(Clone, Debug)]
+pub struct Texels {
+    /// Width, height, depth.
+    pub extent: [u32; 3],
+    /// Format.
+    pub format: Format,
+    /// Tightly packed.
+    pub bytes: Vec<u8>,
+}
+
+impl Lab {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// No device, no folders.
+    pub fn open(home: Home, options: GpuOptions) -> Result<Lab, LabError> {
+        let options = GpuOptions { cache: home.cache.clone(), ..options };
+        Ok(Lab { gpu: Gpu::open(&options)?, home })
+    }
+
+    /// Loads what an experiment needs. `wanted` are the resources whose content will be read.
+    ///
+    /// # Errors
+    /// Everything that can be wrong with graph, shaders, parameters, scene, camera or device.
+    pub fn prepare(
+        &self,
+        experiment: &Experiment,
+        scene: Arc<Scene>,
+        wanted: impl FnOnce(&Graph) -> Result<Vec<String>, LabError>,
+    ) -> Result<(Session, Vec<Diagnostic>), LabError> {
+        let (graph, linked, warnings) = self.home.graph(&experiment.graph).map_err(LabError::Input)?;
+        let params = params_of(&graph, experiment)?;
+        let mut wanted = wanted(&graph)?;
+        wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
+        let viewpoint = viewpoint_of(experiment, &scene)?;
+        let env = environment(&scene, experiment.size, experiment.time);
+        let input = PlanInput { params: &params, env, wanted, device: &self.gpu.info };
+        let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
+        let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
+        let scene_gpu = SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene))?;
+        let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources)?;
+        self.gpu.save_pipeline_cache();
+        let session = Session {
+            graph,
+            params,
+            program,
+            scene,
+            scene_gpu,
+            viewpoint,
+            size: experiment.size,
+            time: experiment.time,
+            frame: 0,
+            sent_params: false,
+        };
+        Ok((session, warnings))
+    }
+}
+
+/// Variables of expressions that come from scene and size.
+pub fn environment(scene: &Scene, size: (u32, u32), time: f64) -> Env {
+    let (low, high) = scene.bounds();
+    let extent = high - low;
+    let mut env = Env::new();
+    let mut put = |name: &str, value: f64| drop(env.insert(name.to_string(), Var::Number(value)));
+    put("width", f64::from(size.0));
+    put("height", f64::from(size.1));
+    put("shadow_views", f64::from(view::shadow_view_count(scene)));
+    put("light_count", scene.lights.len() as f64);
+    put("triangle_count", scene.triangle_count() as f64);
+    put("scene_size", f64::from(extent.max_element()));
+    for (axis, (a, b)) in ["x", "y", "z"].iter().zip(low.to_array().into_iter().zip(high.to_array())) {
+        put(&format!("scene_min_{axis}"), f64::from(a));
+        put(&format!("scene_max_{axis}"), f64::from(b));
+    }
+    put("time", time);
+    put("frame", 0.0);
+    env
+}
+
+/// The parameters of an experiment: defaults, then what it sets.
+///
+/// # Errors
+/// Unknown names and wrong values, all of them, with their places.
+pub fn params_of(graph: &Graph, experiment: &Experiment) -> Result<Params, LabError> {
+    let mut params = graph.params.clone();
+    let mut errors = Vec::new();
+    for (name, text) in &experiment.params {
+        if let Err(message) = params.set(&name.value, text) {
+            errors.push(experiment.sources.error(name.at, message));
+        }
+    }
+    if errors.is_empty() { Ok(params) } else { Err(LabError::Input(errors)) }
+}
+
+fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint, LabError> {
+    match &experiment.camera {
+        CameraChoice::Named(name) => match scene.cameras.get(name).or_else(|| {
+            // Scenes without a camera of the default name are seen from their first.
+            (name == "default").then(|| scene.cameras.values().next()).flatten()
+        }) {
+            Some(camera) => Ok(Viewpoint::new(camera)),
+            None if scene.cameras.is_empty() => Ok(Viewpoint::around(scene)),
+            None => {
+                let hint = nearest(name, scene.cameras.keys().map(String::as_str)).unwrap_or_default();
+                Err(LabError::Request(format!("scene '{}' has no camera '{name}' ({hint})", scene.name)))
+            }
+        },
+        CameraChoice::Placed(placed) => Ok(Viewpoint::placed(placed, scene)),
+    }
+}
+
+impl Session {
+    /// Runs one frame. The times that come back are those of an earlier frame, which has finished meanwhile.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
+        let mut updates = self.scene_gpu.updates(&self.scene, self.time, self.frame == 0);
+        let camera = self.viewpoint.uniform(self.size, self.time, self.frame, delta);
+        updates.push((self.scene_gpu.camera.clone(), camera));
+        if !self.sent_params {
+            updates.push((self.program.params_buffer(), self.params.uniform_bytes()));
+            self.sent_params = true;
+        }
+        self.frame += 1;
+        self.time += delta;
+        Ok(self.program.run(&updates)?)
+    }
+
+    /// Waits for all frames.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn finish(&mut self) -> Result<Vec<FrameTimes>, LabError> {
+        Ok(self.program.finish_all()?)
+    }
+
+    /// Messages of the graph's checks that failed in the last frame.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn failed_checks(&mut self) -> Result<Vec<String>, LabError> {
+        let mut failed = Vec::new();
+        for check in &self.graph.checks {
+            let Some(buffer) = self.graph.buffers.iter().position(|b| b.0 == check.buffer.value) else { continue };
+            let bytes = self.program.read_buffer(buffer)?;
+            let start = check.word as usize * 4;
+            let value = bytes.get(start..start + 4).map_or(0, |b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]));
+            if value != 0 {
+                failed.push(format!("{} ({value})", check.message));
+            }
+        }
+        Ok(failed)
+    }
+
+    /// Reads a texture's mip and layer.
+    ///
+    /// # Errors
+    /// No such texture, mip or layer; the device was lost.
+    pub fn texels(&mut self, name: &str, mip: u32, layer: u32) -> Result<Texels, LabError> {
+        let Some(index) = self.graph.textures.iter().position(|t| t.0 == name) else {
+            let hint = nearest(name, self.graph.textures.iter().map(|t| t.0.as_str())).unwrap_or_default();
+            return Err(LabError::Request(format!("no texture '{name}' ({hint})")));
+        };
+        let plan = &self.program.plan.textures[index];
+        if plan.usage.is_empty() {
+            return Err(LabError::Request(format!(
+                "'{name}' is not made with these parameters: no pass that runs uses it"
+            )));
+        }
+        if mip >= plan.mips || layer >= plan.layers {
+            let message = format!("'{name}' has {} mips and {} layers; there is no mip {mip}, layer {layer}", plan.mips, plan.layers);
+            return Err(LabError::Request(message));
+        }
+        let extent = plan.extent.map(|n| (n >> mip).max(1));
+        let format = plan.format;
+        Ok(Texels { extent, format, bytes: self.program.read_texture(index, mip, layer)? })
+    }
+
+    /// The picture's size.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Bytes of the scene's own resources.
+    pub fn scene_bytes(&self) -> u64 {
+        self.scene_gpu.bytes
+    }
+}
+
+/// A device with every feature, for checks that need none of their own.
+pub fn any_device() -> DeviceInfo {
+    let all = Features {
+        conservative_rasterization: true,
+        geometry: true,
+        tessellation: true,
+        fragment_stores: true,
+        vertex_stores: true,
+        clip_distance: true,
+        depth_clamp: true,
+        bc: true,
+        anisotropy: true,
+        write_without_format: true,
+        multi_draw_indirect: true,
+    };
+    DeviceInfo::imaginary(all)
+}

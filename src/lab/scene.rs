@@ -1,0 +1,240 @@
+//! A scene on the device, as the fixed named resources that shaders read (`shaders/include/scene.glsl`).
+
+use super::materials::{self, NO_TEXTURE};
+use super::view::{lights, shadow_view_count};
+use crate::graph::run::{Geometry, SceneResources};
+use crate::scene::Scene;
+use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, vk};
+use bytemuck::{Pod, Zeroable};
+use glam::Mat4;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct SceneInfoBlock {
+    bounds_min: [f32; 3],
+    light_count: u32,
+    bounds_max: [f32; 3],
+    shadow_views: u32,
+    sky: [f32; 3],
+    triangle_count: u32,
+    draw_count: u32,
+    vertex_count: u32,
+    instance_count: u32,
+    pad: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct MaterialBlock {
+    base_color: [f32; 4],
+    emission: [f32; 3],
+    metallic: f32,
+    roughness: f32,
+    alpha_cutoff: f32,
+    normal_scale: f32,
+    flags: u32,
+    base_color_texture: u32,
+    metallic_roughness_texture: u32,
+    normal_texture: u32,
+    emission_texture: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct DrawBlock {
+    instance: u32,
+    material: u32,
+    first_index: u32,
+    index_count: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable, PartialEq)]
+struct InstanceBlock {
+    model: [f32; 16],
+    previous_model: [f32; 16],
+    normal_matrix: [f32; 16],
+}
+
+/// A scene's resources on the device.
+pub struct SceneGpu {
+    /// By name, with what is drawn.
+    pub resources: SceneResources,
+    /// The block `camera`, written every frame.
+    pub camera: Arc<Buffer>,
+    /// Bytes of geometry and textures.
+    pub bytes: u64,
+    instances: Arc<Buffer>,
+    sent: Vec<InstanceBlock>,
+}
+
+/// Bytes of the block `camera`.
+const CAMERA_BYTES: usize = 5 * 64 + 5 * 16;
+
+impl SceneGpu {
+    /// Uploads a scene.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn new(gpu: &Arc<Gpu>, scene: &Scene) -> Result<SceneGpu> {
+        let mut upload = Upload::new(gpu);
+        let textures = materials::upload(gpu, scene, &mut upload)?;
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let (positions, attributes, indices, first_index) = vertices(scene);
+        let draws = draws(scene, &first_index);
+        let opaque = draws.iter().filter(|d| !is_masked(scene, d)).count();
+        // One command (VkDrawIndexedIndirectCommand) a draw; the instance number tells the shaders which.
+        let commands: Vec<[u32; 5]> =
+            (0u32..).zip(&draws).map(|(i, d)| [d.index_count, 1, d.first_index, 0, i]).collect();
+        let (light_blocks, shadow_blocks) = lights(scene);
+        let (low, high) = scene.bounds();
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let info = SceneInfoBlock {
+            bounds_min: low.to_array(),
+            light_count: count(light_blocks.len()),
+            bounds_max: high.to_array(),
+            shadow_views: shadow_view_count(scene),
+            sky: scene.sky.to_array(),
+            triangle_count: count(draws.iter().map(|d| d.index_count as usize / 3).sum()),
+            draw_count: count(draws.len()),
+            vertex_count: count(positions.len() / 3),
+            instance_count: count(scene.instances.len()),
+            pad: 0,
+        };
+        let material_blocks: Vec<MaterialBlock> = scene.materials.iter().map(|m| material(m, &textures.handles)).collect();
+        let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
+        let index = vk::BufferUsageFlags::INDEX_BUFFER | storage;
+        let index_buffer = upload.buffer("indices", bytemuck::cast_slice(&indices), index)?;
+        let command_buffer =
+            upload.buffer("draw commands", bytemuck::cast_slice(&commands), vk::BufferUsageFlags::INDIRECT_BUFFER)?;
+        let instance_blocks = instances(scene, 0.0, None);
+        let instances = upload.buffer("instances", bytemuck::cast_slice(&instance_blocks), storage)?;
+        let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
+        let buffers = HashMap::from([
+            ("camera", camera.clone()),
+            ("sceneInfo", upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?),
+            ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
+            ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
+            ("materials", upload.buffer("materials", bytemuck::cast_slice(&material_blocks), storage)?),
+            ("instances", instances.clone()),
+            ("draws", upload.buffer("draws", bytemuck::cast_slice(&draws), storage)?),
+            ("positions", upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?),
+            ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
+        ]);
+        upload.finish()?;
+        let bytes = buffers.values().map(|b| b.size).sum::<u64>() + index_buffer.size + textures.bytes;
+        let sampler = Arc::new(Sampler::new(
+            gpu,
+            &SamplerDesc {
+                filter: vk::Filter::LINEAR,
+                mip_filter: vk::SamplerMipmapMode::LINEAR,
+                address: vk::SamplerAddressMode::REPEAT,
+                border: vk::BorderColor::FLOAT_TRANSPARENT_BLACK,
+                compare: None,
+                anisotropic: true,
+            },
+        )?);
+        let names = crate::graph::externals::EXTERNALS.iter().map(|e| e.name).filter(|n| n.starts_with("materialTexture"));
+        Ok(SceneGpu {
+            resources: SceneResources {
+                buffers,
+                textures: names.zip(textures.views).collect(),
+                sampler,
+                geometry: Geometry {
+                    indices: index_buffer,
+                    commands: command_buffer,
+                    draws: draws.iter().map(|d| (d.first_index, d.index_count)).collect(),
+                    opaque: count(opaque),
+                },
+            },
+            camera,
+            bytes,
+            instances,
+            sent: instance_blocks,
+        })
+    }
+
+    /// Buffers that change with time: the poses of animated instances, when they moved.
+    pub fn updates(&mut self, scene: &Scene, time: f64, first: bool) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+        let previous = (!first).then_some(self.sent.as_slice());
+        let now = instances(scene, time as f32, previous);
+        if now == self.sent || now.is_empty() {
+            return Vec::new();
+        }
+        self.sent = now;
+        vec![(self.instances.clone(), bytemuck::cast_slice(&self.sent).to_vec())]
+    }
+}
+
+fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {
+    scene.materials.get(draw.material as usize).is_some_and(|m| m.alpha_cutoff > 0.0)
+}
+
+/// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another, and each mesh's first index.
+#[expect(clippy::type_complexity, reason = "used once, right above")]
+fn vertices(scene: &Scene) -> (Vec<f32>, Vec<[f32; 12]>, Vec<u32>, Vec<u32>) {
+    let (mut positions, mut attributes, mut indices, mut first) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for mesh in &scene.meshes {
+        let base = u32::try_from(positions.len() / 3).unwrap_or(u32::MAX);
+        first.push(u32::try_from(indices.len()).unwrap_or(u32::MAX));
+        for v in &mesh.vertices {
+            positions.extend(v.position);
+            let ([nx, ny, nz], [tx, ty, tz, tw], [u, w]) = (v.normal, v.tangent, v.uv);
+            attributes.push([nx, ny, nz, u, tx, ty, tz, tw, w, 0.0, 0.0, 0.0]);
+        }
+        indices.extend(mesh.indices.iter().map(|i| base + i));
+    }
+    (positions, attributes, indices, first)
+}
+
+/// One draw for each part of each instance, opaque ones first.
+fn draws(scene: &Scene, first_index: &[u32]) -> Vec<DrawBlock> {
+    let mut list = Vec::new();
+    for (i, instance) in (0u32..).zip(&scene.instances) {
+        let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
+        for part in mesh.parts.iter().filter(|p| p.index_count > 0) {
+            list.push(DrawBlock {
+                instance: i,
+                material: part.material,
+                first_index: first_index[instance.mesh as usize] + part.first_index,
+                index_count: part.index_count,
+            });
+        }
+    }
+    list.sort_by_key(|d| is_masked(scene, d));
+    list
+}
+
+fn material(m: &crate::scene::Material, handles: &[u32]) -> MaterialBlock {
+    let handle = |t: Option<u32>| t.and_then(|t| handles.get(t as usize)).copied().unwrap_or(NO_TEXTURE);
+    MaterialBlock {
+        base_color: m.base_color.to_array(),
+        emission: m.emission.to_array(),
+        metallic: m.metallic,
+        roughness: m.roughness,
+        alpha_cutoff: m.alpha_cutoff,
+        normal_scale: m.normal_scale,
+        flags: u32::from(m.two_sided),
+        base_color_texture: handle(m.base_color_texture),
+        metallic_roughness_texture: handle(m.metallic_roughness_texture),
+        normal_texture: handle(m.normal_texture),
+        emission_texture: handle(m.emission_texture),
+    }
+}
+
+fn instances(scene: &Scene, time: f32, previous: Option<&[InstanceBlock]>) -> Vec<InstanceBlock> {
+    (0..scene.instances.len())
+        .map(|i| {
+            let model = scene.instance_transform(i, time);
+            let before = previous.and_then(|p| p.get(i)).map_or(model.to_cols_array(), |p| p.model);
+            let normal = Mat4::from_mat3(glam::Mat3::from_mat4(model).inverse().transpose());
+            InstanceBlock {
+                model: model.to_cols_array(),
+                previous_model: before,
+                normal_matrix: normal.to_cols_array(),
+            }
+        })
+        .collect()
+}

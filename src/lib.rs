@@ -1,0 +1,14 @@
+//! conelab: a research workbench for voxel cone tracing.
+//!
+//! Knowledge flows one way: [`vulkan`], [`shader`], [`graph`] know no scene; [`scene`] knows no device; [`lab`] joins
+//! them to run an [`experiment`]; the commands are thin users of the lab.
+pub mod commands;
+pub mod experiment;
+pub mod files;
+pub mod graph;
+pub mod lab;
+pub mod picture;
+pub mod scene;
+pub mod shader;
+pub mod stats;
+pub mod vulkan;

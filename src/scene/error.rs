@@ -1,0 +1,35 @@
+//! What can go wrong with a scene, and what its user can do about it.
+
+use std::path::PathBuf;
+
+/// An error that ends the opening or writing of a scene.
+#[derive(Debug, thiserror::Error)]
+pub enum SceneError {
+    /// The name is neither a built-in scene nor a file.
+    #[error("no scene '{spec}': {hint}")]
+    NotFound { spec: String, hint: String },
+    /// A file could not be read.
+    #[error("cannot read {}: {source}. {hint}", path.display())]
+    Read {
+        path: PathBuf,
+        hint: String,
+        source: std::io::Error,
+    },
+    /// A model file is not what its name says, or is damaged.
+    #[error("cannot load the model {}: {message}", path.display())]
+    Model { path: PathBuf, message: String },
+    /// A scene file has an error at a known place.
+    #[error("{}:{line}:{column}: {message}", path.display())]
+    SceneFile {
+        path: PathBuf,
+        line: usize,
+        column: usize,
+        message: String,
+    },
+    /// A file could not be written.
+    #[error("cannot write {}: {message}. Check that the folder exists, is writable and has space", path.display())]
+    Write { path: PathBuf, message: String },
+    /// The export has an extension that no exporter knows.
+    #[error("cannot export to {}: the extension must be .obj, .gltf or .glb", path.display())]
+    ExportFormat { path: PathBuf },
+}

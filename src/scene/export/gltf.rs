@@ -1,0 +1,307 @@
+//! glTF 2.0 with one buffer: vertices interleaved as they are in memory, then indices, motion and PNG images.
+
+use std::path::Path;
+
+use glam::{Mat3, Quat, Vec3};
+use serde_json::{Value, json};
+
+use super::{images, start, unique_names, write_file};
+use crate::scene::{
+    Animation, Camera, Light, LightKind, Material, Mesh, Scene, SceneError, Vertex,
+};
+
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+
+#[derive(Default)]
+struct Writer {
+    bytes: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+    nodes: Vec<Value>,
+    roots: Vec<usize>,
+    samplers: Vec<Value>,
+    channels: Vec<Value>,
+}
+
+/// Writes a .glb, or a .gltf and a .bin beside it.
+pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), SceneError> {
+    let mut writer = Writer::default();
+    let images = scene.textures.iter().map(|texture| {
+        let view = writer.view(&images::rgba_png(texture, path)?, json!({}));
+        Ok(json!({ "bufferView": view, "mimeType": "image/png", "name": texture.name }))
+    });
+    let images = images.collect::<Result<Vec<Value>, SceneError>>()?;
+    let meshes: Vec<Value> = scene.meshes.iter().map(|mesh| writer.mesh(mesh)).collect();
+    for instance in &scene.instances {
+        let node = json!({
+            "name": instance.name, "mesh": instance.mesh, "matrix": instance.transform.to_cols_array(),
+        });
+        match &instance.animation {
+            None => writer.root(node),
+            Some(animation) => writer.moving(node, &instance.name, animation),
+        }
+    }
+    for (i, light) in scene.lights.iter().enumerate() {
+        writer.root(json!({
+            "name": light.name,
+            "translation": light.position.to_array(),
+            "rotation": Quat::from_rotation_arc(Vec3::NEG_Z, light.direction).to_array(),
+            "extensions": { "KHR_lights_punctual": { "light": i } },
+        }));
+    }
+    for (i, (name, camera)) in scene.cameras.iter().enumerate() {
+        writer.root(camera_node(name, i, camera));
+    }
+    let names = unique_names(
+        scene
+            .materials
+            .iter()
+            .map(|material| material.name.as_str()),
+    );
+    let mut root = json!({
+        "asset": { "version": "2.0", "generator": "conelab" },
+        "scene": 0,
+        "scenes": [{ "name": scene.name, "nodes": writer.roots }],
+        "nodes": writer.nodes,
+        "meshes": meshes,
+        "materials": scene.materials.iter().zip(&names).map(|(m, name)| material(m, name)).collect::<Vec<_>>(),
+        "textures": (0..images.len()).map(|i| json!({ "source": i })).collect::<Vec<_>>(),
+        "images": images,
+        "cameras": scene.cameras.iter().map(|(name, c)| lens(name, c)).collect::<Vec<_>>(),
+        "accessors": writer.accessors,
+        "bufferViews": writer.views,
+        "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_emissive_strength"],
+        "extensions": { "KHR_lights_punctual": { "lights": scene.lights.iter().map(light).collect::<Vec<_>>() } },
+    });
+    if !writer.channels.is_empty() {
+        root["animations"] = json!([{ "channels": writer.channels, "samplers": writer.samplers }]);
+    }
+    // Arrays may be absent but not empty.
+    if let Some(root) = root.as_object_mut() {
+        root.retain(|_, value| value.as_array().is_none_or(|array| !array.is_empty()));
+    }
+    if scene.lights.is_empty() {
+        root["extensionsUsed"] = json!(["KHR_materials_emissive_strength"]);
+        root["extensions"] = json!({});
+    }
+    save(root, writer.bytes, path, binary)
+}
+
+fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<(), SceneError> {
+    let length = u32::try_from(bytes.len()).map_err(|_| SceneError::Write {
+        path: path.into(),
+        message: "a glTF buffer cannot be larger than 4 GiB; export as .obj".into(),
+    })?;
+    if !binary {
+        let side = path.with_extension("bin");
+        let name = side
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .replace('%', "%25")
+            .replace(' ', "%20");
+        if length > 0 {
+            root["buffers"] = json!([{ "byteLength": length, "uri": name }]);
+            write_file(&side, &bytes)?;
+        }
+        return write_file(path, format!("{root:#}").as_bytes());
+    }
+    if length > 0 {
+        root["buffers"] = json!([{ "byteLength": length }]);
+    }
+    let mut text = root.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let total = 12 + 8 + text.len() + if length > 0 { 8 + bytes.len() } else { 0 };
+    let mut file = Vec::with_capacity(total);
+    file.extend(b"glTF");
+    file.extend(2u32.to_le_bytes());
+    file.extend((total as u32).to_le_bytes());
+    file.extend((text.len() as u32).to_le_bytes());
+    file.extend(b"JSON");
+    file.extend(text);
+    if length > 0 {
+        file.extend(length.to_le_bytes());
+        file.extend(b"BIN\0");
+        file.extend(bytes);
+    }
+    write_file(path, &file)
+}
+
+impl Writer {
+    /// Adds bytes on a boundary of 4 and returns the index of their view.
+    fn view(&mut self, bytes: &[u8], more: Value) -> usize {
+        let mut view =
+            json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        if let (Some(view), Some(more)) = (view.as_object_mut(), more.as_object()) {
+            view.extend(more.clone());
+        }
+        self.bytes.extend_from_slice(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.views.push(view);
+        self.views.len() - 1
+    }
+
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    fn mesh(&mut self, mesh: &Mesh) -> Value {
+        if mesh.vertices.is_empty() {
+            // A mesh must have a primitive; one without indices in it is left out when read.
+            let empty = self.accessor(json!({ "componentType": FLOAT, "type": "VEC3", "count": 3,
+                "min": [0, 0, 0], "max": [0, 0, 0] }));
+            return json!({ "name": mesh.name, "primitives": [{ "attributes": { "POSITION": empty } }] });
+        }
+        let stride = size_of::<Vertex>();
+        let vertices = self.view(
+            bytemuck::cast_slice(&mesh.vertices),
+            json!({ "byteStride": stride, "target": 34962 }),
+        );
+        let positions = mesh.vertices.iter().map(|v| Vec3::from_array(v.position));
+        let (low, high) = positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| {
+            (l.min(p), h.max(p))
+        });
+        let mut attribute = |offset: usize, kind: &str| {
+            self.accessors.push(
+                json!({ "bufferView": vertices, "byteOffset": offset, "componentType": FLOAT,
+                "type": kind, "count": mesh.vertices.len() }),
+            );
+            self.accessors.len() - 1
+        };
+        let attributes = json!({
+            "POSITION": attribute(std::mem::offset_of!(Vertex, position), "VEC3"),
+            "NORMAL": attribute(std::mem::offset_of!(Vertex, normal), "VEC3"),
+            "TANGENT": attribute(std::mem::offset_of!(Vertex, tangent), "VEC4"),
+            "TEXCOORD_0": attribute(std::mem::offset_of!(Vertex, uv), "VEC2"),
+        });
+        if let Some(position) = attributes["POSITION"].as_u64() {
+            self.accessors[position as usize]["min"] = json!(low.to_array());
+            self.accessors[position as usize]["max"] = json!(high.to_array());
+        }
+        let indices = self.view(
+            bytemuck::cast_slice(&mesh.indices),
+            json!({ "target": 34963 }),
+        );
+        let primitives = mesh.parts.iter().map(|part| {
+            let accessor = self.accessor(
+                json!({ "bufferView": indices, "byteOffset": part.first_index * 4,
+                "componentType": UNSIGNED_INT, "type": "SCALAR", "count": part.index_count }),
+            );
+            json!({ "attributes": attributes, "indices": accessor, "material": part.material })
+        });
+        let primitives: Vec<Value> = primitives.collect();
+        json!({ "name": mesh.name, "primitives": primitives })
+    }
+
+    fn root(&mut self, node: Value) {
+        self.roots.push(self.nodes.len());
+        self.nodes.push(node);
+    }
+
+    /// A node that moves, with the placed mesh below it.
+    fn moving(&mut self, child: Value, name: &str, animation: &Animation) {
+        let pose = start(Some(animation));
+        let (_, rotation, translation) = pose.to_scale_rotation_translation();
+        let parent = self.nodes.len() + 1;
+        self.nodes.push(child);
+        self.root(json!({
+            "name": format!("{name} motion"), "children": [parent - 1],
+            "translation": translation.to_array(), "rotation": rotation.to_array(),
+        }));
+        let keys = &animation.keyframes;
+        if keys.is_empty() {
+            return;
+        }
+        let times: Vec<f32> = keys.iter().map(|key| key.time).collect();
+        let translations: Vec<[f32; 3]> =
+            keys.iter().map(|key| key.translation.to_array()).collect();
+        let rotations: Vec<[f32; 4]> = keys.iter().map(|key| key.rotation.to_array()).collect();
+        let (first, last) = (times[0], times[times.len() - 1]);
+        let input = self.floats(bytemuck::cast_slice(&times), "SCALAR", keys.len());
+        self.accessors[input]["min"] = json!([first]);
+        self.accessors[input]["max"] = json!([last]);
+        for (path, values, kind) in [
+            ("translation", bytemuck::cast_slice(&translations), "VEC3"),
+            ("rotation", bytemuck::cast_slice(&rotations), "VEC4"),
+        ] {
+            let output = self.floats(values, kind, keys.len());
+            self.channels.push(json!({ "sampler": self.samplers.len(), "target": { "node": parent, "path": path } }));
+            self.samplers
+                .push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+        }
+    }
+
+    fn floats(&mut self, values: &[u8], kind: &str, count: usize) -> usize {
+        let view = self.view(values, json!({}));
+        self.accessor(
+            json!({ "bufferView": view, "componentType": FLOAT, "type": kind, "count": count }),
+        )
+    }
+}
+
+fn material(material: &Material, name: &str) -> Value {
+    let strength = material.emission.max_element().max(1.0);
+    let mut value = json!({
+        "name": name,
+        "doubleSided": material.two_sided,
+        "alphaMode": if material.alpha_cutoff > 0.0 { "MASK" } else { "OPAQUE" },
+        "emissiveFactor": (material.emission / strength).to_array(),
+        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": strength } },
+        "pbrMetallicRoughness": {
+            "baseColorFactor": material.base_color.to_array(),
+            "metallicFactor": material.metallic,
+            "roughnessFactor": material.roughness,
+        },
+    });
+    if material.alpha_cutoff > 0.0 {
+        value["alphaCutoff"] = json!(material.alpha_cutoff);
+    }
+    if let Some(index) = material.base_color_texture {
+        value["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": index });
+    }
+    if let Some(index) = material.metallic_roughness_texture {
+        value["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({ "index": index });
+    }
+    if let Some(index) = material.normal_texture {
+        value["normalTexture"] = json!({ "index": index, "scale": material.normal_scale });
+    }
+    if let Some(index) = material.emission_texture {
+        value["emissiveTexture"] = json!({ "index": index });
+    }
+    value
+}
+
+fn light(light: &Light) -> Value {
+    // The colour must not exceed 1; the rest is intensity.
+    let intensity = light.color.max_element().max(f32::MIN_POSITIVE);
+    let mut value = json!({
+        "name": light.name, "color": (light.color / intensity).to_array(), "intensity": intensity,
+        "type": match light.kind {
+            LightKind::Directional => "directional",
+            LightKind::Point => "point",
+            LightKind::Spot { .. } => "spot",
+        },
+    });
+    if let LightKind::Spot { inner, outer } = light.kind {
+        value["spot"] = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
+    }
+    value
+}
+
+fn camera_node(name: &str, index: usize, camera: &Camera) -> Value {
+    let back = (camera.eye - camera.target).normalize_or(Vec3::Z);
+    let right = camera
+        .up
+        .cross(back)
+        .normalize_or(back.any_orthonormal_vector());
+    let turn = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
+    json!({ "name": name, "camera": index, "translation": camera.eye.to_array(), "rotation": turn.to_array() })
+}
+
+fn lens(name: &str, camera: &Camera) -> Value {
+    json!({ "name": name, "type": "perspective", "perspective": {
+        "yfov": camera.fov_y.to_radians(), "znear": camera.near, "zfar": camera.far,
+    } })
+}

@@ -1,0 +1,78 @@
+//! Writing scenes for other programs. Opening an exported file gives the same triangles and materials.
+
+mod gltf;
+mod images;
+mod obj;
+
+use std::path::Path;
+
+use glam::Mat4;
+
+use super::{Animation, Scene, SceneError};
+use crate::files;
+
+impl Scene {
+    /// Writes an .obj (with .mtl and PNG textures beside it), .glb, or .gltf (with .bin).
+    ///
+    /// OBJ holds the pose at time 0 and no lights or cameras. glTF holds everything but the sky and whether a
+    /// light casts shadows. Each file appears whole or not at all.
+    pub fn export(&self, path: &Path) -> Result<(), SceneError> {
+        let extension = path
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_lowercase();
+        match extension.as_str() {
+            "obj" => obj::write(self, path),
+            "glb" | "gltf" => gltf::write(self, path, extension == "glb"),
+            _ => Err(SceneError::ExportFormat { path: path.into() }),
+        }
+    }
+}
+
+fn write_file(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
+    files::write_whole(path, bytes).map_err(|error| SceneError::Write {
+        path: path.into(),
+        message: error.to_string(),
+    })
+}
+
+/// The pose that a motion starts with.
+fn start(animation: Option<&Animation>) -> Mat4 {
+    animation.map_or(Mat4::IDENTITY, |animation| animation.at(0.0))
+}
+
+/// Names made unique by numbering the later ones.
+fn unique_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut taken = std::collections::HashSet::new();
+    let mut unique = Vec::new();
+    for name in names {
+        let name: String = name
+            .trim()
+            .chars()
+            .map(|c| if c.is_control() { ' ' } else { c })
+            .collect();
+        let base = if name.is_empty() {
+            "unnamed".to_owned()
+        } else {
+            name
+        };
+        let mut candidate = base.clone();
+        let mut number = 2;
+        while !taken.insert(candidate.clone()) {
+            candidate = format!("{base} {number}");
+            number += 1;
+        }
+        unique.push(candidate);
+    }
+    unique
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn names_become_unique() {
+        let names = super::unique_names(["a", "a", "", "a 2"].into_iter());
+        assert_eq!(names, ["a", "a 2", "unnamed", "a 2 2"]);
+    }
+}

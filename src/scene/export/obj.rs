@@ -1,0 +1,147 @@
+//! Wavefront OBJ, with the keys of the metallic-roughness extension in the MTL.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use glam::{Mat3, Mat4, Vec3};
+
+use super::{images, start, unique_names, write_file};
+use crate::scene::{Instance, Material, Mesh, Scene, SceneError};
+
+/// Writes `path`, the .mtl beside it and PNG files into a folder `<stem>_textures`.
+pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
+    let materials = unique_names(
+        scene
+            .materials
+            .iter()
+            .map(|material| material.name.as_str()),
+    );
+    let stem = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let mut mtl = String::new();
+    for (material, name) in scene.materials.iter().zip(&materials) {
+        write_material(&mut mtl, scene, material, name, path, &stem)?;
+    }
+    write_file(&path.with_extension("mtl"), mtl.as_bytes())?;
+
+    let mut obj = format!("mtllib {stem}.mtl\n");
+    let names = unique_names(
+        scene
+            .instances
+            .iter()
+            .map(|instance| instance.name.as_str()),
+    );
+    let mut first_vertex = 1;
+    for (instance, name) in scene.instances.iter().zip(&names) {
+        let mesh = &scene.meshes[instance.mesh as usize];
+        // Writing into a string cannot fail.
+        let _ = write_instance(&mut obj, instance, mesh, name, &materials, first_vertex);
+        first_vertex += mesh.vertices.len();
+    }
+    write_file(path, obj.as_bytes())
+}
+
+fn write_instance(
+    out: &mut String,
+    instance: &Instance,
+    mesh: &Mesh,
+    name: &str,
+    materials: &[String],
+    first_vertex: usize,
+) -> std::fmt::Result {
+    let world: Mat4 = start(instance.animation.as_ref()) * instance.transform;
+    let axes = Mat3::from_mat4(world);
+    let normals = axes.inverse().transpose();
+    writeln!(out, "o {name}")?;
+    for vertex in &mesh.vertices {
+        let p = world.transform_point3(Vec3::from_array(vertex.position));
+        writeln!(out, "v {} {} {}", p.x, p.y, p.z)?;
+    }
+    for vertex in &mesh.vertices {
+        writeln!(out, "vt {} {}", vertex.uv[0], 1.0 - vertex.uv[1])?;
+    }
+    for vertex in &mesh.vertices {
+        let n = (normals * Vec3::from_array(vertex.normal)).normalize_or(Vec3::Y);
+        writeln!(out, "vn {} {} {}", n.x, n.y, n.z)?;
+    }
+    // A mirroring transform turns faces inside out; the file has no transform, so its corners turn instead.
+    let order = if axes.determinant() < 0.0 {
+        [0, 2, 1]
+    } else {
+        [0, 1, 2]
+    };
+    for part in &mesh.parts {
+        writeln!(out, "usemtl {}", materials[part.material as usize])?;
+        let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
+        for triangle in mesh.indices[range].as_chunks::<3>().0 {
+            let [a, b, c] = order.map(|k| triangle[k] as usize + first_vertex);
+            writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?;
+        }
+    }
+    Ok(())
+}
+
+fn write_material(
+    out: &mut String,
+    scene: &Scene,
+    material: &Material,
+    name: &str,
+    path: &Path,
+    stem: &str,
+) -> Result<(), SceneError> {
+    let texture = |index: Option<u32>| index.map(|i| (i, &scene.textures[i as usize]));
+    let folder = format!("{stem}_textures");
+    let save = |file: String, png: Vec<u8>| -> Result<String, SceneError> {
+        let entry = format!("{folder}/{file}");
+        write_file(&path.with_file_name(&folder).join(file), &png)?;
+        Ok(entry)
+    };
+    let mut maps = Vec::new();
+    if let Some((i, image)) = texture(material.base_color_texture) {
+        let entry = save(format!("{i}_color.png"), images::rgba_png(image, path)?)?;
+        if material.alpha_cutoff > 0.0 {
+            maps.push(format!("map_d {entry}"));
+        }
+        maps.push(format!("map_Kd {entry}"));
+    }
+    if let Some((i, image)) = texture(material.metallic_roughness_texture) {
+        let roughness = save(
+            format!("{i}_roughness.png"),
+            images::grey_png(image, 1, path)?,
+        )?;
+        let metallic = save(
+            format!("{i}_metallic.png"),
+            images::grey_png(image, 2, path)?,
+        )?;
+        maps.push(format!("map_Pr {roughness}\nmap_Pm {metallic}"));
+    }
+    if let Some((i, image)) = texture(material.normal_texture) {
+        let entry = save(format!("{i}_normal.png"), images::rgba_png(image, path)?)?;
+        maps.push(format!(
+            "norm {entry}\nnormal_scale {}",
+            material.normal_scale
+        ));
+    }
+    if let Some((i, image)) = texture(material.emission_texture) {
+        let entry = save(format!("{i}_emission.png"), images::rgba_png(image, path)?)?;
+        maps.push(format!("map_Ke {entry}"));
+    }
+    let ([r, g, b, a], e) = (material.base_color.to_array(), material.emission);
+    // `two_sided` and `alpha_cutoff` are ours; other programs skip keys that they do not know.
+    let text = format!(
+        "newmtl {name}\nKd {r} {g} {b}\nd {a}\nKs 0 0 0\nPr {}\nPm {}\nKe {} {} {}\ntwo_sided {}\nalpha_cutoff {}\n{}\n\n",
+        material.roughness,
+        material.metallic,
+        e.x,
+        e.y,
+        e.z,
+        u8::from(material.two_sided),
+        material.alpha_cutoff,
+        maps.join("\n")
+    );
+    out.push_str(&text);
+    Ok(())
+}

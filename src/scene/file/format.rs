@@ -1,0 +1,353 @@
+//! The shape of a scene file. Values are checked while they are read, so that errors have a line and a column.
+
+use glam::{Mat4, Quat, Vec3};
+use indexmap::IndexMap;
+use serde::Deserialize;
+
+use crate::scene::{Animation, Camera, Keyframe, Light, LightKind, builtin};
+
+/// A whole scene file.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct SceneFile {
+    pub name: Option<String>,
+    pub models: Vec<ModelEntry>,
+    pub lights: Vec<LightEntry>,
+    /// Radiance; without it, that of the first model.
+    pub sky: Option<Vec3>,
+    pub cameras: IndexMap<String, CameraEntry>,
+}
+
+/// A model to load and where to put it.
+#[derive(Debug, Deserialize)]
+#[serde(try_from = "ModelFields")]
+pub(super) struct ModelEntry {
+    pub file: Option<String>,
+    pub builtin: Option<String>,
+    pub transform: Mat4,
+    pub animation: Option<Animation>,
+    pub lights: bool,
+    pub cameras: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ModelFields {
+    #[serde(default)]
+    file: Option<String>,
+    #[serde(default)]
+    builtin: Option<String>,
+    #[serde(default)]
+    transform: TransformFields,
+    #[serde(default)]
+    animation: Option<AnimationFields>,
+    /// Whether the model's own lights come along.
+    #[serde(default = "yes")]
+    lights: bool,
+    /// Whether the model's own cameras come along.
+    #[serde(default = "yes")]
+    cameras: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Scaled, then turned about x, y and z, then moved.
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct TransformFields {
+    translate: Vec3,
+    rotate_deg: Vec3,
+    scale: Vec3,
+}
+
+impl Default for TransformFields {
+    fn default() -> Self {
+        TransformFields {
+            translate: Vec3::ZERO,
+            rotate_deg: Vec3::ZERO,
+            scale: Vec3::ONE,
+        }
+    }
+}
+
+/// Motion of the placed model: each keyframe turns it about the world's origin, then moves it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AnimationFields {
+    keyframes: Vec<KeyframeFields>,
+    #[serde(default)]
+    repeat: bool,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KeyframeFields {
+    /// Seconds.
+    time: f32,
+    #[serde(default)]
+    translate: Vec3,
+    #[serde(default)]
+    rotate_deg: Vec3,
+}
+
+impl TryFrom<ModelFields> for ModelEntry {
+    type Error = String;
+
+    fn try_from(fields: ModelFields) -> Result<Self, String> {
+        match (&fields.file, &fields.builtin) {
+            (Some(_), None) => {}
+            (None, Some(name)) if builtin::find(name).is_some() => {}
+            (None, Some(name)) => {
+                return Err(format!("unknown builtin '{name}': {}", builtin::hint(name)));
+            }
+            _ => return Err("a model needs either a file or a builtin".into()),
+        }
+        let TransformFields {
+            translate,
+            rotate_deg,
+            scale,
+        } = fields.transform;
+        if !translate.is_finite()
+            || !rotate_deg.is_finite()
+            || !scale.is_finite()
+            || scale.min_element() <= 0.0
+        {
+            return Err("a transform's numbers must be finite and its scale above 0".into());
+        }
+        Ok(ModelEntry {
+            transform: Mat4::from_scale_rotation_translation(
+                scale,
+                rotation(rotate_deg),
+                translate,
+            ),
+            animation: fields.animation.map(animation).transpose()?,
+            file: fields.file,
+            builtin: fields.builtin,
+            lights: fields.lights,
+            cameras: fields.cameras,
+        })
+    }
+}
+
+fn rotation(degrees: Vec3) -> Quat {
+    let [x, y, z] = degrees.to_array().map(f32::to_radians);
+    Quat::from_rotation_z(z) * Quat::from_rotation_y(y) * Quat::from_rotation_x(x)
+}
+
+fn animation(fields: AnimationFields) -> Result<Animation, String> {
+    let keys = &fields.keyframes;
+    let finite = |key: &KeyframeFields| {
+        key.time.is_finite()
+            && key.translate.is_finite()
+            && key.rotate_deg.abs().max_element() < 36_000.0
+    };
+    if keys.is_empty()
+        || !keys.iter().all(finite)
+        || !keys.is_sorted_by(|a, b| a.time < b.time)
+        || keys[0].time < 0.0
+    {
+        return Err(
+            "an animation needs keyframes with finite numbers and times that rise from 0 or more"
+                .into(),
+        );
+    }
+    let mut keyframes = Vec::new();
+    for (i, key) in keys.iter().enumerate() {
+        let before = if i == 0 { key } else { &keys[i - 1] };
+        // A quaternion forgets whole turns: steps of at most 90 degrees keep them.
+        let turn = (key.rotate_deg - before.rotate_deg).abs().max_element();
+        let steps = (turn / 90.0).ceil().max(1.0) as u32;
+        for step in (1..=steps).skip(if i == 0 { steps as usize - 1 } else { 0 }) {
+            let s = step as f32 / steps as f32;
+            keyframes.push(Keyframe {
+                time: before.time + (key.time - before.time) * s,
+                translation: before.translate.lerp(key.translate, s),
+                rotation: rotation(before.rotate_deg.lerp(key.rotate_deg, s)),
+            });
+        }
+    }
+    Ok(Animation {
+        keyframes,
+        repeat: fields.repeat,
+    })
+}
+
+/// A light.
+#[derive(Debug, Deserialize)]
+#[serde(try_from = "LightFields")]
+pub(super) struct LightEntry(Light);
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+enum LightFields {
+    Directional {
+        #[serde(default)]
+        name: String,
+        color: Vec3,
+        direction: Vec3,
+        shadow: bool,
+    },
+    Point {
+        #[serde(default)]
+        name: String,
+        color: Vec3,
+        position: Vec3,
+        shadow: bool,
+    },
+    Spot {
+        #[serde(default)]
+        name: String,
+        color: Vec3,
+        position: Vec3,
+        direction: Vec3,
+        inner_deg: f32,
+        outer_deg: f32,
+        shadow: bool,
+    },
+}
+
+impl TryFrom<LightFields> for LightEntry {
+    type Error = String;
+
+    fn try_from(fields: LightFields) -> Result<Self, String> {
+        let (name, kind, color, position, direction, shadow) = match fields {
+            LightFields::Directional {
+                name,
+                color,
+                direction,
+                shadow,
+            } => (
+                name,
+                LightKind::Directional,
+                color,
+                Vec3::ZERO,
+                direction,
+                shadow,
+            ),
+            LightFields::Point {
+                name,
+                color,
+                position,
+                shadow,
+            } => (name, LightKind::Point, color, position, Vec3::NEG_Y, shadow),
+            LightFields::Spot {
+                name,
+                color,
+                position,
+                direction,
+                inner_deg,
+                outer_deg,
+                shadow,
+            } => {
+                if !(inner_deg >= 0.0 && inner_deg < outer_deg && outer_deg <= 89.0) {
+                    return Err(
+                        "a spot's half-angles must obey 0 <= inner_deg < outer_deg <= 89".into(),
+                    );
+                }
+                let kind = LightKind::Spot {
+                    inner: inner_deg.to_radians(),
+                    outer: outer_deg.to_radians(),
+                };
+                (name, kind, color, position, direction, shadow)
+            }
+        };
+        if !color.is_finite() || color.min_element() < 0.0 || !position.is_finite() {
+            return Err(
+                "a light's color must be finite and not negative, its position finite".into(),
+            );
+        }
+        let direction = direction
+            .try_normalize()
+            .ok_or("a light's direction must be finite and not zero")?;
+        Ok(LightEntry(Light {
+            name,
+            kind,
+            color,
+            position,
+            direction,
+            shadow,
+        }))
+    }
+}
+
+impl LightEntry {
+    /// The light, under a name of its own.
+    pub fn to_light(&self, index: usize) -> Light {
+        let mut light = self.0.clone();
+        if light.name.is_empty() {
+            light.name = format!("light {index}");
+        }
+        light
+    }
+}
+
+/// A view.
+#[derive(Debug, Deserialize)]
+#[serde(try_from = "CameraFields")]
+pub(super) struct CameraEntry(CameraFields);
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CameraFields {
+    eye: Vec3,
+    target: Vec3,
+    #[serde(default = "y_up")]
+    up: Vec3,
+    /// Degrees.
+    fov_y: f32,
+    #[serde(default)]
+    near: Option<f32>,
+    #[serde(default)]
+    far: Option<f32>,
+}
+
+fn y_up() -> Vec3 {
+    Vec3::Y
+}
+
+impl TryFrom<CameraFields> for CameraEntry {
+    type Error = String;
+
+    fn try_from(camera: CameraFields) -> Result<Self, String> {
+        let forward = camera.target - camera.eye;
+        if !forward.cross(camera.up).is_finite() || forward.cross(camera.up).length_squared() == 0.0
+        {
+            return Err("a camera must look somewhere other than along its up vector".into());
+        }
+        if !(camera.fov_y >= 1.0 && camera.fov_y <= 170.0) {
+            return Err("a camera's fov_y must be between 1 and 170 degrees".into());
+        }
+        let near = camera.near.unwrap_or(f32::MIN_POSITIVE);
+        if !(near > 0.0 && camera.far.unwrap_or(f32::MAX) > near) {
+            return Err("a camera's near must be above 0 and its far above near".into());
+        }
+        Ok(CameraEntry(camera))
+    }
+}
+
+impl CameraEntry {
+    /// The camera, with given clip planes where it has none of its own.
+    pub fn to_camera(&self, (near, far): (f32, f32)) -> Camera {
+        let CameraFields {
+            eye,
+            target,
+            up,
+            fov_y,
+            ..
+        } = self.0;
+        let near = self
+            .0
+            .near
+            .unwrap_or(near.min(self.0.far.unwrap_or(far) * 0.5));
+        Camera {
+            eye,
+            target,
+            up: up.normalize_or(Vec3::Y),
+            fov_y,
+            near,
+            far: self.0.far.unwrap_or(far.max(near * 2.0)),
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Scene files (RON): models, lights, sky and cameras put together.
+
+mod compose;
+mod format;
+
+use std::path::{Path, PathBuf};
+
+use super::{Scene, SceneError, builtin, defaults, open};
+use format::{ModelEntry, SceneFile};
+
+/// Opens a scene file and everything that it names.
+pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
+    let text = std::fs::read_to_string(path).map_err(|source| SceneError::Read {
+        path: path.into(),
+        hint: "Check the path; scene files are UTF-8 text".into(),
+        source,
+    })?;
+    let file = parse(&text, path)?;
+    let name = path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let mut scene = Scene {
+        name: file.name.clone().unwrap_or(name),
+        ..Scene::default()
+    };
+    let mut sky = None;
+    for (i, entry) in file.models.iter().enumerate() {
+        let model = load_model(entry, path, &text, &|what, done| {
+            progress(what, (i as f32 + done) / file.models.len() as f32);
+        })?;
+        sky = sky.or(Some(model.sky));
+        compose::add(&mut scene, model, entry);
+    }
+    scene.sky = file.sky.or(sky).unwrap_or(defaults::SKY);
+    for light in &file.lights {
+        scene.lights.push(light.to_light(scene.lights.len()));
+    }
+    let (low, high) = scene.bounds();
+    let clip_planes = defaults::clip_planes((high - low).length());
+    for (name, camera) in file.cameras.into_iter().rev() {
+        scene
+            .cameras
+            .shift_insert(0, name, camera.to_camera(clip_planes));
+    }
+    if scene.cameras.is_empty() {
+        let camera = defaults::camera(&scene);
+        scene.cameras.insert("default".into(), camera);
+    }
+    Ok(scene)
+}
+
+fn load_model(
+    entry: &ModelEntry,
+    scene_file: &Path,
+    text: &str,
+    progress: &dyn Fn(&str, f32),
+) -> Result<Scene, SceneError> {
+    if let Some(build) = entry.builtin.as_deref().and_then(builtin::find) {
+        return Ok(build());
+    }
+    let file = entry.file.as_deref().unwrap_or_default();
+    let candidates = places(file, scene_file);
+    let Some(found) = candidates.iter().find(|candidate| candidate.is_file()) else {
+        let (line, column) = position_of(text, file);
+        let tried: Vec<String> = candidates.iter().map(|c| c.display().to_string()).collect();
+        let message = format!(
+            "model file '{file}' is in none of: {}. Correct the path, or set CONELAB_SCENES to the folder that holds it",
+            tried.join(", ")
+        );
+        return Err(SceneError::SceneFile {
+            path: scene_file.into(),
+            line,
+            column,
+            message,
+        });
+    };
+    let mut model = open::load_model(found, progress)?;
+    model.sky = defaults::SKY;
+    Ok(model)
+}
+
+/// Where a model may be: beside the scene file, then in each folder of CONELAB_SCENES.
+fn places(file: &str, scene_file: &Path) -> Vec<PathBuf> {
+    let mut places = vec![scene_file.parent().unwrap_or(Path::new("")).join(file)];
+    let folders = std::env::var("CONELAB_SCENES").unwrap_or_default();
+    places.extend(
+        folders
+            .split(':')
+            .filter(|folder| !folder.is_empty())
+            .map(|folder| Path::new(folder).join(file)),
+    );
+    places
+}
+
+/// Line and column of a quoted string, both from 1; (1, 1) when it is not there as it is.
+fn position_of(text: &str, string: &str) -> (usize, usize) {
+    let Some(offset) = text.find(&format!("\"{string}\"")) else {
+        return (1, 1);
+    };
+    let before = &text[..offset];
+    let column = before
+        .rsplit('\n')
+        .next()
+        .unwrap_or_default()
+        .chars()
+        .count()
+        + 1;
+    (before.matches('\n').count() + 1, column)
+}
+
+fn parse(text: &str, path: &Path) -> Result<SceneFile, SceneError> {
+    let options =
+        ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    options
+        .from_str(text)
+        .map_err(|error| SceneError::SceneFile {
+            path: path.into(),
+            line: error.span.start.line,
+            column: error.span.start.col,
+            message: describe(&error.code),
+        })
+}
+
+/// The parser's message, with the nearest known name for an unknown one.
+fn describe(error: &ron::Error) -> String {
+    let (kind, found, expected) = match error {
+        ron::Error::NoSuchStructField {
+            found, expected, ..
+        } => ("field", found, *expected),
+        ron::Error::NoSuchEnumVariant {
+            found, expected, ..
+        } => ("kind", found, *expected),
+        other => return other.to_string(),
+    };
+    let score =
+        |known: &&&str| strsim::damerau_levenshtein(&known.to_lowercase(), &found.to_lowercase());
+    let hint = match expected.iter().min_by_key(score) {
+        Some(nearest) if score(&nearest) <= 3 => format!("did you mean '{nearest}'? "),
+        _ => String::new(),
+    };
+    format!(
+        "unknown {kind} '{found}': {hint}Known here: {}",
+        expected.join(", ")
+    )
+}

@@ -1,0 +1,202 @@
+//! From triangles as a file gives them to meshes that can be relied on: finite, with area, normals and tangents.
+
+mod normals;
+mod tangents;
+
+use std::collections::HashMap;
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::{Material, Mesh, Vertex};
+
+/// A mesh as read, before repair.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RawMesh {
+    pub mesh: Mesh,
+    pub has_normals: bool,
+    pub has_tangents: bool,
+}
+
+/// Triangles that [`prepare_all`] took out.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Dropped {
+    pub not_finite: usize,
+    pub no_area: usize,
+}
+
+impl Dropped {
+    /// One sentence for the scene's warnings, or none when nothing was dropped.
+    pub fn warning(&self, file: &str) -> Option<String> {
+        if self.not_finite + self.no_area == 0 {
+            return None;
+        }
+        Some(format!(
+            "{file}: dropped {} triangles with NaN or infinite vertices and {} triangles without area",
+            self.not_finite, self.no_area
+        ))
+    }
+}
+
+/// Repairs meshes in parallel. Fails on an index outside of its mesh.
+pub(super) fn prepare_all(
+    raw: Vec<RawMesh>,
+    materials: &[Material],
+) -> Result<(Vec<Mesh>, Dropped), String> {
+    let prepared: Result<Vec<_>, String> = raw
+        .into_par_iter()
+        .map(|raw| prepare(raw, materials))
+        .collect();
+    let mut total = Dropped::default();
+    let mut meshes = Vec::new();
+    for (mesh, dropped) in prepared? {
+        total.not_finite += dropped.not_finite;
+        total.no_area += dropped.no_area;
+        meshes.push(mesh);
+    }
+    Ok((meshes, total))
+}
+
+fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Dropped), String> {
+    let RawMesh {
+        mut mesh,
+        has_normals,
+        has_tangents,
+    } = raw;
+    check_indices(&mesh, materials.len())?;
+    let dropped = drop_bad_triangles(&mut mesh);
+    drop_unused_vertices(&mut mesh);
+    clear_bad_attributes(&mut mesh);
+    if has_normals {
+        normals::repair(&mut mesh);
+    } else {
+        normals::generate(&mut mesh);
+    }
+    let normal_mapped = mesh
+        .parts
+        .iter()
+        .any(|p| materials[p.material as usize].normal_texture.is_some());
+    if has_tangents {
+        tangents::repair(&mut mesh);
+    } else if normal_mapped {
+        tangents::generate(&mut mesh);
+    } else {
+        tangents::any(&mut mesh);
+    }
+    Ok((mesh, dropped))
+}
+
+fn check_indices(mesh: &Mesh, materials: usize) -> Result<(), String> {
+    let count = mesh.vertices.len();
+    if let Some(bad) = mesh.indices.iter().find(|&&i| i as usize >= count) {
+        return Err(format!(
+            "mesh '{}' has index {bad} but only {count} vertices. The file is damaged; export it again",
+            mesh.name
+        ));
+    }
+    for part in &mesh.parts {
+        if part.material as usize >= materials {
+            return Err(format!(
+                "mesh '{}' uses material {} of {materials}. The file is damaged; export it again",
+                mesh.name, part.material
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Rewrites indices and parts without the triangles that have no place or no area.
+fn drop_bad_triangles(mesh: &mut Mesh) -> Dropped {
+    let mut dropped = Dropped::default();
+    let mut kept = Vec::with_capacity(mesh.indices.len());
+    for part in &mut mesh.parts {
+        let first = kept.len();
+        let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
+        for triangle in mesh.indices[range].as_chunks::<3>().0 {
+            let corner = triangle
+                .map(|i| DVec3::from_array(mesh.vertices[i as usize].position.map(f64::from)));
+            if corner.iter().any(|p| !p.is_finite()) {
+                dropped.not_finite += 1;
+            } else if !has_area(corner) {
+                dropped.no_area += 1;
+            } else {
+                kept.extend_from_slice(triangle);
+            }
+        }
+        part.first_index = first as u32;
+        part.index_count = (kept.len() - first) as u32;
+    }
+    mesh.indices = kept;
+    mesh.parts.retain(|part| part.index_count > 0);
+    dropped
+}
+
+/// False for points and lines: the height is below 1e-9 of the longest edge (f64, so thin needles survive).
+fn has_area(corner: [DVec3; 3]) -> bool {
+    let (ab, ac, bc) = (
+        corner[1] - corner[0],
+        corner[2] - corner[0],
+        corner[2] - corner[1],
+    );
+    let longest = ab
+        .length_squared()
+        .max(ac.length_squared())
+        .max(bc.length_squared());
+    ab.cross(ac).length() > 1e-9 * longest
+}
+
+/// Removes vertices that no triangle uses, so that bounds and uploads hold only what is seen.
+fn drop_unused_vertices(mesh: &mut Mesh) {
+    let mut used = vec![false; mesh.vertices.len()];
+    for &i in &mesh.indices {
+        used[i as usize] = true;
+    }
+    if used.iter().all(|&u| u) {
+        return;
+    }
+    let mut new_index = vec![0u32; used.len()];
+    let mut kept = Vec::new();
+    for (i, vertex) in mesh.vertices.iter().enumerate().filter(|(i, _)| used[*i]) {
+        new_index[i] = kept.len() as u32;
+        kept.push(*vertex);
+    }
+    mesh.vertices = kept;
+    for i in &mut mesh.indices {
+        *i = new_index[*i as usize];
+    }
+}
+
+fn clear_bad_attributes(mesh: &mut Mesh) {
+    for vertex in &mut mesh.vertices {
+        if vertex.uv.iter().any(|c| !c.is_finite()) {
+            vertex.uv = [0.0; 2];
+        }
+        if vertex.normal.iter().any(|c| !c.is_finite()) {
+            vertex.normal = [0.0; 3];
+        }
+        if vertex.tangent.iter().any(|c| !c.is_finite()) {
+            vertex.tangent = [0.0; 4];
+        }
+    }
+}
+
+/// Shared vertices from one vertex per corner; equal means equal bits.
+fn weld(corners: &[Vertex]) -> (Vec<Vertex>, Vec<u32>) {
+    let mut seen: HashMap<[u8; 48], u32> = HashMap::with_capacity(corners.len() / 3);
+    let mut vertices = Vec::new();
+    let indices = corners.iter().map(|corner| {
+        let bytes: [u8; 48] = bytemuck::cast(*corner);
+        *seen.entry(bytes).or_insert_with(|| {
+            vertices.push(*corner);
+            vertices.len() as u32 - 1
+        })
+    });
+    let indices = indices.collect();
+    (vertices, indices)
+}
+
+/// Unit normal of a triangle with area, by its winding.
+fn face_normal(corner: [[f32; 3]; 3]) -> Vec3 {
+    let [a, b, c] = corner.map(|p| DVec3::from_array(p.map(f64::from)));
+    (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
+}

@@ -1,0 +1,72 @@
+//! Tangents: MikkTSpace where a normal map needs them, otherwise any that is orthogonal to the normal.
+
+use glam::Vec3;
+
+use super::weld;
+use crate::scene::{Mesh, Vertex};
+
+/// MikkTSpace tangents; vertices whose corners disagree are split.
+pub(super) fn generate(mesh: &mut Mesh) {
+    let corners = mesh
+        .indices
+        .iter()
+        .map(|&i| mesh.vertices[i as usize])
+        .collect();
+    let mut soup = Soup { corners };
+    if !soup.corners.is_empty() && mikktspace::generate_tangents(&mut soup) {
+        (mesh.vertices, mesh.indices) = weld(&soup.corners);
+    }
+    repair(mesh);
+}
+
+/// Makes given tangents unit length and signed; replaces those of no length.
+pub(super) fn repair(mesh: &mut Mesh) {
+    for vertex in &mut mesh.vertices {
+        let [x, y, z, w] = vertex.tangent;
+        let tangent = Vec3::new(x, y, z).normalize_or_zero();
+        if tangent == Vec3::ZERO {
+            vertex.tangent = any_tangent(vertex.normal);
+        } else {
+            vertex.tangent = tangent.extend(if w < 0.0 { -1.0 } else { 1.0 }).to_array();
+        }
+    }
+}
+
+/// Any orthonormal tangent.
+pub(super) fn any(mesh: &mut Mesh) {
+    for vertex in &mut mesh.vertices {
+        vertex.tangent = any_tangent(vertex.normal);
+    }
+}
+
+fn any_tangent(normal: [f32; 3]) -> [f32; 4] {
+    Vec3::from_array(normal)
+        .any_orthonormal_vector()
+        .extend(1.0)
+        .to_array()
+}
+
+struct Soup {
+    corners: Vec<Vertex>,
+}
+
+impl mikktspace::Geometry for Soup {
+    fn num_faces(&self) -> usize {
+        self.corners.len() / 3
+    }
+    fn num_vertices_of_face(&self, _face: usize) -> usize {
+        3
+    }
+    fn position(&self, face: usize, vertex: usize) -> [f32; 3] {
+        self.corners[face * 3 + vertex].position
+    }
+    fn normal(&self, face: usize, vertex: usize) -> [f32; 3] {
+        self.corners[face * 3 + vertex].normal
+    }
+    fn tex_coord(&self, face: usize, vertex: usize) -> [f32; 2] {
+        self.corners[face * 3 + vertex].uv
+    }
+    fn set_tangent_encoded(&mut self, tangent: [f32; 4], face: usize, vertex: usize) {
+        self.corners[face * 3 + vertex].tangent = tangent;
+    }
+}

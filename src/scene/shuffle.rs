@@ -1,0 +1,32 @@
+//! Triangles in another order, to show that a result does not depend on it.
+
+use super::Scene;
+
+impl Scene {
+    /// A copy with the triangles inside each part in random order; a triangle's own vertices keep theirs.
+    pub fn shuffled(&self, seed: u64) -> Scene {
+        let mut scene = self.clone();
+        let mut state = seed;
+        for mesh in &mut scene.meshes {
+            for part in &mesh.parts {
+                let range =
+                    part.first_index as usize..(part.first_index + part.index_count) as usize;
+                let triangles = mesh.indices[range].as_chunks_mut::<3>().0;
+                // Fisher and Yates, from the end.
+                for i in (1..triangles.len()).rev() {
+                    triangles.swap(i, (splitmix(&mut state) % (i as u64 + 1)) as usize);
+                }
+            }
+        }
+        scene
+    }
+}
+
+/// Next number of the SplitMix64 sequence (Steele et al. 2014): the same on every machine.
+fn splitmix(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}

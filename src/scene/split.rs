@@ -1,0 +1,195 @@
+//! Splitting triangles until none is longer than a given edge, for methods that sample triangles by vertices.
+
+use std::collections::HashMap;
+
+use glam::{Mat3, Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::{Mesh, Part, Scene, Vertex};
+
+/// Splitting stops before a scene has more triangles than this.
+pub const MAX_TRIANGLES: usize = 64 << 20;
+
+impl Scene {
+    /// A copy in which no triangle has an edge longer than `max_edge` metres in the world.
+    ///
+    /// Whether an edge is split depends on its ends alone, and its midpoint is the same from both sides: triangles
+    /// that share an edge stay without cracks, also across seams of normals and texture coordinates. A mesh placed
+    /// more than once is split for its largest placement. Meshes that would take the scene past [`MAX_TRIANGLES`],
+    /// and everything when `max_edge` is not above 0, stay as they are; a warning says so.
+    pub fn split_triangles(&self, max_edge: f32) -> Scene {
+        let mut scene = self.clone();
+        if !(max_edge > 0.0) {
+            scene.warnings.push(format!(
+                "{}: triangles not split, {max_edge} m is no edge length",
+                self.name
+            ));
+            return scene;
+        }
+        let placements = |mesh: usize| -> Vec<Mat3> {
+            let of_mesh = self
+                .instances
+                .iter()
+                .filter(|instance| instance.mesh as usize == mesh);
+            of_mesh
+                .map(|instance| Mat3::from_mat4(instance.transform))
+                .collect()
+        };
+        let mut budget = MAX_TRIANGLES.saturating_sub(self.triangle_count());
+        for i in 0..scene.meshes.len() {
+            let axes = placements(i);
+            let too_long = |a: Vec3, b: Vec3| {
+                // In f64 and from the difference, so that both directions of an edge agree.
+                let edge = b - a;
+                axes.iter()
+                    .any(|axes| (*axes * edge).as_dvec3().length() > f64::from(max_edge))
+            };
+            let before = scene.meshes[i].triangle_count();
+            let limit = before + budget / axes.len().max(1);
+            match split_mesh(&scene.meshes[i], &too_long, limit) {
+                Some(split) => {
+                    budget -= (split.triangle_count() - before) * axes.len();
+                    scene.meshes[i] = split;
+                }
+                None => scene.warnings.push(format!(
+                    "mesh '{}' not split to {max_edge} m: the scene would pass {MAX_TRIANGLES} triangles. \
+                     Use a longer edge",
+                    scene.meshes[i].name
+                )),
+            }
+        }
+        scene
+    }
+}
+
+/// The mesh split round by round, or none when it would have more triangles than the limit.
+fn split_mesh(
+    mesh: &Mesh,
+    too_long: &(impl Fn(Vec3, Vec3) -> bool + Sync),
+    limit: usize,
+) -> Option<Mesh> {
+    let mut mesh = mesh.clone();
+    loop {
+        let marks: Vec<[bool; 3]> = mesh
+            .indices
+            .as_chunks::<3>()
+            .0
+            .par_iter()
+            .map(|t| long_edges(&mesh, t, too_long))
+            .collect();
+        let added: usize = marks.iter().flatten().filter(|&&m| m).count();
+        if added == 0 {
+            return Some(mesh);
+        }
+        if marks.len() + added > limit {
+            return None;
+        }
+        mesh = split_once(&mesh, &marks);
+    }
+}
+
+/// Which of the edges 0-1, 1-2 and 2-0 are too long.
+fn long_edges(
+    mesh: &Mesh,
+    triangle: &[u32; 3],
+    too_long: impl Fn(Vec3, Vec3) -> bool,
+) -> [bool; 3] {
+    let p = triangle.map(|i| Vec3::from_array(mesh.vertices[i as usize].position));
+    [
+        too_long(p[0], p[1]),
+        too_long(p[1], p[2]),
+        too_long(p[2], p[0]),
+    ]
+}
+
+fn split_once(mesh: &Mesh, marks: &[[bool; 3]]) -> Mesh {
+    let mut split = Mesh {
+        name: mesh.name.clone(),
+        vertices: mesh.vertices.clone(),
+        ..Mesh::default()
+    };
+    let mut midpoints: HashMap<(u32, u32), u32> = HashMap::new();
+    for part in &mesh.parts {
+        let first_index = split.indices.len() as u32;
+        let triangles =
+            part.first_index as usize / 3..(part.first_index + part.index_count) as usize / 3;
+        for i in triangles {
+            let triangle = [0, 1, 2].map(|k| mesh.indices[3 * i + k]);
+            split_triangle(&mut split, &mut midpoints, triangle, marks[i]);
+        }
+        split.parts.push(Part {
+            first_index,
+            index_count: split.indices.len() as u32 - first_index,
+            ..*part
+        });
+    }
+    split
+}
+
+/// Replaces a triangle by 1 to 4 with the same winding, by which of its edges are marked.
+fn split_triangle(
+    mesh: &mut Mesh,
+    midpoints: &mut HashMap<(u32, u32), u32>,
+    t: [u32; 3],
+    marks: [bool; 3],
+) {
+    let count = marks.iter().filter(|&&m| m).count();
+    // Turned so that one marked edge is 0-1, or two marked ones are 0-1 and 1-2.
+    let turn = match count {
+        1 => marks.iter().position(|&m| m).unwrap_or(0),
+        2 => (marks.iter().position(|&m| !m).unwrap_or(2) + 1) % 3,
+        _ => 0,
+    };
+    let [a, b, c] = [t[turn], t[(turn + 1) % 3], t[(turn + 2) % 3]];
+    let mut middle = |mesh: &mut Mesh, a: u32, b: u32| {
+        *midpoints.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            let vertex = halfway(&mesh.vertices[a as usize], &mesh.vertices[b as usize]);
+            mesh.vertices.push(vertex);
+            mesh.vertices.len() as u32 - 1
+        })
+    };
+    match count {
+        0 => mesh.indices.extend([a, b, c]),
+        1 => {
+            let ab = middle(mesh, a, b);
+            mesh.indices.extend([a, ab, c, ab, b, c]);
+        }
+        2 => {
+            let (ab, bc) = (middle(mesh, a, b), middle(mesh, b, c));
+            mesh.indices.extend([ab, b, bc]);
+            // The diagonal that is a median of the longer marked edge is shorter than both: this ends.
+            if length(mesh, a, b) >= length(mesh, b, c) {
+                mesh.indices.extend([a, ab, c, ab, bc, c]);
+            } else {
+                mesh.indices.extend([a, ab, bc, a, bc, c]);
+            }
+        }
+        _ => {
+            let (ab, bc, ca) = (middle(mesh, a, b), middle(mesh, b, c), middle(mesh, c, a));
+            mesh.indices
+                .extend([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca]);
+        }
+    }
+}
+
+fn length(mesh: &Mesh, a: u32, b: u32) -> f32 {
+    let position = |i: u32| Vec3::from_array(mesh.vertices[i as usize].position);
+    position(a).distance(position(b))
+}
+
+fn halfway(a: &Vertex, b: &Vertex) -> Vertex {
+    let middle = |a: [f32; 3], b: [f32; 3]| (Vec3::from_array(a) + Vec3::from_array(b)) * 0.5;
+    let normal = middle(a.normal, b.normal).normalize_or(Vec3::from_array(a.normal));
+    let tangent =
+        middle(xyz(a.tangent), xyz(b.tangent)).normalize_or(Vec3::from_array(xyz(a.tangent)));
+    Vertex {
+        position: middle(a.position, b.position).to_array(),
+        normal: normal.to_array(),
+        tangent: Vec4::from((tangent, a.tangent[3])).to_array(),
+        uv: [(a.uv[0] + b.uv[0]) * 0.5, (a.uv[1] + b.uv[1]) * 0.5],
+    }
+}
+
+fn xyz([x, y, z, _]: [f32; 4]) -> [f32; 3] {
+    [x, y, z]
+}

@@ -1,0 +1,141 @@
+//! The scene in words and numbers.
+
+use std::fmt::Write;
+
+use super::{LightKind, Material, Scene, Texture};
+
+impl Scene {
+    /// Counts, bounds, tables of materials and textures, lights, cameras and warnings, as text of several lines.
+    pub fn summary(&self) -> String {
+        let mut text = String::new();
+        // Writing into a string cannot fail.
+        let _ = self.write_summary(&mut text);
+        text
+    }
+
+    fn write_summary(&self, out: &mut String) -> std::fmt::Result {
+        let vertices: usize = self.meshes.iter().map(|mesh| mesh.vertices.len()).sum();
+        let (low, high) = self.bounds();
+        let size = high - low;
+        let moving = self
+            .instances
+            .iter()
+            .filter(|instance| instance.animation.is_some())
+            .count();
+        writeln!(out, "scene      {}", self.name)?;
+        writeln!(out, "triangles  {}", self.triangle_count())?;
+        writeln!(out, "vertices   {vertices} in {} meshes", self.meshes.len())?;
+        writeln!(
+            out,
+            "instances  {} ({moving} animated)",
+            self.instances.len()
+        )?;
+        writeln!(
+            out,
+            "bounds     {low:.3} to {high:.3}, {:.2} x {:.2} x {:.2} m",
+            size.x, size.y, size.z
+        )?;
+        writeln!(out, "sky        radiance {:.3}", self.sky)?;
+
+        writeln!(out, "\nmaterials  {}", self.materials.len())?;
+        let width = self
+            .materials
+            .iter()
+            .map(|m| m.name.chars().count())
+            .max()
+            .unwrap_or(0)
+            .clamp(4, 32);
+        if !self.materials.is_empty() {
+            writeln!(
+                out,
+                "  {:width$}  base color         rough metal  notes",
+                "name"
+            )?;
+        }
+        for material in &self.materials {
+            let [r, g, b, _] = material.base_color.to_array();
+            let Material {
+                name,
+                roughness,
+                metallic,
+                ..
+            } = material;
+            let notes = notes(material);
+            writeln!(
+                out,
+                "  {name:width$}  {r:.3} {g:.3} {b:.3}  {roughness:.2}  {metallic:.2}  {notes}"
+            )?;
+        }
+        let bytes = |texture: &Texture| texture.mips.iter().map(Vec::len).sum::<usize>();
+        let total = self.textures.iter().map(bytes).sum::<usize>() as f64 / f64::from(1 << 20);
+        writeln!(out, "\ntextures   {} ({total:.1} MiB)", self.textures.len())?;
+        for texture in &self.textures {
+            let Texture {
+                name,
+                width,
+                height,
+                format,
+                mips,
+            } = texture;
+            writeln!(
+                out,
+                "  {name}  {width}x{height} {format:?}, {} mips",
+                mips.len()
+            )?;
+        }
+        writeln!(out, "\nlights     {}", self.lights.len())?;
+        for light in &self.lights {
+            let (color, position, direction) = (light.color, light.position, light.direction);
+            let shadow = if light.shadow { "shadow" } else { "no shadow" };
+            let about = match light.kind {
+                LightKind::Directional => {
+                    format!("directional, irradiance {color:.2}, toward {direction:.3}")
+                }
+                LightKind::Point => format!("point, intensity {color:.2}, at {position:.2}"),
+                LightKind::Spot { inner, outer } => format!(
+                    "spot, intensity {color:.2}, at {position:.2} toward {direction:.3}, {:.1} to {:.1} deg",
+                    inner.to_degrees(),
+                    outer.to_degrees()
+                ),
+            };
+            writeln!(out, "  {}  {about}, {shadow}", light.name)?;
+        }
+        writeln!(out, "\ncameras    {}", self.cameras.len())?;
+        for (name, camera) in &self.cameras {
+            writeln!(
+                out,
+                "  {name}  eye {:.2} toward {:.2}, {} deg",
+                camera.eye, camera.target, camera.fov_y
+            )?;
+        }
+        if !self.warnings.is_empty() {
+            writeln!(out, "\nwarnings   {}", self.warnings.len())?;
+            for warning in &self.warnings {
+                writeln!(out, "  {warning}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn notes(material: &Material) -> String {
+    let mut notes = Vec::new();
+    for (texture, what) in [
+        (material.base_color_texture, "color map"),
+        (material.metallic_roughness_texture, "metal-rough map"),
+        (material.normal_texture, "normal map"),
+        (material.emission_texture, "emission map"),
+    ] {
+        notes.extend(texture.map(|_| what.to_owned()));
+    }
+    if material.alpha_cutoff > 0.0 {
+        notes.push(format!("mask at {:.2}", material.alpha_cutoff));
+    }
+    if material.emission != glam::Vec3::ZERO {
+        notes.push(format!("emits {:.2}", material.emission));
+    }
+    if material.two_sided {
+        notes.push("two-sided".into());
+    }
+    notes.join(", ")
+}

@@ -1,0 +1,241 @@
+//! From image files to textures. Image files are not trusted: sizes and memory are limited.
+
+use std::borrow::Cow;
+use std::io::Cursor;
+
+use image::{ImageFormat, ImageReader, Limits, RgbaImage};
+
+use super::{Filter, Recipe, Source, Texture, TextureFormat, dds, mips, texture_from_rgba};
+
+/// Largest width and height of an image file.
+const MAX_FILE_SIDE: u32 = 16384;
+/// Largest memory of a decoded image.
+const MAX_FILE_BYTES: u64 = 512 << 20;
+/// Larger textures are reduced to this.
+const MAX_SIDE: u32 = 4096;
+
+/// The file and what is wrong with it.
+type Failure = (String, String);
+
+/// Texture for a recipe; reductions go to the warnings.
+pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<String>) -> Result<Texture, Failure> {
+    match recipe {
+        Recipe::Color { image, mask } => {
+            let filter = mask.map_or(Filter::Plain, |cutoff| {
+                Filter::Masked(f32::from(cutoff) / 255.0)
+            });
+            single(image, true, filter, warnings)
+        }
+        Recipe::Normal { image } => single(image, false, Filter::Normal, warnings),
+        Recipe::MetallicRoughness { image } => single(image, false, Filter::Plain, warnings),
+        Recipe::ColorAndMask { color, alpha, mask } => {
+            color_and_mask(color.as_ref(), alpha, f32::from(*mask) / 255.0, warnings)
+        }
+        Recipe::RoughnessAndMetallic {
+            roughness,
+            metallic,
+        } => roughness_and_metallic(roughness.as_ref(), metallic.as_ref(), warnings),
+    }
+}
+
+/// Level 0 of a texture as RGBA8, decompressed where it is compressed.
+pub(in crate::scene) fn first_level_rgba(texture: &Texture) -> Result<Cow<'_, [u8]>, String> {
+    let level = texture.mips.first().ok_or("it has no levels")?;
+    match texture.format {
+        TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm => Ok(Cow::Borrowed(level)),
+        format => dds::decompress(format, texture.width, texture.height, level).map(Cow::Owned),
+    }
+}
+
+fn single(
+    image: &Source,
+    srgb: bool,
+    filter: Filter,
+    warnings: &mut Vec<String>,
+) -> Result<Texture, Failure> {
+    let fail = |problem: String| (image.name(), problem);
+    let bytes = read(image).map_err(fail)?;
+    if is_dds(&bytes) {
+        return dds::texture(&bytes, &image.name(), srgb, filter, MAX_SIDE, warnings).map_err(fail);
+    }
+    let pixels = decode(&bytes, &image.name()).map_err(fail)?;
+    Ok(finish(pixels, &image.name(), srgb, filter, warnings))
+}
+
+fn color_and_mask(
+    color: Option<&Source>,
+    alpha: &Source,
+    cutoff: f32,
+    warnings: &mut Vec<String>,
+) -> Result<Texture, Failure> {
+    let mask = pixels(alpha)?;
+    let mut result = match color {
+        Some(color) => pixels(color)?,
+        None => RgbaImage::from_pixel(mask.width(), mask.height(), image::Rgba([255; 4])),
+    };
+    // A mask with an alpha channel means that channel, a grey one its brightness.
+    let has_alpha = mask.pixels().any(|p| p.0[3] < 255);
+    let (w, h) = result.dimensions();
+    for (x, y, pixel) in result.enumerate_pixels_mut() {
+        let from = mask.get_pixel(scaled(x, w, mask.width()), scaled(y, h, mask.height()));
+        pixel.0[3] = if has_alpha { from.0[3] } else { from.0[0] };
+    }
+    let name = color.unwrap_or(alpha).name();
+    Ok(finish(
+        result,
+        &name,
+        true,
+        Filter::Masked(cutoff),
+        warnings,
+    ))
+}
+
+fn roughness_and_metallic(
+    roughness: Option<&Source>,
+    metallic: Option<&Source>,
+    warnings: &mut Vec<String>,
+) -> Result<Texture, Failure> {
+    let rough = roughness.map(pixels).transpose()?;
+    let metal = metallic.map(pixels).transpose()?;
+    let width = rough
+        .iter()
+        .chain(&metal)
+        .map(|i| i.width())
+        .max()
+        .unwrap_or(1);
+    let height = rough
+        .iter()
+        .chain(&metal)
+        .map(|i| i.height())
+        .max()
+        .unwrap_or(1);
+    let red = |image: &Option<RgbaImage>, x: u32, y: u32| match image {
+        Some(image) => {
+            image
+                .get_pixel(
+                    scaled(x, width, image.width()),
+                    scaled(y, height, image.height()),
+                )
+                .0[0]
+        }
+        None => 255,
+    };
+    let merged = RgbaImage::from_fn(width, height, |x, y| {
+        image::Rgba([255, red(&rough, x, y), red(&metal, x, y), 255])
+    });
+    let name = roughness.or(metallic).map(Source::name).unwrap_or_default();
+    Ok(finish(merged, &name, false, Filter::Plain, warnings))
+}
+
+fn scaled(x: u32, from: u32, to: u32) -> u32 {
+    (u64::from(x) * u64::from(to) / u64::from(from)) as u32
+}
+
+fn pixels(source: &Source) -> Result<RgbaImage, Failure> {
+    let fail = |problem: String| (source.name(), problem);
+    let bytes = read(source).map_err(fail)?;
+    if is_dds(&bytes) {
+        dds::pixels(&bytes).map_err(fail)
+    } else {
+        decode(&bytes, &source.name()).map_err(fail)
+    }
+}
+
+fn read(source: &Source) -> Result<Cow<'_, [u8]>, String> {
+    match source {
+        Source::File(path) => match std::fs::read(path) {
+            Ok(bytes) => Ok(Cow::Owned(bytes)),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                Err("the file does not exist".into())
+            }
+            Err(error) => Err(format!("cannot read it: {error}")),
+        },
+        Source::Bytes(_, bytes) => Ok(Cow::Borrowed(bytes)),
+        Source::Missing(_, problem) => Err(problem.clone()),
+    }
+}
+
+fn is_dds(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"DDS ")
+}
+
+/// By the file's own magic; TGA has none, so there the name's extension decides.
+fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
+    let by_name = || ImageFormat::from_path(name).ok();
+    let format = image::guess_format(bytes)
+        .ok()
+        .or_else(by_name)
+        .ok_or("not a PNG, JPEG, TGA, BMP or DDS image")?;
+    if !matches!(
+        format,
+        ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tga | ImageFormat::Bmp
+    ) {
+        return Err(format!(
+            "{format:?} images are not supported; convert it to PNG"
+        ));
+    }
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_FILE_SIDE);
+    limits.max_image_height = Some(MAX_FILE_SIDE);
+    limits.max_alloc = Some(MAX_FILE_BYTES);
+    reader.limits(limits);
+    let image = reader
+        .decode()
+        .map_err(|error| format!("the image is damaged or too large ({error})"))?
+        .into_rgba8();
+    if image.width() == 0 || image.height() == 0 {
+        Err("the image is empty".into())
+    } else {
+        Ok(image)
+    }
+}
+
+fn finish(
+    image: RgbaImage,
+    name: &str,
+    srgb: bool,
+    filter: Filter,
+    warnings: &mut Vec<String>,
+) -> Texture {
+    let format = if srgb {
+        TextureFormat::Rgba8Srgb
+    } else {
+        TextureFormat::Rgba8Unorm
+    };
+    let (width, height) = image.dimensions();
+    let mut rgba = image.into_raw();
+    let to = within_limit(width, height);
+    if to != (width, height) {
+        warnings.push(format!(
+            "texture {name}: {width}x{height} reduced to {}x{}",
+            to.0, to.1
+        ));
+        rgba = mips::reduce(&rgba, (width, height), to, srgb, filter);
+    }
+    texture_from_rgba(name, to.0, to.1, rgba, format, filter)
+}
+
+/// The size with its longer side at most `MAX_SIDE`, aspect kept.
+fn within_limit(width: u32, height: u32) -> (u32, u32) {
+    let longest = width.max(height);
+    if longest <= MAX_SIDE {
+        return (width, height);
+    }
+    (
+        scaled(MAX_SIDE, longest, width).max(1),
+        scaled(MAX_SIDE, longest, height).max(1),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::within_limit;
+
+    #[test]
+    fn large_sizes_keep_their_aspect() {
+        assert_eq!(within_limit(8192, 2048), (4096, 1024));
+        assert_eq!(within_limit(100, 4096), (100, 4096));
+        assert_eq!(within_limit(16384, 1), (4096, 1));
+    }
+}

@@ -1,0 +1,204 @@
+//! Mip chains by area-weighted box filtering, in linear light, with alpha coverage and unit normals preserved.
+
+use std::sync::LazyLock;
+
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::{Texture, TextureFormat};
+
+/// What a mip level must keep of the level above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::scene) enum Filter {
+    /// The mean of each channel.
+    Plain,
+    /// The share of texels whose alpha is at or above the cutoff (0 to 1); colours are weighted by alpha.
+    Masked(f32),
+    /// Unit length after decoding.
+    Normal,
+}
+
+static SRGB_TO_LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|i| {
+        let c = i as f32 / 255.0;
+        if c <= 0.04045 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        }
+    })
+});
+
+/// sRGB bytes by linear value in steps of 1/16384, fine enough that bytes survive a round trip.
+static LINEAR_TO_SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let encode = |i: usize| {
+        let l = i as f32 / 16384.0;
+        let c = if l <= 0.003_130_8 {
+            l * 12.92
+        } else {
+            1.055 * l.powf(1.0 / 2.4) - 0.055
+        };
+        (c * 255.0 + 0.5) as u8
+    };
+    (0..=16384).map(encode).collect()
+});
+
+/// A texture with its full mip chain from RGBA8 texels. Panics when their number is not width * height.
+pub(in crate::scene) fn texture_from_rgba(
+    name: &str,
+    width: u32,
+    height: u32,
+    rgba: Vec<u8>,
+    format: TextureFormat,
+    filter: Filter,
+) -> Texture {
+    assert_eq!(
+        rgba.len(),
+        format.level_bytes(width, height),
+        "texels of {name}"
+    );
+    let srgb = format.is_srgb();
+    let mut level = decode(&rgba, srgb);
+    let coverage = if let Filter::Masked(cutoff) = filter {
+        alpha_coverage(&level, cutoff)
+    } else {
+        0.0
+    };
+    let mut mips = vec![rgba];
+    let (mut w, mut h) = (width, height);
+    while w > 1 || h > 1 {
+        let (next_w, next_h) = ((w / 2).max(1), (h / 2).max(1));
+        level = shrink(&level, (w, h), (next_w, next_h), filter);
+        (w, h) = (next_w, next_h);
+        match filter {
+            Filter::Masked(cutoff) => {
+                mips.push(encode(&with_coverage(&level, cutoff, coverage), srgb))
+            }
+            _ => mips.push(encode(&level, srgb)),
+        }
+    }
+    Texture {
+        name: name.into(),
+        width,
+        height,
+        format,
+        mips,
+    }
+}
+
+/// RGBA8 texels resampled to a smaller size by the same filter as the mips.
+pub(super) fn reduce(
+    rgba: &[u8],
+    from: (u32, u32),
+    to: (u32, u32),
+    srgb: bool,
+    filter: Filter,
+) -> Vec<u8> {
+    encode(&shrink(&decode(rgba, srgb), from, to, filter), srgb)
+}
+
+fn decode(rgba: &[u8], srgb: bool) -> Vec<Vec4> {
+    let plain = |c: u8| f32::from(c) / 255.0;
+    let color = |c: u8| {
+        if srgb {
+            SRGB_TO_LINEAR[c as usize]
+        } else {
+            plain(c)
+        }
+    };
+    let texels = rgba.as_chunks::<4>().0;
+    texels
+        .par_iter()
+        .with_min_len(4096)
+        .map(|&[r, g, b, a]| Vec4::new(color(r), color(g), color(b), plain(a)))
+        .collect()
+}
+
+fn encode(texels: &[Vec4], srgb: bool) -> Vec<u8> {
+    let plain = |c: f32| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+    let color = |c: f32| match srgb {
+        true => LINEAR_TO_SRGB[(c.clamp(0.0, 1.0) * 16384.0 + 0.5) as usize],
+        false => plain(c),
+    };
+    texels
+        .iter()
+        .flat_map(|t| [color(t.x), color(t.y), color(t.z), plain(t.w)])
+        .collect()
+}
+
+/// Each target texel is the mean over the source area that it covers, so that odd sizes lose no row.
+fn shrink(texels: &[Vec4], from: (u32, u32), to: (u32, u32), filter: Filter) -> Vec<Vec4> {
+    let columns: Vec<Vec<(usize, f32)>> = (0..to.0).map(|x| taps(x, from.0, to.0)).collect();
+    let row = |y: u32| -> Vec<Vec4> {
+        let rows = taps(y, from.1, to.1);
+        columns
+            .iter()
+            .map(|columns| mean(texels, from.0 as usize, columns, &rows, filter))
+            .collect()
+    };
+    (0..to.1).into_par_iter().flat_map_iter(row).collect()
+}
+
+/// Source texels under a target texel along one axis, with weights that sum to 1.
+fn taps(target: u32, from: u32, to: u32) -> Vec<(usize, f32)> {
+    let scale = f64::from(from) / f64::from(to);
+    let (start, end) = (f64::from(target) * scale, f64::from(target + 1) * scale);
+    let first = start.floor() as usize;
+    let last = (end.ceil() as usize).min(from as usize);
+    let covered = |i: usize| (end.min(i as f64 + 1.0) - start.max(i as f64)).max(0.0) / scale;
+    (first..last)
+        .map(|i| (i, covered(i) as f32))
+        .filter(|tap| tap.1 > 1e-6)
+        .collect()
+}
+
+fn mean(
+    texels: &[Vec4],
+    width: usize,
+    columns: &[(usize, f32)],
+    rows: &[(usize, f32)],
+    filter: Filter,
+) -> Vec4 {
+    let mut sum = Vec4::ZERO;
+    let mut weighted = Vec3::ZERO;
+    let mut weight = 0.0;
+    for &(y, wy) in rows {
+        for &(x, wx) in columns {
+            let texel = texels[y * width + x];
+            sum += texel * (wx * wy);
+            weighted += texel.truncate() * (texel.w * wx * wy);
+            weight += texel.w * wx * wy;
+        }
+    }
+    match filter {
+        Filter::Plain => sum,
+        // The colour under transparent texels is arbitrary and must not bleed in.
+        Filter::Masked(_) if weight > 1e-4 => (weighted / weight).extend(sum.w),
+        Filter::Masked(_) => sum,
+        Filter::Normal => {
+            let normal = (sum.truncate() * 2.0 - 1.0).normalize_or(Vec3::Z);
+            (normal * 0.5 + 0.5).extend(sum.w)
+        }
+    }
+}
+
+fn alpha_coverage(texels: &[Vec4], cutoff: f32) -> f32 {
+    texels.iter().filter(|t| t.w >= cutoff).count() as f32 / texels.len() as f32
+}
+
+/// Scales alpha until as large a share of texels passes the cutoff as at level 0 (Castano 2010).
+fn with_coverage(texels: &[Vec4], cutoff: f32, coverage: f32) -> Vec<Vec4> {
+    let (mut low, mut high) = (0.0f32, 8.0f32);
+    for _ in 0..16 {
+        let middle = 0.5 * (low + high);
+        if alpha_coverage(texels, cutoff / middle) < coverage {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    texels
+        .iter()
+        .map(|t| t.truncate().extend((t.w * high).min(1.0)))
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! Textures: which images the materials ask for, decoded in parallel, with mips that suit their use.
+
+mod dds;
+mod decode;
+mod mips;
+mod stand_in;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use indexmap::IndexMap;
+use rayon::prelude::*;
+
+use super::{Texture, TextureFormat};
+
+pub(super) use decode::first_level_rgba;
+pub(super) use mips::{Filter, texture_from_rgba};
+
+/// Where an image's bytes come from.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Source {
+    File(PathBuf),
+    /// Bytes inside a model file, under a name for messages.
+    Bytes(String, Arc<Vec<u8>>),
+    /// Nothing to read, and why.
+    Missing(String, String),
+}
+
+impl Source {
+    pub fn name(&self) -> String {
+        match self {
+            Source::File(path) => path.display().to_string(),
+            Source::Bytes(name, _) | Source::Missing(name, _) => name.clone(),
+        }
+    }
+}
+
+/// How an image, or two, become a texture.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Recipe {
+    /// sRGB colour; `mask` is an alpha cutoff in 1/255ths whose coverage the mips preserve.
+    Color { image: Source, mask: Option<u8> },
+    /// sRGB colour from one image (white without) and alpha from another.
+    ColorAndMask {
+        color: Option<Source>,
+        alpha: Source,
+        mask: u8,
+    },
+    /// Tangent-space normals.
+    Normal { image: Source },
+    /// G = roughness, B = metallic in one image.
+    MetallicRoughness { image: Source },
+    /// Roughness and metallic in grey images of their own (white without).
+    RoughnessAndMetallic {
+        roughness: Option<Source>,
+        metallic: Option<Source>,
+    },
+}
+
+/// The textures that materials ask for, each recipe once.
+#[derive(Debug, Default)]
+pub(super) struct Requests {
+    /// Recipe and the first material that asked.
+    recipes: IndexMap<Recipe, String>,
+}
+
+impl Requests {
+    /// The index that the recipe's texture will have.
+    pub fn ask(&mut self, recipe: Recipe, material: &str) -> u32 {
+        let entry = self.recipes.entry(recipe);
+        let index = entry.index();
+        entry.or_insert_with(|| material.to_owned());
+        index as u32
+    }
+
+    /// Decodes everything. What cannot be decoded becomes a visible stand-in and a warning.
+    pub fn load(self) -> (Vec<Texture>, Vec<String>) {
+        let recipes: Vec<(Recipe, String)> = self.recipes.into_iter().collect();
+        let loaded: Vec<(Texture, Vec<String>)> = recipes
+            .par_iter()
+            .map(|(recipe, material)| cook(recipe, material))
+            .collect();
+        let mut textures = Vec::new();
+        let mut warnings = Vec::new();
+        for (texture, more) in loaded {
+            textures.push(texture);
+            warnings.extend(more);
+        }
+        (textures, warnings)
+    }
+}
+
+fn cook(recipe: &Recipe, material: &str) -> (Texture, Vec<String>) {
+    let mut warnings = Vec::new();
+    match decode::cook(recipe, &mut warnings) {
+        Ok(texture) => (texture, warnings),
+        Err((file, problem)) => {
+            warnings.push(format!(
+                "texture {file} of material '{material}': {problem}; a checkerboard stands in for it"
+            ));
+            (stand_in::checkerboard(recipe, &file), warnings)
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! GLSL to SPIR-V through shaderc. Compiled modules are kept on disk by the content of everything that went into them.
+
+use super::reflect::{Interface, reflect};
+use crate::graph::source::{Diagnostic, Place, nearest};
+use crate::vulkan::Stage;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A shader file to compile.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// File name in the shader folder.
+    pub file: String,
+    /// Stage.
+    pub stage: Stage,
+}
+
+/// A compiled shader.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    /// File name in the shader folder.
+    pub file: String,
+    /// Stage.
+    pub stage: Stage,
+    /// SPIR-V.
+    pub words: Arc<Vec<u32>>,
+    /// What it binds.
+    pub interface: Interface,
+    /// All files that went into it, with their text (names relative to the shader folder).
+    pub texts: Arc<BTreeMap<String, String>>,
+}
+
+/// Compiles shaders of one folder.
+pub struct ShaderCompiler {
+    folder: PathBuf,
+    cache: Option<PathBuf>,
+}
+
+/// Changes whenever compiled modules of an older program must not be used.
+const CACHE_VERSION: &str = "conelab spirv 1";
+/// Shader files larger than this are refused.
+const MAX_BYTES: u64 = 2 << 20;
+/// First binding of each stage, so that stages compiled apart do not collide in the one descriptor set.
+const BINDINGS_PER_STAGE: u32 = 32;
+
+impl ShaderCompiler {
+    /// A compiler for `folder`, with compiled modules kept in `cache`.
+    pub fn new(folder: &Path, cache: Option<&Path>) -> ShaderCompiler {
+        ShaderCompiler { folder: folder.to_path_buf(), cache: cache.map(Path::to_path_buf) }
+    }
+
+    /// Compiles one file. `params` is the generated `params.glsl`.
+    ///
+    /// # Errors
+    /// Every message of the compiler, with the original file and line.
+    pub fn compile(&self, source: &Source, params: &str) -> Result<Compiled, Vec<Diagnostic>> {
+        let mut texts = BTreeMap::from([("params.glsl".to_string(), params.to_string())]);
+        self.collect(&source.file, &mut texts)?;
+        let key = self.key(source, &texts);
+        let cached = self.cache.as_ref().map(|dir| dir.join(format!("{key}.spv")));
+        let from_cache = cached.as_deref().and_then(crate::files::read_checked).and_then(|b| to_words(&b));
+        let words = match from_cache {
+            Some(words) => words,
+            None => {
+                let words = self.run(source, &texts)?;
+                if let Some(path) = &cached {
+                    let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+                    // A cache that cannot be written costs time, not correctness.
+                    let _ = crate::files::write_checked(path, &bytes);
+                }
+                words
+            }
+        };
+        let interface = reflect(&words, source.stage).map_err(|message| {
+            vec![Diagnostic::error(Place { file: self.folder.join(&source.file), ..Place::default() }, message)]
+        })?;
+        Ok(Compiled {
+            file: source.file.clone(),
+            stage: source.stage,
+            words: Arc::new(words),
+            interface,
+            texts: Arc::new(texts),
+        })
+    }
+
+    /// Path of an include: beside the shaders, or in `include/`.
+    fn find(&self, name: &str) -> Option<PathBuf> {
+        // Names come from shader text: they stay inside the folder.
+        if Path::new(name).components().any(|c| !matches!(c, std::path::Component::Normal(_))) {
+            return None;
+        }
+        [self.folder.join("include").join(name), self.folder.join(name)].into_iter().find(|p| p.is_file())
+    }
+
+    /// Reads a file and, textually, everything it includes.
+    fn collect(&self, name: &str, texts: &mut BTreeMap<String, String>) -> Result<(), Vec<Diagnostic>> {
+        if texts.contains_key(name) {
+            return Ok(());
+        }
+        let path = self.find(name).unwrap_or_else(|| self.folder.join(name));
+        let fail = |why: String| {
+            vec![Diagnostic::error(Place { file: path.clone(), ..Place::default() }, format!("cannot read it: {why}"))]
+        };
+        let size = std::fs::metadata(&path).map_err(|e| fail(e.to_string()))?.len();
+        if size > MAX_BYTES {
+            return Err(fail(format!("{size} bytes are more than the {MAX_BYTES} allowed")));
+        }
+        let text = std::fs::read_to_string(&path).map_err(|e| fail(e.to_string()))?;
+        if text.contains('\0') {
+            return Err(fail("it holds a zero byte".into()));
+        }
+        let includes: Vec<String> = text.lines().filter_map(included).map(String::from).collect();
+        texts.insert(name.to_string(), text);
+        for include in includes {
+            // One that is missing is told by the compiler, with its line.
+            if self.find(&include).is_some() {
+                self.collect(&include, texts)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn key(&self, source: &Source, texts: &BTreeMap<String, String>) -> String {
+        let mut hash = Sha256::new();
+        hash.update(CACHE_VERSION);
+        hash.update(&source.file);
+        for (name, text) in texts {
+            hash.update((name.len() as u64).to_le_bytes());
+            hash.update(name);
+            hash.update((text.len() as u64).to_le_bytes());
+            hash.update(text);
+        }
+        hash.finalize().iter().take(16).map(|b| format!("{b:02x}")).collect()
+    }
+
+    fn run(&self, source: &Source, texts: &BTreeMap<String, String>) -> Result<Vec<u32>, Vec<Diagnostic>> {
+        let broken = |message: String| {
+            vec![Diagnostic::error(Place { file: self.folder.join(&source.file), ..Place::default() }, message)]
+        };
+        let compiler = shaderc::Compiler::new().map_err(|e| broken(format!("the compiler did not start: {e}")))?;
+        let mut options = shaderc::CompileOptions::new().map_err(|e| broken(e.to_string()))?;
+        options.set_target_env(shaderc::TargetEnv::Vulkan, shaderc::EnvVersion::Vulkan1_3 as u32);
+        options.set_optimization_level(shaderc::OptimizationLevel::Performance);
+        // Keeps the names that resources are bound by.
+        options.set_generate_debug_info();
+        options.set_auto_bind_uniforms(true);
+        let (stage, kind) = match source.stage {
+            Stage::Vertex => (0, shaderc::ShaderKind::Vertex),
+            Stage::TessControl => (1, shaderc::ShaderKind::TessControl),
+            Stage::TessEvaluation => (2, shaderc::ShaderKind::TessEvaluation),
+            Stage::Geometry => (3, shaderc::ShaderKind::Geometry),
+            Stage::Fragment => (4, shaderc::ShaderKind::Fragment),
+            Stage::Compute => (5, shaderc::ShaderKind::Compute),
+        };
+        for resource in [
+            shaderc::ResourceKind::Sampler,
+            shaderc::ResourceKind::Texture,
+            shaderc::ResourceKind::Image,
+            shaderc::ResourceKind::Buffer,
+            shaderc::ResourceKind::StorageBuffer,
+        ] {
+            options.set_binding_base(resource, stage * BINDINGS_PER_STAGE);
+        }
+        options.set_include_callback(|name, _, _, depth| {
+            if depth > 32 {
+                return Err(String::from("includes are nested more than 32 deep"));
+            }
+            match texts.get(name) {
+                Some(content) => Ok(shaderc::ResolvedInclude { resolved_name: name.to_string(), content: content.clone() }),
+                None => {
+                    let hint = nearest(name, self.includes().iter().map(String::as_str));
+                    Err(format!("no such include; {}", hint.unwrap_or_default()))
+                }
+            }
+        });
+        let text = texts.get(&source.file).map_or("", String::as_str);
+        match compiler.compile_into_spirv(text, kind, &source.file, "main", Some(&options)) {
+            Ok(artifact) => Ok(artifact.as_binary().to_vec()),
+            Err(e) => Err(self.messages(&e.to_string(), texts, &source.file)),
+        }
+    }
+
+    fn includes(&self) -> Vec<String> {
+        let mut names = vec![String::from("params.glsl")];
+        if let Ok(entries) = std::fs::read_dir(self.folder.join("include")) {
+            names.extend(entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()));
+        }
+        names
+    }
+
+    /// The compiler's text, message by message, with the line each is about.
+    fn messages(&self, text: &str, texts: &BTreeMap<String, String>, main: &str) -> Vec<Diagnostic> {
+        let mut list: Vec<Diagnostic> = Vec::new();
+        for line in text.lines() {
+            let mut parts = line.splitn(4, ':');
+            let parsed = match (parts.next(), parts.next().map(str::parse::<u32>), parts.next(), parts.next()) {
+                (Some(file), Some(Ok(number)), Some(level), Some(message)) if texts.contains_key(file) => {
+                    Some((file, number, level.trim(), message.trim()))
+                }
+                _ => None,
+            };
+            let Some((file, number, level, message)) = parsed else { continue };
+            let path = if file == "params.glsl" {
+                PathBuf::from("params.glsl (generated)")
+            } else {
+                self.find(file).unwrap_or_else(|| self.folder.join(file))
+            };
+            let place = Place { file: path, line: number, column: 0 };
+            let mut found = match level {
+                "error" => Diagnostic::error(place, message),
+                _ => Diagnostic::warning(place, message),
+            };
+            found.source = texts
+                .get(file)
+                .and_then(|t| t.lines().nth(number.saturating_sub(1) as usize))
+                .map(|l| l.trim().to_string());
+            if !list.contains(&found) {
+                list.push(found);
+            }
+        }
+        if list.is_empty() {
+            let place = Place { file: self.folder.join(main), ..Place::default() };
+            list.push(Diagnostic::error(place, text.trim()));
+        }
+        list
+    }
+}
+
+/// The name in an `#include "name"` line.
+fn included(line: &str) -> Option<&str> {
+    let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
+    rest.split('"').nth(1)
+}
+
+fn to_words(bytes: &[u8]) -> Option<Vec<u32>> {
+    const MAGIC: u32 = 0x0723_0203;
+    if bytes.len() % 4 != 0 {
+        return None;
+    }
+    let words: Vec<u32> = bytes.chunks_exact(4).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
+    (words.first() == Some(&MAGIC)).then_some(words)
+}

@@ -1,0 +1,7 @@
+//! GLSL to SPIR-V at run time, with includes, a cache on disk, and reflection by name.
+
+mod compile;
+mod reflect;
+
+pub use compile::{Compiled, ShaderCompiler, Source};
+pub use reflect::{Binding, Interface, Resource, Shape};

@@ -1,0 +1,222 @@
+//! What a compiled shader binds, by name.
+
+use crate::vulkan::Stage;
+use spirq::prelude::*;
+use spirq::spirv::{Dim, ExecutionMode as Mode, ImageFormat};
+use spirq::ty::ScalarType;
+
+/// How many dimensions an image has for the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// `2D`
+    D2,
+    /// `2DArray`
+    D2Array,
+    /// `3D`
+    D3,
+}
+
+impl Shape {
+    /// GLSL's suffix.
+    pub fn name(self) -> &'static str {
+        match self {
+            Shape::D2 => "2D",
+            Shape::D2Array => "2DArray",
+            Shape::D3 => "3D",
+        }
+    }
+}
+
+/// What a name is bound to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Resource {
+    /// `uniform` block.
+    Uniform,
+    /// `buffer` block.
+    Buffer {
+        /// Read.
+        read: bool,
+        /// Written.
+        write: bool,
+    },
+    /// `sampler*`
+    Sampled {
+        /// Dimensions.
+        shape: Shape,
+        /// `*Shadow`
+        compare: bool,
+        /// `u*` or `i*`
+        integer: bool,
+    },
+    /// `image*`
+    Storage {
+        /// Dimensions.
+        shape: Shape,
+        /// The format qualifier as graphs name it; none for write-only images without.
+        format: Option<&'static str>,
+        /// Read.
+        read: bool,
+        /// Written.
+        write: bool,
+    },
+}
+
+/// One binding of a shader.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Binding {
+    /// Name in GLSL.
+    pub name: String,
+    /// Number given by the compiler.
+    pub binding: u32,
+    /// What it is.
+    pub resource: Resource,
+}
+
+/// What one shader stage touches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Interface {
+    /// Bindings by name.
+    pub bindings: Vec<Binding>,
+    /// Ids of specialisation constants.
+    pub constants: Vec<u32>,
+    /// Whether it uses `pass.index`.
+    pub push: bool,
+    /// Workgroup size of a compute shader.
+    pub local_size: [u32; 3],
+    /// Locations a fragment shader writes.
+    pub outputs: Vec<u32>,
+}
+
+/// Reads the interface of a module.
+///
+/// # Errors
+/// What the module has that conelab cannot bind.
+pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, String> {
+    let entries = ReflectConfig::new().spv(without_constant_operations(words)).reflect().map_err(|e| format!("reflection failed: {e}"))?;
+    let entry = entries.first().ok_or("the shader has no entry point")?;
+    let mut interface =
+        Interface { bindings: vec![], constants: vec![], push: false, local_size: [1; 3], outputs: vec![] };
+    for var in &entry.vars {
+        match var {
+            Variable::Descriptor { name, desc_bind, desc_ty, ty, nbind } => {
+                let name = name.clone().filter(|n| !n.is_empty()).or_else(|| block_name(ty)).unwrap_or_default();
+                if *nbind != 1 {
+                    return Err(format!("'{name}' is an array of resources; bind them one by one, with names of their own"));
+                }
+                let resource = resource(desc_ty, ty).ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
+                interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource });
+            }
+            Variable::PushConstant { .. } => interface.push = true,
+            Variable::SpecConstant { spec_id, .. } => interface.constants.push(*spec_id),
+            Variable::Output { location, .. } if stage == Stage::Fragment => interface.outputs.push(location.loc()),
+            _ => {}
+        }
+    }
+    for mode in &entry.exec_modes {
+        if mode.exec_mode == Mode::LocalSize {
+            for (size, operand) in interface.local_size.iter_mut().zip(&mode.operands) {
+                *size = match operand.value {
+                    ConstantValue::U32(v) => v,
+                    ConstantValue::S32(v) => v.cast_unsigned(),
+                    _ => 1,
+                };
+            }
+        }
+    }
+    interface.bindings.sort_by(|a, b| a.name.cmp(&b.name));
+    interface.outputs.sort_unstable();
+    interface.outputs.dedup();
+    Ok(interface)
+}
+
+/// The module with every OpSpecConstantOp made a null constant (SPIR-V 1.6, section 3.52.7): the reflector does not know
+/// all of the operations, and no interface depends on their values.
+fn without_constant_operations(words: &[u32]) -> Vec<u32> {
+    const OP_CONSTANT_NULL: u32 = 46;
+    const OP_SPEC_CONSTANT_OP: u32 = 52;
+    const HEADER: usize = 5;
+    let mut out = words[..HEADER.min(words.len())].to_vec();
+    let mut rest = &words[out.len()..];
+    while let Some(&first) = rest.first() {
+        let count = ((first >> 16) as usize).clamp(1, rest.len());
+        let (instruction, after) = rest.split_at(count);
+        match instruction {
+            [_, ty, id, ..] if first & 0xffff == OP_SPEC_CONSTANT_OP => out.extend([3 << 16 | OP_CONSTANT_NULL, *ty, *id]),
+            other => out.extend(other),
+        }
+        rest = after;
+    }
+    out
+}
+
+fn block_name(ty: &Type) -> Option<String> {
+    ty.as_struct().and_then(|s| s.name.clone())
+}
+
+fn resource(kind: &DescriptorType, ty: &Type) -> Option<Resource> {
+    let access = |a: &AccessType| {
+        let (read, write) = match a {
+            AccessType::ReadOnly => (true, false),
+            AccessType::WriteOnly => (false, true),
+            AccessType::ReadWrite => (true, true),
+        };
+        (read, write)
+    };
+    match kind {
+        DescriptorType::UniformBuffer() => Some(Resource::Uniform),
+        DescriptorType::StorageBuffer(a) => {
+            let (read, write) = access(a);
+            Some(Resource::Buffer { read, write })
+        }
+        DescriptorType::CombinedImageSampler() => {
+            let image = &ty.as_combined_image_sampler()?.sampled_image_ty;
+            Some(Resource::Sampled {
+                shape: shape(image.dim, image.is_array)?,
+                compare: image.is_depth == Some(true),
+                integer: matches!(image.scalar_ty, ScalarType::Integer { .. }),
+            })
+        }
+        DescriptorType::StorageImage(a) => {
+            let image = ty.as_storage_image()?;
+            let (read, write) = access(a);
+            Some(Resource::Storage { shape: shape(image.dim, image.is_array)?, format: format(image.fmt)?, read, write })
+        }
+        _ => None,
+    }
+}
+
+fn shape(dim: Dim, array: bool) -> Option<Shape> {
+    match (dim, array) {
+        (Dim::Dim2D, false) => Some(Shape::D2),
+        (Dim::Dim2D, true) => Some(Shape::D2Array),
+        (Dim::Dim3D, false) => Some(Shape::D3),
+        _ => None,
+    }
+}
+
+/// The graph's name of a storage format; `Some(None)` when the shader gives none.
+fn format(format: ImageFormat) -> Option<Option<&'static str>> {
+    Some(Some(match format {
+        ImageFormat::Unknown => return Some(None),
+        ImageFormat::Rgba8 => "rgba8",
+        ImageFormat::Rgba16f => "rgba16f",
+        ImageFormat::Rgba32f => "rgba32f",
+        ImageFormat::Rgba16 => "rgba16",
+        ImageFormat::Rg16f => "rg16f",
+        ImageFormat::Rg32f => "rg32f",
+        ImageFormat::R16f => "r16f",
+        ImageFormat::R32f => "r32f",
+        ImageFormat::R8 => "r8",
+        ImageFormat::Rg8 => "rg8",
+        ImageFormat::R11fG11fB10f => "r11g11b10f",
+        ImageFormat::Rgb10A2 => "rgb10a2",
+        ImageFormat::R32ui => "r32ui",
+        ImageFormat::Rg32ui => "rg32ui",
+        ImageFormat::Rgba32ui => "rgba32ui",
+        ImageFormat::Rgba8ui => "rgba8ui",
+        ImageFormat::R16ui => "r16ui",
+        ImageFormat::R8ui => "r8ui",
+        ImageFormat::R32i => "r32i",
+        _ => return None,
+    }))
+}

@@ -1,0 +1,165 @@
+//! Measurements of a run, in the one JSON schema of the program (`docs/stats.md`).
+
+use crate::graph::param::Params;
+use crate::graph::run::FrameTimes;
+use crate::lab::Session;
+use crate::vulkan::DeviceInfo;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Version of the schema.
+pub const SCHEMA: &str = "conelab-stats-1";
+
+/// Least, median and 95th percentile, ms.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Spread {
+    /// Least.
+    pub min: f64,
+    /// Median.
+    pub median: f64,
+    /// 95th percentile.
+    pub p95: f64,
+}
+
+/// Times of a pass.
+#[derive(Clone, Debug, Serialize)]
+pub struct PassStats {
+    /// Name in the graph.
+    pub name: String,
+    /// On the GPU.
+    pub gpu_ms: Spread,
+    /// Frames measured.
+    pub frames: usize,
+}
+
+/// The device.
+#[derive(Clone, Debug, Serialize)]
+pub struct DeviceStats {
+    /// Name.
+    pub name: String,
+    /// Driver.
+    pub driver: String,
+    /// Vulkan version.
+    pub api: String,
+    /// discrete, integrated, virtual, cpu or other.
+    pub kind: String,
+}
+
+/// What `--json` writes.
+#[derive(Clone, Debug, Serialize)]
+pub struct Stats {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// Program version.
+    pub version: String,
+    /// Device and driver.
+    pub device: DeviceStats,
+    /// Experiment name.
+    pub experiment: String,
+    /// Graph name.
+    pub graph: String,
+    /// Scene name.
+    pub scene: String,
+    /// Triangles of the scene.
+    pub triangles: usize,
+    /// Picture size.
+    pub size: [u32; 2],
+    /// All parameters.
+    pub params: BTreeMap<String, serde_json::Value>,
+    /// Frames run before measuring.
+    pub warmup: usize,
+    /// Every pass that ran, in order.
+    pub passes: Vec<PassStats>,
+    /// First to last command on the GPU.
+    pub total_gpu_ms: Spread,
+    /// Recording and submitting on the CPU.
+    pub cpu_ms: Spread,
+    /// Bytes of each resource of the graph.
+    pub bytes: BTreeMap<String, u64>,
+    /// Bytes of all of them.
+    pub total_bytes: u64,
+    /// Bytes of the scene's geometry and textures.
+    pub scene_bytes: u64,
+    /// Checks of the graph that failed.
+    pub warnings: Vec<String>,
+}
+
+/// Least, median and 95th percentile (nearest rank).
+pub fn spread(mut values: Vec<f64>) -> Spread {
+    values.sort_by(f64::total_cmp);
+    let rank = |q: f64| {
+        let i = (q * values.len() as f64).ceil() as usize;
+        values.get(i.saturating_sub(1)).copied().unwrap_or(0.0)
+    };
+    Spread { min: values.first().copied().unwrap_or(0.0), median: rank(0.5), p95: rank(0.95) }
+}
+
+/// The measurements of a session.
+pub fn collect(
+    device: &DeviceInfo,
+    experiment: &str,
+    session: &Session,
+    times: &[FrameTimes],
+    warmup: usize,
+    warnings: Vec<String>,
+) -> Stats {
+    let mut passes = Vec::new();
+    for (i, (number, _)) in times.first().map_or(&[][..], |t| &t.passes).iter().enumerate() {
+        let values: Vec<f64> = times.iter().filter_map(|t| t.passes.get(i)).map(|p| p.1).collect();
+        let frames = values.len();
+        let name = session.graph.passes[*number].value.name.value.clone();
+        passes.push(PassStats { name, gpu_ms: spread(values), frames });
+    }
+    let bytes: BTreeMap<String, u64> = session.program.memory(&session.graph).into_iter().collect();
+    let (width, height) = session.size();
+    Stats {
+        schema: SCHEMA.into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        device: DeviceStats {
+            name: device.name.clone(),
+            driver: device.driver.clone(),
+            api: device.api.clone(),
+            kind: device.kind.into(),
+        },
+        experiment: experiment.into(),
+        graph: session.graph.name.clone(),
+        scene: session.scene.name.clone(),
+        triangles: session.scene.triangle_count(),
+        size: [width, height],
+        params: param_values(&session.params),
+        warmup,
+        passes,
+        total_gpu_ms: spread(times.iter().map(|t| t.gpu_ms).collect()),
+        cpu_ms: spread(times.iter().map(|t| t.cpu_ms).collect()),
+        total_bytes: bytes.values().sum(),
+        bytes,
+        scene_bytes: session.scene_bytes(),
+        warnings,
+    }
+}
+
+fn param_values(params: &Params) -> BTreeMap<String, serde_json::Value> {
+    params
+        .list
+        .iter()
+        .zip(&params.values)
+        .map(|(p, v)| (p.name.clone(), serde_json::to_value(v).unwrap_or(serde_json::Value::Null)))
+        .collect()
+}
+
+/// A table for people.
+pub fn table(stats: &Stats) -> String {
+    use std::fmt::Write;
+    let mut out = format!("{} ({}), {}x{}\n", stats.device.name, stats.device.driver, stats.size[0], stats.size[1]);
+    let _ = writeln!(out, "{:<28}{:>10}{:>10}{:>10}", "GPU ms", "min", "median", "p95");
+    let mut row = |name: &str, s: &Spread| {
+        let _ = writeln!(out, "{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);
+    };
+    for pass in &stats.passes {
+        row(&pass.name, &pass.gpu_ms);
+    }
+    row("total", &stats.total_gpu_ms);
+    row("CPU record and submit", &stats.cpu_ms);
+    let _ = writeln!(out, "{:<28}{:>10.1} MiB", "memory of the graph", stats.total_bytes as f64 / 1048576.0);
+    out
+}

@@ -1,0 +1,428 @@
+//! Recording and submitting, with timestamps.
+
+use super::{Buffer, DescriptorSet, Gpu, Image, Pipeline, Result, View, VulkanError, vk};
+use std::ffi::CString;
+use std::sync::Arc;
+
+/// A command buffer being recorded. Its methods are Vulkan's commands; callers order them by barriers.
+pub struct Commands<'a> {
+    gpu: &'a Gpu,
+    handle: vk::CommandBuffer,
+    queries: Option<(vk::QueryPool, u32)>,
+}
+
+/// One frame in flight: its command buffer, fence and timestamps.
+pub struct FrameSlot {
+    gpu: Arc<Gpu>,
+    pool: vk::CommandPool,
+    buffer: vk::CommandBuffer,
+    fence: vk::Fence,
+    queries: vk::QueryPool,
+    query_count: u32,
+    written: u32,
+    pending: bool,
+}
+
+impl FrameSlot {
+    /// A slot with room for so many timestamps.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn new(gpu: &Arc<Gpu>, timestamps: u32) -> Result<FrameSlot> {
+        let mut slot = FrameSlot {
+            gpu: gpu.clone(),
+            pool: vk::CommandPool::null(),
+            buffer: vk::CommandBuffer::null(),
+            fence: vk::Fence::null(),
+            queries: vk::QueryPool::null(),
+            query_count: if gpu.info.timestamp_ns > 0.0 { timestamps } else { 0 },
+            written: 0,
+            pending: false,
+        };
+        let d = &gpu.device;
+        // SAFETY: plain creations; `drop` destroys what was made, null or not.
+        unsafe {
+            let at = || VulkanError::at("create a frame");
+            let info = vk::CommandPoolCreateInfo::default()
+                .queue_family_index(gpu.family)
+                .flags(vk::CommandPoolCreateFlags::TRANSIENT);
+            slot.pool = d.create_command_pool(&info, None).map_err(at())?;
+            let info = vk::CommandBufferAllocateInfo::default().command_pool(slot.pool).command_buffer_count(1);
+            slot.buffer = d.allocate_command_buffers(&info).map_err(at())?[0];
+            slot.fence = d.create_fence(&vk::FenceCreateInfo::default(), None).map_err(at())?;
+            if slot.query_count > 0 {
+                let info = vk::QueryPoolCreateInfo::default()
+                    .query_type(vk::QueryType::TIMESTAMP)
+                    .query_count(slot.query_count);
+                slot.queries = d.create_query_pool(&info, None).map_err(at())?;
+            }
+        }
+        Ok(slot)
+    }
+
+    /// Waits for the frame that was submitted from this slot, if any, and returns its timestamps in ticks.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn wait(&mut self) -> Result<Option<Vec<u64>>> {
+        if !self.pending {
+            return Ok(None);
+        }
+        let d = &self.gpu.device;
+        // SAFETY: the fence was submitted with this slot's commands, and the queries up to `written` are in them.
+        unsafe {
+            d.wait_for_fences(&[self.fence], true, u64::MAX).map_err(VulkanError::at("wait for a frame"))?;
+            d.reset_fences(&[self.fence]).map_err(VulkanError::at("reset a fence"))?;
+            self.pending = false;
+            let mut ticks = vec![0u64; self.written as usize];
+            if !ticks.is_empty() {
+                d.get_query_pool_results(
+                    self.queries,
+                    0,
+                    &mut ticks,
+                    vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT,
+                )
+                .map_err(VulkanError::at("read timestamps"))?;
+            }
+            Ok(Some(ticks))
+        }
+    }
+
+    /// Records and submits a frame. The slot must have been waited for.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn submit(&mut self, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
+        let d = &self.gpu.device;
+        let at = || VulkanError::at("submit a frame");
+        // SAFETY: the slot is not pending, so its pool may be reset; the queue is used by one thread at a time.
+        unsafe {
+            d.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty()).map_err(at())?;
+            let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+            d.begin_command_buffer(self.buffer, &info).map_err(at())?;
+            if self.query_count > 0 {
+                d.reset_query_pool(self.queries, 0, self.query_count);
+            }
+            let queries = (self.query_count > 0).then_some((self.queries, 0));
+            let mut commands = Commands { gpu: &self.gpu, handle: self.buffer, queries };
+            record(&mut commands);
+            self.written = commands.queries.map_or(0, |q| q.1).min(self.query_count);
+            d.end_command_buffer(self.buffer).map_err(at())?;
+            let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];
+            let submit = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
+            d.queue_submit2(self.gpu.queue, &submit, self.fence).map_err(at())?;
+            self.pending = true;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for FrameSlot {
+    fn drop(&mut self) {
+        let d = &self.gpu.device;
+        // SAFETY: what was submitted is waited for before it is destroyed.
+        unsafe {
+            if self.pending {
+                let _ = d.wait_for_fences(&[self.fence], true, u64::MAX);
+            }
+            d.destroy_query_pool(self.queries, None);
+            d.destroy_fence(self.fence, None);
+            d.destroy_command_pool(self.pool, None);
+        }
+    }
+}
+
+// SAFETY (all `unsafe` below): the command buffer is in the recording state for as long as a `Commands` exists, and
+// every handle comes from an owner that callers keep alive until the frame has finished.
+impl Commands<'_> {
+    /// Records, submits and waits.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn once(gpu: &Arc<Gpu>, _what: &str, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
+        let mut slot = FrameSlot::new(gpu, 0)?;
+        slot.submit(record)?;
+        slot.wait()?;
+        Ok(())
+    }
+
+    /// Writes the next timestamp, after everything before it.
+    pub fn timestamp(&mut self) {
+        if let Some((pool, next)) = &mut self.queries {
+            unsafe {
+                self.gpu.device.cmd_write_timestamp2(
+                    self.handle,
+                    vk::PipelineStageFlags2::ALL_COMMANDS,
+                    *pool,
+                    *next,
+                );
+            }
+            *next += 1;
+        }
+    }
+
+    /// Opens a label that debuggers show.
+    pub fn begin_label(&mut self, name: &str) {
+        if let (Some(names), Ok(text)) = (&self.gpu.names, CString::new(name)) {
+            let label = vk::DebugUtilsLabelEXT::default().label_name(&text);
+            unsafe { names.device.cmd_begin_debug_utils_label(self.handle, &label) };
+        }
+    }
+
+    /// Closes the label.
+    pub fn end_label(&mut self) {
+        if let Some(names) = &self.gpu.names {
+            unsafe { names.device.cmd_end_debug_utils_label(self.handle) };
+        }
+    }
+
+    /// A barrier over images (with the image each is for) and memory.
+    pub fn barrier(
+        &mut self,
+        memory: Option<vk::MemoryBarrier2<'static>>,
+        images: &[(&Image, vk::ImageMemoryBarrier2<'static>)],
+    ) {
+        let images: Vec<_> = images.iter().map(|(image, barrier)| barrier.image(image.handle)).collect();
+        let info = vk::DependencyInfo::default().memory_barriers(memory.as_slice()).image_memory_barriers(&images);
+        unsafe { self.gpu.device.cmd_pipeline_barrier2(self.handle, &info) };
+    }
+
+    /// Everything before is visible to everything after.
+    pub fn full_barrier(&mut self) {
+        let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+        let write = vk::AccessFlags2::MEMORY_WRITE;
+        self.barrier(
+            Some(
+                vk::MemoryBarrier2::default()
+                    .src_stage_mask(all)
+                    .src_access_mask(write)
+                    .dst_stage_mask(all)
+                    .dst_access_mask(vk::AccessFlags2::MEMORY_READ | write),
+            ),
+            &[],
+        );
+    }
+
+    /// Moves a whole image from one layout to another, after everything and before everything.
+    pub fn transition(&mut self, image: &Image, from: vk::ImageLayout, to: vk::ImageLayout) {
+        let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+        let barrier = vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(all)
+            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+            .dst_stage_mask(all)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
+            .old_layout(from)
+            .new_layout(to)
+            .subresource_range(whole(image));
+        self.barrier(None, &[(image, barrier)]);
+    }
+
+    /// Binds a pipeline and its set.
+    pub fn bind(&mut self, pipeline: &Pipeline, set: Option<DescriptorSet>) {
+        let d = &self.gpu.device;
+        unsafe {
+            d.cmd_bind_pipeline(self.handle, pipeline.point, pipeline.handle);
+            if let Some(set) = set {
+                d.cmd_bind_descriptor_sets(self.handle, pipeline.point, pipeline.layout, 0, &[set.0], &[]);
+            }
+        }
+    }
+
+    /// Push constants for all of the pipeline's stages.
+    pub fn push(&mut self, pipeline: &Pipeline, bytes: &[u8]) {
+        unsafe { self.gpu.device.cmd_push_constants(self.handle, pipeline.layout, pipeline.push_stages, 0, bytes) };
+    }
+
+    /// Runs a compute grid.
+    pub fn dispatch(&mut self, groups: [u32; 3]) {
+        unsafe { self.gpu.device.cmd_dispatch(self.handle, groups[0], groups[1], groups[2]) };
+    }
+
+    /// Runs a compute grid whose size is in a buffer.
+    pub fn dispatch_indirect(&mut self, buffer: &Buffer, offset: u64) {
+        unsafe { self.gpu.device.cmd_dispatch_indirect(self.handle, buffer.handle, offset) };
+    }
+
+    /// Starts rendering to attachments (a `None` colour is not written) over an area.
+    pub fn begin_rendering(
+        &mut self,
+        size: [u32; 2],
+        color: &[Option<(&View, Option<[f32; 4]>)>],
+        depth: Option<(&View, Option<f32>, bool)>,
+    ) {
+        let load = |clear: bool| if clear { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
+        let colors: Vec<_> = color
+            .iter()
+            .map(|slot| match slot {
+                None => vk::RenderingAttachmentInfo::default(),
+                Some((view, clear)) => vk::RenderingAttachmentInfo::default()
+                    .image_view(view.handle)
+                    .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+                    .load_op(load(clear.is_some()))
+                    .store_op(vk::AttachmentStoreOp::STORE)
+                    .clear_value(vk::ClearValue {
+                        color: vk::ClearColorValue { float32: clear.unwrap_or_default() },
+                    }),
+            })
+            .collect();
+        let depth_info = depth.map(|(view, clear, write)| {
+            vk::RenderingAttachmentInfo::default()
+                .image_view(view.handle)
+                .image_layout(if write {
+                    vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL
+                } else {
+                    vk::ImageLayout::DEPTH_READ_ONLY_OPTIMAL
+                })
+                .load_op(load(clear.is_some()))
+                .store_op(if write { vk::AttachmentStoreOp::STORE } else { vk::AttachmentStoreOp::NONE })
+                .clear_value(vk::ClearValue {
+                    depth_stencil: vk::ClearDepthStencilValue { depth: clear.unwrap_or(1.0), stencil: 0 },
+                })
+        });
+        let area = vk::Rect2D::default().extent(vk::Extent2D { width: size[0], height: size[1] });
+        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colors);
+        if let Some(depth) = &depth_info {
+            info = info.depth_attachment(depth);
+        }
+        let viewport = vk::Viewport {
+            width: size[0] as f32,
+            height: size[1] as f32,
+            max_depth: 1.0,
+            ..Default::default()
+        };
+        unsafe {
+            self.gpu.device.cmd_begin_rendering(self.handle, &info);
+            self.gpu.device.cmd_set_viewport(self.handle, 0, &[viewport]);
+            self.gpu.device.cmd_set_scissor(self.handle, 0, &[area]);
+        }
+    }
+
+    /// Ends rendering.
+    pub fn end_rendering(&mut self) {
+        unsafe { self.gpu.device.cmd_end_rendering(self.handle) };
+    }
+
+    /// Draws without vertex buffers.
+    pub fn draw(&mut self, vertices: u32, instances: u32) {
+        unsafe { self.gpu.device.cmd_draw(self.handle, vertices, instances, 0, 0) };
+    }
+
+    /// Draws with counts from a buffer.
+    pub fn draw_indirect(&mut self, buffer: &Buffer, offset: u64) {
+        unsafe { self.gpu.device.cmd_draw_indirect(self.handle, buffer.handle, offset, 1, 16) };
+    }
+
+    /// Binds 32-bit indices.
+    pub fn bind_indices(&mut self, buffer: &Buffer) {
+        unsafe { self.gpu.device.cmd_bind_index_buffer(self.handle, buffer.handle, 0, vk::IndexType::UINT32) };
+    }
+
+    /// Draws indexed, (index count, first index, first instance).
+    pub fn draw_indexed(&mut self, count: u32, first: u32, instance: u32) {
+        unsafe { self.gpu.device.cmd_draw_indexed(self.handle, count, 1, first, 0, instance) };
+    }
+
+    /// Draws `count` indexed draws (20 bytes each) from a buffer.
+    pub fn draw_indexed_indirect(&mut self, buffer: &Buffer, offset: u64, count: u32) {
+        unsafe { self.gpu.device.cmd_draw_indexed_indirect(self.handle, buffer.handle, offset, count, 20) };
+    }
+
+    /// Writes bytes (a multiple of 4) into a buffer; large data goes in pieces of 64 KiB.
+    pub fn update(&mut self, buffer: &Buffer, bytes: &[u8]) {
+        for (offset, part) in (0u64..).step_by(65536).zip(bytes.chunks(65536)) {
+            unsafe { self.gpu.device.cmd_update_buffer(self.handle, buffer.handle, offset, part) };
+        }
+    }
+
+    /// Fills a buffer with a 32-bit value.
+    pub fn fill(&mut self, buffer: &Buffer, value: u32) {
+        unsafe { self.gpu.device.cmd_fill_buffer(self.handle, buffer.handle, 0, vk::WHOLE_SIZE, value) };
+    }
+
+    /// Clears mips of an image in a layout.
+    pub fn clear(&mut self, image: &Image, layout: vk::ImageLayout, value: vk::ClearColorValue, mips: (u32, u32)) {
+        let range = vk::ImageSubresourceRange { base_mip_level: mips.0, level_count: mips.1, ..whole(image) };
+        unsafe { self.gpu.device.cmd_clear_color_image(self.handle, image.handle, layout, &value, &[range]) };
+    }
+
+    /// Clears the depth of a depth image in a layout.
+    pub fn clear_depth(&mut self, image: &Image, layout: vk::ImageLayout, depth: f32) {
+        let value = vk::ClearDepthStencilValue { depth, stencil: 0 };
+        let range = whole(image);
+        unsafe { self.gpu.device.cmd_clear_depth_stencil_image(self.handle, image.handle, layout, &value, &[range]) };
+    }
+
+    /// Copies a buffer's first bytes.
+    pub fn copy_buffer(&mut self, from: &Buffer, to: &Buffer, bytes: u64) {
+        let region = [vk::BufferCopy::default().size(bytes)];
+        unsafe { self.gpu.device.cmd_copy_buffer(self.handle, from.handle, to.handle, &region) };
+    }
+
+    /// Copies all mips of an image into one of the same size.
+    pub fn copy_image(&mut self, from: &Image, from_layout: vk::ImageLayout, to: &Image, to_layout: vk::ImageLayout) {
+        let regions: Vec<_> = (0..from.desc.mips.min(to.desc.mips))
+            .map(|mip| {
+                let part = layers(from, mip);
+                let [width, height, depth] = from.mip_extent(mip);
+                vk::ImageCopy::default()
+                    .src_subresource(part)
+                    .dst_subresource(part)
+                    .extent(vk::Extent3D { width, height, depth })
+            })
+            .collect();
+        unsafe {
+            self.gpu.device.cmd_copy_image(
+                self.handle,
+                from.handle,
+                from_layout,
+                to.handle,
+                to_layout,
+                &regions,
+            );
+        }
+    }
+
+    /// Copies one mip and layer of an image into a buffer, tightly packed.
+    pub fn read_image(&mut self, image: &Image, layout: vk::ImageLayout, mip: u32, layer: u32, to: &Buffer) {
+        let [width, height, depth] = image.mip_extent(mip);
+        let region = [vk::BufferImageCopy::default()
+            .image_subresource(vk::ImageSubresourceLayers { base_array_layer: layer, layer_count: 1, ..layers(image, mip) })
+            .image_extent(vk::Extent3D { width, height, depth })];
+        unsafe { self.gpu.device.cmd_copy_image_to_buffer(self.handle, image.handle, layout, to.handle, &region) };
+    }
+
+    pub(super) fn fill_image(&mut self, image: &Image, from: &Buffer, regions: &[vk::BufferImageCopy]) {
+        let target = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        self.transition(image, vk::ImageLayout::UNDEFINED, target);
+        unsafe {
+            self.gpu.device.cmd_copy_buffer_to_image(self.handle, from.handle, image.handle, target, regions);
+        }
+        self.transition(image, target, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL);
+    }
+}
+
+fn aspect(image: &Image) -> vk::ImageAspectFlags {
+    match image.desc.format {
+        vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => vk::ImageAspectFlags::DEPTH,
+        _ => vk::ImageAspectFlags::COLOR,
+    }
+}
+
+fn whole(image: &Image) -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange {
+        aspect_mask: aspect(image),
+        base_mip_level: 0,
+        level_count: vk::REMAINING_MIP_LEVELS,
+        base_array_layer: 0,
+        layer_count: vk::REMAINING_ARRAY_LAYERS,
+    }
+}
+
+fn layers(image: &Image, mip: u32) -> vk::ImageSubresourceLayers {
+    vk::ImageSubresourceLayers {
+        aspect_mask: aspect(image),
+        mip_level: mip,
+        base_array_layer: 0,
+        layer_count: image.desc.layers,
+    }
+}

@@ -1,0 +1,60 @@
+//! Validation messages, collected so that tests and the command line can fail on any of them.
+
+use ash::{ext, vk};
+use std::ffi::{CStr, c_void};
+use std::sync::Mutex;
+
+/// The messages so far. Boxed by its owner so that the callback's pointer to it stays valid.
+#[derive(Default)]
+pub(super) struct Messages(pub(super) Mutex<Vec<String>>);
+
+/// Receives one message of the validation layer.
+///
+/// # Safety
+/// Called by the loader with a valid `data` and with `user` pointing at the [`Messages`] given on creation, which
+/// outlives the messenger.
+pub(super) unsafe extern "system" fn on_message(
+    severity: vk::DebugUtilsMessageSeverityFlagsEXT,
+    _kind: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    user: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: see the function's contract; the strings of `data` live for this call.
+    let (text, messages) = unsafe {
+        let text = if data.is_null() || (*data).p_message.is_null() {
+            String::from("(no text)")
+        } else {
+            CStr::from_ptr((*data).p_message).to_string_lossy().into_owned()
+        };
+        (text, &*user.cast::<Messages>())
+    };
+    // The loader itself warns of drivers it cannot open, which is no fault of this program.
+    if !text.starts_with("loader") && !text.contains("terminator_CreateInstance") {
+        let level = if severity.contains(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR) { "error" } else { "warning" };
+        eprintln!("vulkan validation {level}: {text}");
+        if let Ok(mut list) = messages.0.lock() {
+            list.push(format!("{level}: {text}"));
+        }
+    }
+    vk::FALSE
+}
+
+/// How the messenger is created: warnings and errors, all kinds.
+pub(super) fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'static> {
+    vk::DebugUtilsMessengerCreateInfoEXT::default()
+        .message_severity(
+            vk::DebugUtilsMessageSeverityFlagsEXT::WARNING | vk::DebugUtilsMessageSeverityFlagsEXT::ERROR,
+        )
+        .message_type(
+            vk::DebugUtilsMessageTypeFlagsEXT::VALIDATION
+                | vk::DebugUtilsMessageTypeFlagsEXT::PERFORMANCE
+                | vk::DebugUtilsMessageTypeFlagsEXT::GENERAL,
+        )
+        .pfn_user_callback(Some(on_message))
+        .user_data(std::ptr::from_ref(messages).cast_mut().cast())
+}
+
+/// Object names and labels for debuggers; absent where the extension is.
+pub(super) struct Names {
+    pub(super) device: ext::debug_utils::Device,
+}

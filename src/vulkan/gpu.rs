@@ -1,0 +1,445 @@
+//! Instance, device, queue, allocator and pipeline cache.
+
+use super::debug::{Messages, Names, messenger_info};
+use super::{Result, VulkanError};
+use ash::{Entry, ext, vk};
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use std::ffi::{CStr, CString};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+/// How to open a device.
+#[derive(Clone, Debug, Default)]
+pub struct GpuOptions {
+    /// Part of the device's name, or its number in `conelab devices`; the fastest kind of device when absent.
+    pub device: Option<String>,
+    /// Turn on the validation layer with synchronization validation.
+    pub validation: bool,
+    /// Folder for the pipeline cache; none when absent.
+    pub cache: Option<PathBuf>,
+}
+
+/// Optional abilities, asked for only by the switches that need them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Features {
+    /// `VK_EXT_conservative_rasterization`, overestimating.
+    pub conservative_rasterization: bool,
+    /// Geometry shaders.
+    pub geometry: bool,
+    /// Tessellation shaders.
+    pub tessellation: bool,
+    /// Stores and atomics in fragment shaders.
+    pub fragment_stores: bool,
+    /// Stores and atomics in vertex, tessellation and geometry shaders.
+    pub vertex_stores: bool,
+    /// `gl_ClipDistance`.
+    pub clip_distance: bool,
+    /// Clamping of depth instead of clipping.
+    pub depth_clamp: bool,
+    /// BC1 to BC7 textures.
+    pub bc: bool,
+    /// Anisotropic filtering.
+    pub anisotropy: bool,
+    /// Storage images may be written without a format in the shader.
+    pub write_without_format: bool,
+    /// Several draws from one buffer in one call.
+    pub multi_draw_indirect: bool,
+}
+
+/// What a device is.
+#[derive(Clone, Debug)]
+pub struct DeviceInfo {
+    /// Device name as the driver gives it.
+    pub name: String,
+    /// Driver name and version text.
+    pub driver: String,
+    /// Vulkan version of the device.
+    pub api: String,
+    /// Kind: discrete, integrated, virtual, cpu, other.
+    pub kind: &'static str,
+    /// Nanoseconds of one timestamp tick; 0 when the queue has no timestamps.
+    pub timestamp_ns: f64,
+    /// Limits.
+    pub limits: vk::PhysicalDeviceLimits,
+    /// Bytes of the largest device-local heap.
+    pub heap: u64,
+    /// Optional abilities.
+    pub features: Features,
+    cache_key: String,
+}
+
+impl DeviceInfo {
+    /// A device that does not exist, with these features and generous limits: for checks that need no device.
+    pub fn imaginary(features: Features) -> DeviceInfo {
+        let limits = vk::PhysicalDeviceLimits {
+            max_image_dimension2_d: 16384,
+            max_image_dimension3_d: 4096,
+            max_image_array_layers: 2048,
+            max_storage_buffer_range: u32::MAX,
+            max_viewport_dimensions: [16384; 2],
+            max_framebuffer_width: 16384,
+            max_framebuffer_height: 16384,
+            max_compute_work_group_count: [65535; 3],
+            framebuffer_no_attachments_sample_counts: vk::SampleCountFlags::from_raw(0x1f),
+            ..Default::default()
+        };
+        DeviceInfo {
+            name: "no device".into(),
+            driver: String::new(),
+            api: String::new(),
+            kind: "none",
+            timestamp_ns: 0.0,
+            limits,
+            heap: u64::MAX,
+            features,
+            cache_key: String::new(),
+        }
+    }
+}
+
+/// An open device with one graphics and compute queue.
+pub struct Gpu {
+    pub(super) device: ash::Device,
+    pub(super) queue: vk::Queue,
+    pub(super) family: u32,
+    pub(super) allocator: Mutex<Option<Allocator>>,
+    pub(super) pipeline_cache: vk::PipelineCache,
+    pub(super) names: Option<Names>,
+    /// What the device is.
+    pub info: DeviceInfo,
+    cache_file: Option<PathBuf>,
+    messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    messages: Box<Messages>,
+    instance: ash::Instance,
+    _entry: Entry,
+}
+
+const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+fn load() -> Result<Entry> {
+    // SAFETY: loads the system's Vulkan loader, whose initialisation has no preconditions.
+    unsafe { Entry::load() }.map_err(|e| VulkanError::Loader(e.to_string()))
+}
+
+fn create_instance(entry: &Entry, validation: bool, messages: &Messages) -> Result<(ash::Instance, bool)> {
+    // SAFETY: plain enumeration and creation calls with structures that outlive them.
+    unsafe {
+        let layers = entry.enumerate_instance_layer_properties().map_err(VulkanError::at("list layers"))?;
+        let has_layer = layers.iter().any(|l| l.layer_name_as_c_str() == Ok(VALIDATION));
+        if validation && !has_layer {
+            return Err(VulkanError::NoValidation);
+        }
+        let extensions =
+            entry.enumerate_instance_extension_properties(None).map_err(VulkanError::at("list extensions"))?;
+        let debug_utils =
+            extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(ext::debug_utils::NAME)) || validation;
+        let layer_names = if validation { vec![VALIDATION.as_ptr()] } else { vec![] };
+        let extension_names = if debug_utils { vec![ext::debug_utils::NAME.as_ptr()] } else { vec![] };
+        let app = vk::ApplicationInfo::default().application_name(c"conelab").api_version(vk::API_VERSION_1_3);
+        let enables = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+        let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
+        let mut messenger = messenger_info(messages);
+        let mut info = vk::InstanceCreateInfo::default()
+            .application_info(&app)
+            .enabled_layer_names(&layer_names)
+            .enabled_extension_names(&extension_names);
+        if validation {
+            info = info.push_next(&mut features).push_next(&mut messenger);
+        }
+        let instance = entry.create_instance(&info, None).map_err(VulkanError::at("create an instance"))?;
+        Ok((instance, debug_utils))
+    }
+}
+
+fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInfo {
+    // SAFETY: `physical` comes from this instance; the chained structures live through the calls.
+    unsafe {
+        let mut driver = vk::PhysicalDeviceDriverProperties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+        instance.get_physical_device_properties2(physical, &mut properties);
+        let core = properties.properties;
+        let have = instance.get_physical_device_features(physical);
+        let extensions = instance.enumerate_device_extension_properties(physical).unwrap_or_default();
+        let memory = instance.get_physical_device_memory_properties(physical);
+        let heap = memory
+            .memory_heaps_as_slice()
+            .iter()
+            .filter(|h| h.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL))
+            .map(|h| h.size)
+            .max()
+            .unwrap_or(0);
+        let text = |c: &[std::ffi::c_char]| {
+            let bytes: Vec<u8> = c.iter().take_while(|&&b| b != 0).map(|&b| b.cast_unsigned()).collect();
+            String::from_utf8_lossy(&bytes).into_owned()
+        };
+        let version = core.api_version;
+        DeviceInfo {
+            name: text(&core.device_name),
+            driver: format!("{} {}", text(&driver.driver_name), text(&driver.driver_info)).trim().to_string(),
+            api: format!(
+                "{}.{}.{}",
+                vk::api_version_major(version),
+                vk::api_version_minor(version),
+                vk::api_version_patch(version)
+            ),
+            kind: match core.device_type {
+                vk::PhysicalDeviceType::DISCRETE_GPU => "discrete",
+                vk::PhysicalDeviceType::INTEGRATED_GPU => "integrated",
+                vk::PhysicalDeviceType::VIRTUAL_GPU => "virtual",
+                vk::PhysicalDeviceType::CPU => "cpu",
+                _ => "other",
+            },
+            timestamp_ns: f64::from(core.limits.timestamp_period),
+            limits: core.limits,
+            heap,
+            features: Features {
+                conservative_rasterization: extensions
+                    .iter()
+                    .any(|e| e.extension_name_as_c_str() == Ok(ext::conservative_rasterization::NAME)),
+                geometry: have.geometry_shader == vk::TRUE,
+                tessellation: have.tessellation_shader == vk::TRUE,
+                fragment_stores: have.fragment_stores_and_atomics == vk::TRUE,
+                vertex_stores: have.vertex_pipeline_stores_and_atomics == vk::TRUE,
+                clip_distance: have.shader_clip_distance == vk::TRUE,
+                depth_clamp: have.depth_clamp == vk::TRUE,
+                bc: have.texture_compression_bc == vk::TRUE,
+                anisotropy: have.sampler_anisotropy == vk::TRUE,
+                write_without_format: have.shader_storage_image_write_without_format == vk::TRUE,
+                multi_draw_indirect: have.multi_draw_indirect == vk::TRUE
+                    && have.draw_indirect_first_instance == vk::TRUE,
+            },
+            cache_key: format!(
+                "{:04x}-{:04x}-{:08x}-{}",
+                core.vendor_id,
+                core.device_id,
+                core.driver_version,
+                core.pipeline_cache_uuid.iter().map(|b| format!("{b:02x}")).collect::<String>()
+            ),
+        }
+    }
+}
+
+/// Why a device cannot be used, or `None`.
+fn refusal(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<String> {
+    // SAFETY: as in `describe`.
+    unsafe {
+        let properties = instance.get_physical_device_properties(physical);
+        if properties.api_version < vk::API_VERSION_1_3 {
+            return Some("Vulkan older than 1.3".into());
+        }
+        let mut v13 = vk::PhysicalDeviceVulkan13Features::default();
+        let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut v13);
+        instance.get_physical_device_features2(physical, &mut features);
+        if v13.dynamic_rendering == vk::FALSE || v13.synchronization2 == vk::FALSE {
+            return Some("no dynamic rendering or synchronization2".into());
+        }
+        queue_family(instance, physical).is_none().then(|| "no queue with graphics and compute".into())
+    }
+}
+
+fn queue_family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<u32> {
+    let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    // SAFETY: `physical` comes from this instance.
+    let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+    families.iter().position(|f| f.queue_flags.contains(wanted)).and_then(|i| u32::try_from(i).ok())
+}
+
+fn physical_devices(instance: &ash::Instance) -> Result<Vec<vk::PhysicalDevice>> {
+    // SAFETY: the instance is alive.
+    unsafe { instance.enumerate_physical_devices() }.map_err(VulkanError::at("list devices"))
+}
+
+/// Every device with the reason it cannot be used, if any, in the order that `GpuOptions::device` counts.
+pub fn list_devices() -> Result<Vec<(DeviceInfo, Option<String>)>> {
+    let entry = load()?;
+    let messages = Messages::default();
+    let (instance, _) = create_instance(&entry, false, &messages)?;
+    let list = physical_devices(&instance)
+        .map(|all| all.into_iter().map(|p| (describe(&instance, p), refusal(&instance, p))).collect());
+    // SAFETY: nothing made from the instance is alive any more.
+    unsafe { instance.destroy_instance(None) };
+    list
+}
+
+fn choose(instance: &ash::Instance, wanted: Option<&str>) -> Result<vk::PhysicalDevice> {
+    let mut found = Vec::new();
+    let mut usable = Vec::new();
+    for (number, physical) in physical_devices(instance)?.into_iter().enumerate() {
+        let info = describe(instance, physical);
+        match refusal(instance, physical) {
+            Some(why) => found.push(format!("{number}: {} ({why})", info.name)),
+            None => {
+                found.push(format!("{number}: {}", info.name));
+                usable.push((number, physical, info));
+            }
+        }
+    }
+    let matches = |number: usize, info: &DeviceInfo| match wanted {
+        None => true,
+        Some(w) => w == number.to_string() || info.name.to_lowercase().contains(&w.to_lowercase()),
+    };
+    let rank = |info: &DeviceInfo| match info.kind {
+        "discrete" => 0,
+        "integrated" => 1,
+        "virtual" => 2,
+        _ => 3,
+    };
+    usable
+        .into_iter()
+        .filter(|(number, _, info)| matches(*number, info))
+        .min_by_key(|(number, _, info)| (rank(info), *number))
+        .map(|(_, physical, _)| physical)
+        .ok_or_else(|| VulkanError::NoDevice {
+            wanted: wanted.map_or(String::from("with graphics and compute"), |w| format!("named '{w}'")),
+            found: if found.is_empty() { "none".into() } else { found.join(", ") },
+        })
+}
+
+impl Gpu {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// No loader, no device of Vulkan 1.3, no validation layer where asked for.
+    pub fn open(options: &GpuOptions) -> Result<Arc<Gpu>> {
+        let entry = load()?;
+        let messages = Box::new(Messages::default());
+        let (instance, debug_utils) = create_instance(&entry, options.validation, &messages)?;
+        let messenger = if options.validation {
+            let api = ext::debug_utils::Instance::new(&entry, &instance);
+            // SAFETY: the callback's user data is the boxed message list, dropped after the messenger.
+            let handle = unsafe { api.create_debug_utils_messenger(&messenger_info(&messages), None) }
+                .map_err(VulkanError::at("create the debug messenger"))?;
+            Some((api, handle))
+        } else {
+            None
+        };
+        let physical = choose(&instance, options.device.as_deref())?;
+        let info = describe(&instance, physical);
+        let family = queue_family(&instance, physical).unwrap_or(0);
+        let device = create_device(&instance, physical, family, &info.features)?;
+        // SAFETY: the family and index were used to create the device.
+        let queue = unsafe { device.get_device_queue(family, 0) };
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: instance.clone(),
+            device: device.clone(),
+            physical_device: physical,
+            debug_settings: gpu_allocator::AllocatorDebugSettings::default(),
+            buffer_device_address: false,
+            // Small blocks: software devices have one heap of 2 GiB, and large images get their own memory anyway.
+            allocation_sizes: gpu_allocator::AllocationSizes::new(32 << 20, 16 << 20),
+        })
+        .map_err(|e| VulkanError::OutOfMemory { what: format!("the allocator ({e})"), mib: 0.0 })?;
+        let cache_file = options.cache.as_ref().map(|dir| dir.join(format!("pipelines-{}", info.cache_key)));
+        let blob = cache_file.as_deref().and_then(crate::files::read_checked).unwrap_or_default();
+        let cache_info = vk::PipelineCacheCreateInfo::default().initial_data(&blob);
+        // SAFETY: the driver checks the blob's header; its content was checked against its checksum.
+        let pipeline_cache = unsafe { device.create_pipeline_cache(&cache_info, None) }
+            .map_err(VulkanError::at("create the pipeline cache"))?;
+        let names = debug_utils.then(|| Names { device: ext::debug_utils::Device::new(&instance, &device) });
+        Ok(Arc::new(Gpu {
+            device,
+            queue,
+            family,
+            allocator: Mutex::new(Some(allocator)),
+            pipeline_cache,
+            names,
+            info,
+            cache_file,
+            messenger,
+            messages,
+            instance,
+            _entry: entry,
+        }))
+    }
+
+    /// Validation messages so far; empty without validation.
+    pub fn messages(&self) -> Vec<String> {
+        self.messages.0.lock().map(|m| m.clone()).unwrap_or_default()
+    }
+
+    /// Waits until the device has nothing left to do.
+    pub fn wait_idle(&self) -> Result<()> {
+        // SAFETY: the device is alive; the queue is used from one thread at a time (`&self` of one lab).
+        unsafe { self.device.device_wait_idle() }.map_err(VulkanError::at("wait for the device"))
+    }
+
+    /// Writes the pipeline cache to disk, whole or not at all. Failing to is no error: the next start is slower.
+    pub fn save_pipeline_cache(&self) {
+        let Some(file) = &self.cache_file else { return };
+        // SAFETY: the cache is alive.
+        if let Ok(blob) = unsafe { self.device.get_pipeline_cache_data(self.pipeline_cache) } {
+            let _ = crate::files::write_checked(file, &blob);
+        }
+    }
+
+    pub(super) fn name<H: vk::Handle>(&self, handle: H, name: &str) {
+        let Some(names) = &self.names else { return };
+        let Ok(text) = CString::new(name) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&text);
+        // SAFETY: the handle belongs to this device. A debugger's label has no effect if it fails.
+        let _ = unsafe { names.device.set_debug_utils_object_name(&info) };
+    }
+}
+
+fn create_device(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    family: u32,
+    have: &Features,
+) -> Result<ash::Device> {
+    let features = vk::PhysicalDeviceFeatures::default()
+        .geometry_shader(have.geometry)
+        .tessellation_shader(have.tessellation)
+        .fragment_stores_and_atomics(have.fragment_stores)
+        .vertex_pipeline_stores_and_atomics(have.vertex_stores)
+        .shader_clip_distance(have.clip_distance)
+        .depth_clamp(have.depth_clamp)
+        .texture_compression_bc(have.bc)
+        .sampler_anisotropy(have.anisotropy)
+        .shader_storage_image_write_without_format(have.write_without_format)
+        .multi_draw_indirect(have.multi_draw_indirect)
+        .draw_indirect_first_instance(have.multi_draw_indirect)
+        .independent_blend(true)
+        .robust_buffer_access(true);
+    let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
+        .dynamic_rendering(true)
+        .synchronization2(true)
+        .maintenance4(true)
+        .robust_image_access(true);
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true).uniform_buffer_standard_layout(true);
+    let priorities = [1.0];
+    let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
+    let extensions: Vec<_> = have
+        .conservative_rasterization
+        .then(|| ext::conservative_rasterization::NAME.as_ptr())
+        .into_iter()
+        .collect();
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&extensions)
+        .enabled_features(&features)
+        .push_next(&mut v13)
+        .push_next(&mut v12);
+    // SAFETY: every feature and extension asked for was reported by this device.
+    unsafe { instance.create_device(physical, &info, None) }.map_err(VulkanError::at("open the device"))
+}
+
+impl Drop for Gpu {
+    fn drop(&mut self) {
+        self.save_pipeline_cache();
+        // SAFETY: every object made from the device holds an `Arc` of this, so all are gone; the allocator frees its
+        // memory before the device goes.
+        unsafe {
+            let _ = self.device.device_wait_idle();
+            self.device.destroy_pipeline_cache(self.pipeline_cache, None);
+            if let Ok(mut allocator) = self.allocator.lock() {
+                allocator.take();
+            }
+            self.device.destroy_device(None);
+            if let Some((api, handle)) = self.messenger.take() {
+                api.destroy_debug_utils_messenger(handle, None);
+            }
+            self.instance.destroy_instance(None);
+        }
+    }
+}

@@ -1,0 +1,344 @@
+//! Buffers, images and views that free themselves.
+
+use super::{Commands, Gpu, Result, VulkanError, vk};
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use std::sync::Arc;
+
+/// A buffer and its memory.
+pub struct Buffer {
+    gpu: Arc<Gpu>,
+    pub(super) handle: vk::Buffer,
+    allocation: Option<Allocation>,
+    /// Bytes.
+    pub size: u64,
+}
+
+/// What an image is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageDesc {
+    /// Name for debuggers and errors.
+    pub name: String,
+    /// Width, height, depth (1 for 2D).
+    pub extent: [u32; 3],
+    /// Whether it is a 3D image.
+    pub volume: bool,
+    /// Array layers.
+    pub layers: u32,
+    /// Mip levels.
+    pub mips: u32,
+    /// Format of the texels.
+    pub format: vk::Format,
+    /// Further formats it may be viewed as (mutable format).
+    pub views: Vec<vk::Format>,
+    /// How it is used.
+    pub usage: vk::ImageUsageFlags,
+}
+
+/// An image and its memory.
+pub struct Image {
+    gpu: Arc<Gpu>,
+    pub(super) handle: vk::Image,
+    allocation: Option<Allocation>,
+    /// What it is.
+    pub desc: ImageDesc,
+    /// Bytes of its memory.
+    pub bytes: u64,
+}
+
+/// Which part of an image a view shows, and as what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ViewDesc {
+    /// Shape the shader expects.
+    pub kind: vk::ImageViewType,
+    /// Format it is read as.
+    pub format: vk::Format,
+    /// Depth or colour.
+    pub aspect: vk::ImageAspectFlags,
+    /// First mip and their number.
+    pub mips: (u32, u32),
+    /// First layer and their number.
+    pub layers: (u32, u32),
+}
+
+/// A view of an image, which it keeps alive.
+pub struct View {
+    pub(super) handle: vk::ImageView,
+    image: Arc<Image>,
+}
+
+fn allocate(
+    gpu: &Gpu,
+    name: &str,
+    requirements: vk::MemoryRequirements,
+    location: MemoryLocation,
+    scheme: AllocationScheme,
+) -> Result<Allocation> {
+    let out_of_memory = || VulkanError::OutOfMemory {
+        what: format!("'{name}'"),
+        mib: requirements.size as f64 / (1 << 20) as f64,
+    };
+    if requirements.size > gpu.info.heap && location == MemoryLocation::GpuOnly {
+        return Err(out_of_memory());
+    }
+    let desc = AllocationCreateDesc { name, requirements, location, linear: true, allocation_scheme: scheme };
+    match gpu.allocator.lock() {
+        Ok(mut guard) => guard.as_mut().and_then(|a| a.allocate(&desc).ok()).ok_or_else(out_of_memory),
+        Err(_) => Err(out_of_memory()),
+    }
+}
+
+fn free(gpu: &Gpu, allocation: Option<Allocation>) {
+    if let (Some(allocation), Ok(mut guard)) = (allocation, gpu.allocator.lock())
+        && let Some(allocator) = guard.as_mut()
+    {
+        let _ = allocator.free(allocation);
+    }
+}
+
+impl Buffer {
+    /// Makes a buffer; `host` memory can be written and read by the program.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        name: &str,
+        size: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+    ) -> Result<Buffer> {
+        let size = size.max(16).next_multiple_of(4);
+        let info = vk::BufferCreateInfo::default().size(size).usage(usage);
+        // SAFETY: a plain creation; the handle is destroyed in `drop`.
+        let handle = unsafe { gpu.device.create_buffer(&info, None) }
+            .map_err(|_| VulkanError::OutOfMemory { what: format!("'{name}'"), mib: size as f64 / 1048576.0 })?;
+        let mut buffer = Buffer { gpu: gpu.clone(), handle, allocation: None, size };
+        // SAFETY: the handle is this device's.
+        let requirements = unsafe { gpu.device.get_buffer_memory_requirements(handle) };
+        let scheme = if size > 16 << 20 {
+            AllocationScheme::DedicatedBuffer(handle)
+        } else {
+            AllocationScheme::GpuAllocatorManaged
+        };
+        let allocation = allocate(gpu, name, requirements, location, scheme)?;
+        // SAFETY: the memory is new, large enough and of an allowed type (the allocator chose by `requirements`).
+        unsafe { gpu.device.bind_buffer_memory(handle, allocation.memory(), allocation.offset()) }
+            .map_err(VulkanError::at(format!("bind the memory of '{name}'")))?;
+        buffer.allocation = Some(allocation);
+        gpu.name(handle, name);
+        Ok(buffer)
+    }
+
+    /// The mapped bytes of a host buffer; empty for others.
+    pub fn bytes(&self) -> &[u8] {
+        self.allocation.as_ref().and_then(|a| a.mapped_slice()).unwrap_or(&[])
+    }
+
+    /// The mapped bytes of a host buffer, to write; empty for others.
+    pub fn bytes_mut(&mut self) -> &mut [u8] {
+        self.allocation.as_mut().and_then(|a| a.mapped_slice_mut()).unwrap_or(&mut [])
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: owners drop buffers only after the frames that use them have finished.
+        unsafe { self.gpu.device.destroy_buffer(self.handle, None) };
+        free(&self.gpu, self.allocation.take());
+    }
+}
+
+impl Image {
+    /// Makes an image with undefined content and layout.
+    ///
+    /// # Errors
+    /// Sizes the device cannot make, formats it does not support for this use, out of memory.
+    pub fn new(gpu: &Arc<Gpu>, desc: ImageDesc) -> Result<Image> {
+        let limits = &gpu.info.limits;
+        let limit = if desc.volume { limits.max_image_dimension3_d } else { limits.max_image_dimension2_d };
+        let refuse = |asked: String, limit: String| VulkanError::Limit {
+            what: format!("'{}'", desc.name),
+            asked,
+            limit,
+            device: gpu.info.name.clone(),
+        };
+        let [x, y, z] = desc.extent;
+        if x.max(y).max(z) > limit || x.min(y).min(z) == 0 {
+            return Err(refuse(format!("{x}x{y}x{z}"), format!("{limit} texels a side (and at least 1)")));
+        }
+        if desc.layers > limits.max_image_array_layers {
+            return Err(refuse(format!("{} layers", desc.layers), limits.max_image_array_layers.to_string()));
+        }
+        let formats: Vec<vk::Format> = std::iter::once(desc.format).chain(desc.views.iter().copied()).collect();
+        let mut list = vk::ImageFormatListCreateInfo::default().view_formats(&formats);
+        let mut info = vk::ImageCreateInfo::default()
+            .image_type(if desc.volume { vk::ImageType::TYPE_3D } else { vk::ImageType::TYPE_2D })
+            .format(desc.format)
+            .extent(vk::Extent3D { width: x, height: y, depth: z })
+            .mip_levels(desc.mips)
+            .array_layers(desc.layers)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(desc.usage);
+        if !desc.views.is_empty() {
+            info = info
+                .flags(vk::ImageCreateFlags::MUTABLE_FORMAT | vk::ImageCreateFlags::EXTENDED_USAGE)
+                .push_next(&mut list);
+        }
+        // SAFETY: a plain creation; the handle is destroyed in `drop`.
+        let handle = unsafe { gpu.device.create_image(&info, None) }
+            .map_err(VulkanError::at(format!("create the image '{}' ({x}x{y}x{z})", desc.name)))?;
+        let mut image = Image { gpu: gpu.clone(), handle, allocation: None, bytes: 0, desc };
+        // SAFETY: the handle is this device's.
+        let requirements = unsafe { gpu.device.get_image_memory_requirements(handle) };
+        // Each image has its own memory: they are few and large, and it keeps buffers and images apart.
+        let allocation = allocate(
+            gpu,
+            &image.desc.name,
+            requirements,
+            MemoryLocation::GpuOnly,
+            AllocationScheme::DedicatedImage(handle),
+        )?;
+        // SAFETY: as for buffers.
+        unsafe { gpu.device.bind_image_memory(handle, allocation.memory(), allocation.offset()) }
+            .map_err(VulkanError::at(format!("bind the memory of '{}'", image.desc.name)))?;
+        image.bytes = requirements.size;
+        image.allocation = Some(allocation);
+        gpu.name(handle, &image.desc.name);
+        Ok(image)
+    }
+
+    /// Extent of a mip.
+    pub fn mip_extent(&self, mip: u32) -> [u32; 3] {
+        self.desc.extent.map(|n| (n >> mip).max(1))
+    }
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: as for buffers.
+        unsafe { self.gpu.device.destroy_image(self.handle, None) };
+        free(&self.gpu, self.allocation.take());
+    }
+}
+
+impl View {
+    /// Makes a view.
+    ///
+    /// # Errors
+    /// Vulkan's own.
+    pub fn new(image: &Arc<Image>, desc: &ViewDesc) -> Result<View> {
+        let info = vk::ImageViewCreateInfo::default()
+            .image(image.handle)
+            .view_type(desc.kind)
+            .format(desc.format)
+            .subresource_range(
+                vk::ImageSubresourceRange::default()
+                    .aspect_mask(desc.aspect)
+                    .base_mip_level(desc.mips.0)
+                    .level_count(desc.mips.1)
+                    .base_array_layer(desc.layers.0)
+                    .layer_count(desc.layers.1),
+            );
+        // SAFETY: the image is kept alive by the view.
+        let handle = unsafe { image.gpu.device.create_image_view(&info, None) }
+            .map_err(VulkanError::at(format!("view the image '{}'", image.desc.name)))?;
+        image.gpu.name(handle, &image.desc.name);
+        Ok(View { handle, image: image.clone() })
+    }
+}
+
+impl Drop for View {
+    fn drop(&mut self) {
+        // SAFETY: as for buffers.
+        unsafe { self.image.gpu.device.destroy_image_view(self.handle, None) };
+    }
+}
+
+/// Copies data to the device at load time, in one submission.
+pub struct Upload {
+    gpu: Arc<Gpu>,
+    buffers: Vec<(Arc<Buffer>, Buffer)>,
+    images: Vec<(Arc<Image>, Buffer, Vec<vk::BufferImageCopy>)>,
+}
+
+impl Upload {
+    /// Starts collecting.
+    pub fn new(gpu: &Arc<Gpu>) -> Upload {
+        Upload { gpu: gpu.clone(), buffers: Vec::new(), images: Vec::new() }
+    }
+
+    fn staging(&self, bytes: &[u8]) -> Result<Buffer> {
+        let mut staging = Buffer::new(
+            &self.gpu,
+            "upload",
+            bytes.len() as u64,
+            vk::BufferUsageFlags::TRANSFER_SRC,
+            MemoryLocation::CpuToGpu,
+        )?;
+        staging.bytes_mut()[..bytes.len()].copy_from_slice(bytes);
+        Ok(staging)
+    }
+
+    /// A device buffer with this content.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn buffer(&mut self, name: &str, bytes: &[u8], usage: vk::BufferUsageFlags) -> Result<Arc<Buffer>> {
+        let usage = usage | vk::BufferUsageFlags::TRANSFER_DST;
+        let buffer = Arc::new(Buffer::new(&self.gpu, name, bytes.len() as u64, usage, MemoryLocation::GpuOnly)?);
+        if !bytes.is_empty() {
+            let staging = self.staging(bytes)?;
+            self.buffers.push((buffer.clone(), staging));
+        }
+        Ok(buffer)
+    }
+
+    /// Fills an image, `parts[layer][mip]`, and leaves it ready to be sampled.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn image(&mut self, image: &Arc<Image>, parts: &[Vec<&[u8]>]) -> Result<()> {
+        let mut bytes: Vec<u8> = Vec::new();
+        let mut regions = Vec::new();
+        for (layer, mips) in (0u32..).zip(parts) {
+            for (mip, part) in (0u32..).zip(mips) {
+                // Offsets must be multiples of the texel block's size: 16 covers them all.
+                bytes.resize(bytes.len().next_multiple_of(16), 0);
+                let [width, height, depth] = image.mip_extent(mip);
+                regions.push(
+                    vk::BufferImageCopy::default()
+                        .buffer_offset(bytes.len() as u64)
+                        .image_subresource(
+                            vk::ImageSubresourceLayers::default()
+                                .aspect_mask(vk::ImageAspectFlags::COLOR)
+                                .mip_level(mip)
+                                .base_array_layer(layer)
+                                .layer_count(1),
+                        )
+                        .image_extent(vk::Extent3D { width, height, depth }),
+                );
+                bytes.extend_from_slice(part);
+            }
+        }
+        let staging = self.staging(&bytes)?;
+        self.images.push((image.clone(), staging, regions));
+        Ok(())
+    }
+
+    /// Submits and waits.
+    ///
+    /// # Errors
+    /// Vulkan's own.
+    pub fn finish(self) -> Result<()> {
+        Commands::once(&self.gpu, "upload", |commands| {
+            for (buffer, staging) in &self.buffers {
+                commands.copy_buffer(staging, buffer, staging.size.min(buffer.size));
+            }
+            for (image, staging, regions) in &self.images {
+                commands.fill_image(image, staging, regions);
+            }
+        })
+    }
+}

@@ -1,0 +1,92 @@
+//! A thin layer over Vulkan 1.3: one device and one queue, memory that frees itself, pipelines, timestamps.
+//!
+//! It knows no graph, no scene and no voxels. All `unsafe` of the crate is here; every handle is owned by a type
+//! that keeps the [`Gpu`] alive and destroys the handle when dropped.
+
+mod command;
+mod debug;
+pub mod format;
+mod gpu;
+mod memory;
+mod pipeline;
+mod sampler;
+
+pub use ash::vk;
+pub use command::{Commands, FrameSlot};
+pub use format::Format;
+pub use gpu::{DeviceInfo, Features, Gpu, GpuOptions, list_devices};
+pub use memory::{Buffer, Image, ImageDesc, Upload, View, ViewDesc};
+pub use pipeline::{
+    Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState, Pipeline, PipelineDesc, SpecValue,
+    Stage, StageDesc,
+};
+pub use sampler::{Sampler, SamplerDesc};
+
+/// What went wrong in the Vulkan layer, and what a user can do about it.
+#[derive(Debug, thiserror::Error)]
+pub enum VulkanError {
+    /// No loader library on this system.
+    #[error("cannot load Vulkan: {0}. Install the Vulkan loader (Debian, Ubuntu: libvulkan1)")]
+    Loader(String),
+    /// No device that is good enough; the text lists what was found.
+    #[error(
+        "no Vulkan 1.3 device {wanted}: found {found}. A software device comes with the package mesa-vulkan-drivers"
+    )]
+    NoDevice {
+        /// What was asked for.
+        wanted: String,
+        /// The devices that exist, with the reason each was refused.
+        found: String,
+    },
+    /// The validation layer was asked for and is not installed.
+    #[error("the Vulkan validation layer is not installed (Debian, Ubuntu: vulkan-validationlayers)")]
+    NoValidation,
+    /// Device memory ran out.
+    #[error("out of device memory: {what} needs {mib:.0} MiB. Use fewer voxels, a smaller shadow map or a smaller picture")]
+    OutOfMemory {
+        /// The resource that did not fit.
+        what: String,
+        /// Its size.
+        mib: f64,
+    },
+    /// A size the device cannot make.
+    #[error("{what} is {asked}, and {device} allows at most {limit}")]
+    Limit {
+        /// What was asked for.
+        what: String,
+        /// The value asked for.
+        asked: String,
+        /// The device's limit.
+        limit: String,
+        /// The device's name.
+        device: String,
+    },
+    /// The device was lost (a driver's reset, often a shader that runs too long).
+    #[error("the GPU was lost during {0}: a shader ran too long, or the driver failed")]
+    Lost(String),
+    /// Any other error code.
+    #[error("Vulkan failed to {what}: {code}")]
+    Code {
+        /// The action.
+        what: String,
+        /// Vulkan's result code.
+        code: vk::Result,
+    },
+}
+
+impl VulkanError {
+    /// Names the action that a Vulkan call was part of.
+    pub(crate) fn at(what: impl Into<String>) -> impl FnOnce(vk::Result) -> VulkanError {
+        let what = what.into();
+        move |code| match code {
+            vk::Result::ERROR_DEVICE_LOST => VulkanError::Lost(what),
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY | vk::Result::ERROR_OUT_OF_HOST_MEMORY => {
+                VulkanError::OutOfMemory { what, mib: 0.0 }
+            }
+            code => VulkanError::Code { what, code },
+        }
+    }
+}
+
+/// Result of the Vulkan layer.
+pub type Result<T> = std::result::Result<T, VulkanError>;
