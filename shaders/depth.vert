@@ -7,7 +7,7 @@
 layout(location = 0) out vec2 uv;
 layout(location = 1) flat out uint material;
 
-invariant gl_Position;
+precise gl_Position; // same operations in both shaders: no contraction, so bit-equal depth
 
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];

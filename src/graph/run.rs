@@ -9,10 +9,10 @@ use super::load::Graph;
 use super::param::Params;
 use super::plan::{Plan, Step, Work};
 use super::usage::{Barrier, Res, Schedule, schedule};
-use crate::shader::{Resource, Shape};
+use crate::shader::{Resource, Shape, strip_outputs};
 use crate::vulkan::{
     Attachments, BindingDesc, Blend, Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState,
-    FrameSlot, Gpu, Image, ImageDesc, Pipeline, PipelineDesc, Result, Sampler, SamplerDesc, StageDesc, View,
+    FrameSlot, Gpu, Image, ImageDesc, Pipeline, PipelineDesc, Result, Sampler, SamplerDesc, Stage, StageDesc, View,
     ViewDesc, VulkanError, format::Channels, vk,
 };
 use gpu_allocator::MemoryLocation;
@@ -698,7 +698,10 @@ fn pipeline_desc(
         .iter()
         .map(|s| StageDesc {
             stage: s.stage,
-            spirv: s.words.clone(),
+            spirv: match &draw {
+                Some((_, attachments)) if s.stage == Stage::Fragment => needed_outputs(&s.words, attachments),
+                _ => s.words.clone(),
+            },
             constants: constants.iter().filter(|(id, _)| s.interface.constants.contains(id)).copied().collect(),
         })
         .collect();
@@ -713,6 +716,16 @@ fn pipeline_desc(
         stages,
         draw,
     }
+}
+
+/// The fragment shader without the outputs whose attachments are left out.
+fn needed_outputs(words: &Arc<Vec<u32>>, attachments: &Attachments) -> Arc<Vec<u32>> {
+    let unneeded: Vec<u32> = (0u32..)
+        .zip(&attachments.color)
+        .filter(|(_, format)| **format == vk::Format::UNDEFINED)
+        .map(|(location, _)| location)
+        .collect();
+    if unneeded.is_empty() { words.clone() } else { Arc::new(strip_outputs(words, &unneeded)) }
 }
 
 fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachments) {

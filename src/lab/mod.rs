@@ -186,7 +186,9 @@ pub fn environment(scene: &Scene, size: (u32, u32), time: f64) -> Env {
     let (low, high) = scene.bounds();
     let extent = high - low;
     let mut env = Env::new();
-    let mut put = |name: &str, value: f64| drop(env.insert(name.to_string(), Var::Number(value)));
+    let mut put = |name: &str, value: f64| {
+        env.insert(name.to_string(), Var::Number(value));
+    };
     put("width", f64::from(size.0));
     put("height", f64::from(size.1));
     put("shadow_views", f64::from(view::shadow_view_count(scene)));

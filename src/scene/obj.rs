@@ -30,7 +30,6 @@ pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, S
         triangulate: true,
         ignore_points: true,
         ignore_lines: true,
-        ..Default::default()
     };
     let load_mtl = |name: &Path| Ok(load_mtl(folder, name, &warnings));
     let (models, materials) =
@@ -40,7 +39,6 @@ pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, S
                 lines_read.get()
             ))
         })?;
-    drop(reader);
     let mut warnings = warnings.into_inner();
 
     progress("materials", 0.4);
@@ -328,8 +326,9 @@ impl<R: BufRead> BufRead for CountLines<'_, R> {
         self.inner.consume(amount);
     }
     fn read_line(&mut self, line: &mut String) -> std::io::Result<usize> {
-        self.lines.set(self.lines.get() + 1);
-        self.inner.read_line(line)
+        let read = self.inner.read_line(line)?;
+        self.lines.set(self.lines.get() + usize::from(read > 0));
+        Ok(read)
     }
 }
 

@@ -19,7 +19,7 @@ impl Scene {
     /// and everything when `max_edge` is not above 0, stay as they are; a warning says so.
     pub fn split_triangles(&self, max_edge: f32) -> Scene {
         let mut scene = self.clone();
-        if !(max_edge > 0.0) {
+        if max_edge.is_nan() || max_edge <= 0.0 {
             scene.warnings.push(format!(
                 "{}: triangles not split, {max_edge} m is no edge length",
                 self.name

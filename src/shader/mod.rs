@@ -2,6 +2,8 @@
 
 mod compile;
 mod reflect;
+mod strip;
 
 pub use compile::{Compiled, ShaderCompiler, Source};
 pub use reflect::{Binding, Interface, Resource, Shape};
+pub use strip::strip_outputs;

@@ -1,5 +1,6 @@
 //! What a compiled shader binds, by name.
 
+use super::strip::instructions;
 use crate::vulkan::Stage;
 use spirq::prelude::*;
 use spirq::spirv::{Dim, ExecutionMode as Mode, ImageFormat};
@@ -134,17 +135,12 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
 fn without_constant_operations(words: &[u32]) -> Vec<u32> {
     const OP_CONSTANT_NULL: u32 = 46;
     const OP_SPEC_CONSTANT_OP: u32 = 52;
-    const HEADER: usize = 5;
-    let mut out = words[..HEADER.min(words.len())].to_vec();
-    let mut rest = &words[out.len()..];
-    while let Some(&first) = rest.first() {
-        let count = ((first >> 16) as usize).clamp(1, rest.len());
-        let (instruction, after) = rest.split_at(count);
+    let mut out = words[..words.len().min(5)].to_vec();
+    for instruction in instructions(words) {
         match instruction {
-            [_, ty, id, ..] if first & 0xffff == OP_SPEC_CONSTANT_OP => out.extend([3 << 16 | OP_CONSTANT_NULL, *ty, *id]),
+            [first, ty, id, ..] if first & 0xffff == OP_SPEC_CONSTANT_OP => out.extend([3 << 16 | OP_CONSTANT_NULL, *ty, *id]),
             other => out.extend(other),
         }
-        rest = after;
     }
     out
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{Mat3, Quat, Vec3};
 use serde_json::{Value, json};
 
-use super::{images, start, unique_names, write_file};
+use super::{images, start, write_file};
 use crate::scene::{
     Animation, Camera, Light, LightKind, Material, Mesh, Scene, SceneError, Vertex,
 };
@@ -32,11 +32,24 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         Ok(json!({ "bufferView": view, "mimeType": "image/png", "name": texture.name }))
     });
     let images = images.collect::<Result<Vec<Value>, SceneError>>()?;
-    let meshes: Vec<Value> = scene.meshes.iter().map(|mesh| writer.mesh(mesh)).collect();
+    // A mesh without triangles has no legal form and nothing to show.
+    let mut written = vec![None; scene.meshes.len()];
+    let mut meshes = Vec::new();
+    for (i, mesh) in scene
+        .meshes
+        .iter()
+        .enumerate()
+        .filter(|(_, mesh)| mesh.triangle_count() > 0)
+    {
+        written[i] = Some(meshes.len());
+        meshes.push(writer.mesh(mesh));
+    }
     for instance in &scene.instances {
-        let node = json!({
-            "name": instance.name, "mesh": instance.mesh, "matrix": instance.transform.to_cols_array(),
-        });
+        let Some(mesh) = written[instance.mesh as usize] else {
+            continue;
+        };
+        let matrix = instance.transform.to_cols_array();
+        let node = json!({ "name": instance.name, "mesh": mesh, "matrix": matrix });
         match &instance.animation {
             None => writer.root(node),
             Some(animation) => writer.moving(node, &instance.name, animation),
@@ -53,19 +66,13 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
     for (i, (name, camera)) in scene.cameras.iter().enumerate() {
         writer.root(camera_node(name, i, camera));
     }
-    let names = unique_names(
-        scene
-            .materials
-            .iter()
-            .map(|material| material.name.as_str()),
-    );
     let mut root = json!({
         "asset": { "version": "2.0", "generator": "conelab" },
         "scene": 0,
         "scenes": [{ "name": scene.name, "nodes": writer.roots }],
         "nodes": writer.nodes,
         "meshes": meshes,
-        "materials": scene.materials.iter().zip(&names).map(|(m, name)| material(m, name)).collect::<Vec<_>>(),
+        "materials": scene.materials.iter().map(material).collect::<Vec<_>>(),
         "textures": (0..images.len()).map(|i| json!({ "source": i })).collect::<Vec<_>>(),
         "images": images,
         "cameras": scene.cameras.iter().map(|(name, c)| lens(name, c)).collect::<Vec<_>>(),
@@ -148,12 +155,6 @@ impl Writer {
     }
 
     fn mesh(&mut self, mesh: &Mesh) -> Value {
-        if mesh.vertices.is_empty() {
-            // A mesh must have a primitive; one without indices in it is left out when read.
-            let empty = self.accessor(json!({ "componentType": FLOAT, "type": "VEC3", "count": 3,
-                "min": [0, 0, 0], "max": [0, 0, 0] }));
-            return json!({ "name": mesh.name, "primitives": [{ "attributes": { "POSITION": empty } }] });
-        }
         let stride = size_of::<Vertex>();
         let vertices = self.view(
             bytemuck::cast_slice(&mesh.vertices),
@@ -241,10 +242,10 @@ impl Writer {
     }
 }
 
-fn material(material: &Material, name: &str) -> Value {
+fn material(material: &Material) -> Value {
     let strength = material.emission.max_element().max(1.0);
     let mut value = json!({
-        "name": name,
+        "name": material.name,
         "doubleSided": material.two_sided,
         "alphaMode": if material.alpha_cutoff > 0.0 { "MASK" } else { "OPAQUE" },
         "emissiveFactor": (material.emission / strength).to_array(),

@@ -26,7 +26,7 @@ impl Default for UvSource {
     }
 }
 
-/// All materials and one more, the default for primitives without one.
+/// All materials, and after them the default one where a primitive has none.
 pub(super) fn read(
     document: &Document,
     data: &[Vec<u8>],
@@ -45,11 +45,17 @@ pub(super) fn read(
         materials.push(material);
         uv_sources.push(uv);
     }
-    materials.push(Material {
-        base_color: Vec4::ONE,
-        ..Material::default()
-    });
-    uv_sources.push(UvSource::default());
+    if document
+        .meshes()
+        .flat_map(|mesh| mesh.primitives())
+        .any(|p| p.material().index().is_none())
+    {
+        materials.push(Material {
+            base_color: Vec4::ONE,
+            ..Material::default()
+        });
+        uv_sources.push(UvSource::default());
+    }
     (materials, uv_sources, requests)
 }
 

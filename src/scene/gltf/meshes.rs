@@ -25,7 +25,7 @@ pub(super) fn read(
             .name()
             .map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
         for primitive in mesh.primitives() {
-            let default = materials.len() - 1;
+            let default = document.materials().len();
             let material = primitive.material().index().unwrap_or(default);
             let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
             if let Some(raw) = read.map_err(|problem| format!("mesh '{name}': {problem}"))? {

@@ -60,7 +60,7 @@ pub(in crate::scene) fn texture_from_rgba(
     let srgb = format.is_srgb();
     let mut level = decode(&rgba, srgb);
     let coverage = if let Filter::Masked(cutoff) = filter {
-        alpha_coverage(&level, cutoff)
+        alpha_coverage(&level, 1.0, cutoff)
     } else {
         0.0
     };
@@ -182,8 +182,10 @@ fn mean(
     }
 }
 
-fn alpha_coverage(texels: &[Vec4], cutoff: f32) -> f32 {
-    texels.iter().filter(|t| t.w >= cutoff).count() as f32 / texels.len() as f32
+/// Share of texels whose alpha, scaled and stored in a byte, is at or above the cutoff.
+fn alpha_coverage(texels: &[Vec4], scale: f32, cutoff: f32) -> f32 {
+    let passes = |t: &&Vec4| (t.w * scale * 255.0 + 0.5).floor() >= (cutoff * 255.0).round();
+    texels.iter().filter(passes).count() as f32 / texels.len() as f32
 }
 
 /// Scales alpha until as large a share of texels passes the cutoff as at level 0 (Castano 2010).
@@ -191,14 +193,17 @@ fn with_coverage(texels: &[Vec4], cutoff: f32, coverage: f32) -> Vec<Vec4> {
     let (mut low, mut high) = (0.0f32, 8.0f32);
     for _ in 0..16 {
         let middle = 0.5 * (low + high);
-        if alpha_coverage(texels, cutoff / middle) < coverage {
+        if alpha_coverage(texels, middle, cutoff) < coverage {
             low = middle
         } else {
             high = middle
         }
     }
+    // Few texels have few shares to choose from: take the nearer one.
+    let miss = |scale: f32| (alpha_coverage(texels, scale, cutoff) - coverage).abs();
+    let scale = if miss(low) < miss(high) { low } else { high };
     texels
         .iter()
-        .map(|t| t.truncate().extend((t.w * high).min(1.0)))
+        .map(|t| t.truncate().extend((t.w * scale).min(1.0)))
         .collect()
 }

@@ -24,7 +24,13 @@ pub(super) fn checkerboard(recipe: &Recipe, name: &str) -> Texture {
             [255, 255, 255, 255],
         ),
     };
-    let texel = |i: usize| if (i + i / 8) % 2 == 0 { light } else { dark };
+    let texel = |i: usize| {
+        if (i + i / 8).is_multiple_of(2) {
+            light
+        } else {
+            dark
+        }
+    };
     let rgba: Vec<u8> = (0..64).flat_map(texel).collect();
     texture_from_rgba(name, 8, 8, rgba, format, filter)
 }

@@ -1,0 +1,80 @@
+//! Takes outputs that nobody needs out of a fragment shader, so that the driver drops the work behind them too.
+
+/// The module with the outputs at these locations made private variables.
+///
+/// SPIR-V 1.6: sections 2.16 (interfaces list all global variables since 1.4, so the entry point stays as it is) and 3.7
+/// (storage classes).
+pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
+    const DECORATE: u32 = 71;
+    const TYPE_POINTER: u32 = 32;
+    const VARIABLE: u32 = 59;
+    const ACCESS_CHAINS: [u32; 2] = [65, 66];
+    const LOCATION: u32 = 30;
+    const OUTPUT: u32 = 3;
+    const PRIVATE: u32 = 6;
+    const HEADER: usize = 5;
+    let outputs: Vec<u32> = instructions(words)
+        .filter_map(|i| match i {
+            [_, _, id, OUTPUT, ..] if opcode(i) == VARIABLE => Some(*id),
+            _ => None,
+        })
+        .collect();
+    let mut dropped: Vec<u32> = instructions(words)
+        .filter_map(|i| match i {
+            [_, id, LOCATION, location]
+                if opcode(i) == DECORATE && outputs.contains(id) && locations.contains(location) =>
+            {
+                Some(*id)
+            }
+            _ => None,
+        })
+        .collect();
+    if dropped.is_empty() || words.len() < HEADER {
+        return words.to_vec();
+    }
+    let mut out = words[..HEADER].to_vec();
+    let mut next_id = words[3];
+    // (pointer to Output, its pointee, the same pointer to Private)
+    let mut pointers: Vec<(u32, u32, u32)> = Vec::new();
+    for i in instructions(words) {
+        match i {
+            [_, id, LOCATION, _] if opcode(i) == DECORATE && dropped.contains(id) => {}
+            [_, id, OUTPUT, pointee] if opcode(i) == TYPE_POINTER => {
+                out.extend(i);
+                out.extend([4 << 16 | TYPE_POINTER, next_id, PRIVATE, *pointee]);
+                pointers.push((*id, *pointee, next_id));
+                next_id += 1;
+            }
+            [first, ty, id, OUTPUT, rest @ ..] if opcode(i) == VARIABLE && dropped.contains(id) => {
+                let private = pointers.iter().find(|p| p.0 == *ty).map_or(*ty, |p| p.2);
+                out.extend([*first, private, *id, PRIVATE]);
+                out.extend(rest);
+            }
+            [first, ty, id, base, rest @ ..] if ACCESS_CHAINS.contains(&opcode(i)) && dropped.contains(base) => {
+                let private = pointers.iter().find(|p| p.0 == *ty).map_or(*ty, |p| p.2);
+                out.extend([*first, private, *id, *base]);
+                out.extend(rest);
+                dropped.push(*id);
+            }
+            other => out.extend(other),
+        }
+    }
+    out[3] = next_id;
+    out
+}
+
+fn opcode(instruction: &[u32]) -> u32 {
+    instruction.first().map_or(0, |w| w & 0xffff)
+}
+
+/// The instructions of a module, after its header.
+pub(super) fn instructions(words: &[u32]) -> impl Iterator<Item = &[u32]> {
+    let mut rest = words.get(5..).unwrap_or(&[]);
+    std::iter::from_fn(move || {
+        let first = *rest.first()?;
+        let count = ((first >> 16) as usize).clamp(1, rest.len());
+        let (instruction, after) = rest.split_at(count);
+        rest = after;
+        Some(instruction)
+    })
+}
