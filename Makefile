@@ -8,7 +8,7 @@ export PATH := $(PATH):$(HOME)/.cargo/bin
 # Size of the demo's pictures, and more arguments of `conelab render`, for example: make demo SIZE=1920x1080 ARGS="--set voxel_dim=256"
 SIZE ?= 640x360
 ARGS ?=
-# More arguments of `cargo test`, for example: make test TESTS="--test voxels"
+# Run only the tests whose names hold this, for example: make test TESTS=voxel
 TESTS ?=
 
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
@@ -27,15 +27,16 @@ demo: ## Render the built-in atrium, lit by voxel cones, on any Vulkan device
 	@$(CONELAB) render configs/default.ron --scene atrium --size $(SIZE) $(ARGS) \
 		--json $(OUT)/stats.json -o $(OUT)/atrium.png
 	@$(CONELAB) render configs/default.ron --scene atrium --size $(SIZE) $(ARGS) \
-		--set view=voxels -o $(OUT)/voxels.png
+		--set view=voxels --set voxel_view=color -o $(OUT)/voxels.png
 	@printf '\nLook at:\n  %s\n  %s\n  %s\n' \
 		'$(OUT)/atrium.png   the atrium by direct light and voxel cones' \
-		'$(OUT)/voxels.png   the voxels that the cones are traced through' \
+		'$(OUT)/voxels.png   the voxels that stand for the scene, coloured by albedo' \
 		'$(OUT)/stats.json   times of every pass, memory of every resource, all settings'
 
 test: ## Run all tests
 	@scripts/setup.sh build run test
-	@cargo test --locked $(TESTS)
+	@cargo test --locked --quiet --doc $(TESTS)
+	@cargo test --locked --no-fail-fast --lib --bins --tests $(TESTS)
 
 check: ## Check formatting, lints, graphs, shaders and experiments
 	@scripts/setup.sh build

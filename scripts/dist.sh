@@ -26,7 +26,7 @@ cp -r passes shaders configs LICENSE LICENSE-MIT LICENSE-APACHE "$out/"
 # What the program is made of. The crates' texts are in their sources; the shader compiler's follow.
 {
     printf 'Statically linked into conelab %s, with their licences.\n\n' "$version"
-    cargo tree --locked --edges normal --prefix none --format '{p}  {l}' | sed 's/ ([^)]*)//g' | grep -v '^conelab ' | sort -u
+    cargo tree --locked --edges normal --prefix none --format '{p}  {l}' | sed 's/ (proc-macro)//; s/ (\*)//' | grep -v '^conelab ' | sort -u
     for package in libshaderc-dev glslang-dev spirv-tools libstdc++6; do
         [[ -f /usr/share/doc/$package/copyright ]] || continue
         printf '\n%s\n%s\n\n' "$package" "$(tr '[:print:]' = <<<"$package" | tr -d '\n')"

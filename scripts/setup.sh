@@ -40,7 +40,14 @@ apt_get() {
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 "$@" </dev/null >&2
 }
 
-may_install() { has_apt && { [[ $EUID -eq 0 ]] || { command -v sudo >/dev/null && { sudo -n true 2>/dev/null || sudo -v; }; }; }; }
+# Asks for sudo's password if need be.
+may_install() {
+    has_apt || return 1
+    [[ $EUID -ne 0 ]] || return 0
+    command -v sudo >/dev/null || return 1
+    say "this needs root: through sudo"
+    sudo -n true 2>/dev/null || sudo -v
+}
 
 # What the named purposes lack, whatever the distribution; one a line.
 lacks() {
@@ -74,10 +81,10 @@ install_missing() {
     fi
     [[ ${#missing[@]} -gt 0 || ${#wished[@]} -gt 0 ]] || return 0
 
-    say "these packages are missing and will be installed with apt-get$([[ $EUID -eq 0 ]] || echo ' through sudo'):" \
-        "${missing[*]}" "${wished[*]}"
+    local list=("${missing[@]}" "${wished[@]}")
+    say "missing packages: ${list[*]}"
     if ! may_install; then
-        local hint="apt-get install --no-install-recommends ${missing[*]} ${wished[*]}"
+        local hint="apt-get install --no-install-recommends ${list[*]}"
         local lacking
         lacking=$(lacks)
         if [[ -z $lacking ]]; then
@@ -90,8 +97,8 @@ $(sed 's/^/  - /' <<<"$lacking")
 Have an administrator run:
   $hint"
     fi
+    say "installing them with apt-get"
     apt_get update || say "apt-get update failed; trying with the package lists there are"
-    local list=("${missing[@]}" "${wished[@]}")
     apt_get install -y --no-install-recommends "${list[@]}" && return 0
     if [[ ${#wished[@]} -gt 0 ]]; then
         say "could not install all of them; trying without the shader compiler (${wished[*]})"
@@ -144,12 +151,10 @@ merge() {
         [[ $name == shaderc_combined ]] && own=$path
         parts+=("$path")
     done
-    [[ ${#parts[@]} -gt 0 ]] || return 1
-    if [[ -n $own ]]; then
-        cp "$own" "$1/libshaderc_combined.a"
-        links "$1" && return 0
-        rm "$1/libshaderc_combined.a"
-    fi
+    [[ -n $own ]] || return 1
+    cp "$own" "$1/libshaderc_combined.a"
+    links "$1" && return 0
+    rm "$1/libshaderc_combined.a"
     (
         cd "$1"
         { echo "CREATE libshaderc_combined.a" && printf 'ADDLIB %s\n' "${parts[@]}" && printf 'SAVE\nEND\n'; } | ar -M
@@ -200,10 +205,10 @@ bundled() {
     command -v cmake >/dev/null || tools+=(cmake)
     command -v git >/dev/null || tools+=(git)
     command -v python3 >/dev/null || tools+=(python3)
-    say "no static shaderc from the system's packages: the crate's own source will be built, about 10 minutes, once"
+    say "no static shaderc from the system's packages: the crate's own source will be built, about 15 minutes on two cores, once"
     if [[ ${#tools[@]} -gt 0 ]]; then
         may_install || die "that needs: ${tools[*]}. Install them, or packages with static libraries of shaderc, glslang and SPIRV-Tools"
-        say "these packages are missing and will be installed with apt-get: ${tools[*]}"
+        say "installing with apt-get: ${tools[*]}"
         apt_get update || true
         apt_get install -y --no-install-recommends "${tools[@]}" || die "apt-get could not install: ${tools[*]}"
     fi

@@ -94,6 +94,8 @@ void main() {
     vec3 face = cross(dFdx(position), dFdy(position));
     face = dot(face, face) > 0.0 ? normalize(face) : normalize(normal);
     face = dot(face, v) < 0.0 ? -face : face;
+    // Derivatives end here. Helper invocations at the edges of triangles cover nothing and need no cones.
+    if (gl_SampleMaskIn[0] == 0) return;
     vec2 rm = roughnessMetallic(m, uv, g);
     Surface s = makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y);
 

@@ -41,8 +41,8 @@ float voxelVisibility(Light light, vec3 center, mat3 axes, vec3 n, vec3 to_light
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;
-    ivec3 cell;
-    if (slot >= voxelCounter.count || !cellOfSlot(slot, cell)) return;
+    if (slot >= voxelCounter.count) return;
+    ivec3 cell = cellOfSlot(slot);
     vec4 color = texelFetch(voxelColor, cell, 0);
     vec4 packed = texelFetch(voxelNormal, cell, 0);
     vec3 n = packed.rgb * 2.0 - 1.0;

@@ -12,8 +12,8 @@ uniform writeonly image3D injected;
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;
-    ivec3 cell;
-    if (slot >= voxelCounter.count || !cellOfSlot(slot, cell)) return;
+    if (slot >= voxelCounter.count) return;
+    ivec3 cell = cellOfSlot(slot);
     float opacity = texelFetch(voxelColor, cell, 0).a;
     imageStore(injected, cell, vec4(meanEmission(slot) * opacity, opacity));
 }

@@ -23,12 +23,7 @@ void main() {
     uint dim = uint(params.voxel_dim);
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.clear_count; i += stride) {
-        ivec3 cell;
-        if (voxelCounter.clear_all != 0) {
-            if (i < dim * dim * dim) clearCell(ivec3(i % dim, i / dim % dim, i / (dim * dim)));
-        } else if (cellOfSlot(i, cell)) {
-            clearCell(cell);
-        }
+        clearCell(voxelCounter.clear_all != 0 ? ivec3(i % dim, i / dim % dim, i / (dim * dim)) : cellOfSlot(i));
         if (i < uint(params.voxel_capacity))
             for (uint word = 0; word < SLOT_WORDS; word++) voxelSlots.words[i * SLOT_WORDS + word] = 0;
     }

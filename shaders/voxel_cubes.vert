@@ -27,11 +27,7 @@ vec4 cellColor(ivec3 cell, ivec3 coarse, int mip) {
 
 void main() {
     const int corners[6] = int[6](0, 1, 2, 2, 1, 3);
-    gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside: dead slots draw nothing
-    color = vec4(0.0);
-    position = vec3(0.0);
-    ivec3 cell;
-    if (!cellOfSlot(gl_InstanceIndex, cell)) return;
+    ivec3 cell = cellOfSlot(gl_InstanceIndex);
     bool filtered = params.voxel_view == VOXEL_VIEW_RADIANCE || params.voxel_view == VOXEL_VIEW_ALPHA;
     int mip = filtered ? min(params.voxel_view_mip, textureQueryLevels(voxelRadiance) - 1) : 0;
     ivec3 coarse = cell >> mip;

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Arguments of the passes that run over the voxel list.
 #define COUNTER_ACCESS
+#define FRAGMENTS_ACCESS readonly
 #include "params.glsl"
 #include "voxels.glsl"
 
@@ -12,4 +13,7 @@ void main() {
     voxelCounter.count = count;
     voxelCounter.list_groups = uvec3(min((count + 127) / 128, 65535u), 1, 1);
     voxelCounter.draw = uvec4(36, count, 0, 0);
+    uint fragments = min(voxelCounter.fragments, voxelFragments.list.length());
+    voxelCounter.overflow = voxelCounter.fragments - fragments;
+    voxelCounter.merge_groups = uvec3(min((fragments + 127) / 128 + 1, 32768u), 1, 1);
 }

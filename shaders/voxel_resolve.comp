@@ -12,8 +12,8 @@ uniform writeonly image3D voxelNormal;
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;
-    ivec3 cell;
-    if (slot >= voxelCounter.count || !cellOfSlot(slot, cell)) return;
+    if (slot >= voxelCounter.count) return;
+    ivec3 cell = cellOfSlot(slot);
     uint base = slot * SLOT_WORDS;
     vec3 color, normal;
     if (MERGE == MERGE_AVERAGE) {

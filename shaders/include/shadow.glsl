@@ -15,12 +15,12 @@ float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     vec3 side = cosine < 0.0 ? -n : n; // light from behind: a thin two-sided sheet
     vec3 from = p + radius * (side * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.5 * to_light);
     vec3 q = shadowPosition(view, from);
-    if (SHADOW_FILTER == SHADOW_FILTER_NEAREST) return texture(shadowCompare, vec4(q.xy, view, q.z));
+    if (SHADOW_FILTER == SHADOW_FILTER_NEAREST) return textureGrad(shadowCompare, vec4(q.xy, view, q.z), vec2(0.0), vec2(0.0));
     float texel = 1.0 / float(params.shadow_dim);
     int r = SHADOW_FILTER == SHADOW_FILTER_PCF3 ? 1 : 2;
     float sum = 0.0;
     for (int y = -r; y <= r; y++)
-        for (int x = -r; x <= r; x++) sum += texture(shadowCompare, vec4(q.xy + vec2(x, y) * texel, view, q.z));
+        for (int x = -r; x <= r; x++) sum += textureGrad(shadowCompare, vec4(q.xy + vec2(x, y) * texel, view, q.z), vec2(0.0), vec2(0.0));
     return sum / float((2 * r + 1) * (2 * r + 1));
 }
 

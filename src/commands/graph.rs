@@ -3,6 +3,7 @@
 use crate::experiment::Experiment;
 use crate::graph::plan::{PlanInput, plan};
 use crate::graph::report;
+use crate::graph::source::nearest;
 use crate::lab::{Home, LabError, any_device, environment, params_of};
 use clap::Args;
 
@@ -14,9 +15,9 @@ pub struct GraphArgs {
     /// The scene whose counts decide repetitions.
     #[arg(long)]
     scene: Option<String>,
-    /// Picture size.
-    #[arg(long, value_name = "WxH", default_value = "1280x720")]
-    size: String,
+    /// Picture size; the experiment's, or 1280x720, when absent.
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
     /// Set a parameter; may be given many times.
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
@@ -58,11 +59,18 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
             setting.split_once('=').ok_or_else(|| LabError::Request(format!("--set {setting}: expected NAME=VALUE")))?;
         params.set(name, value).map_err(LabError::Request)?;
     }
-    let size = super::render::parse_size(&args.size)?;
-    let size = experiment.as_ref().map_or(size, |e| e.size);
+    let size = match &args.size {
+        Some(text) => super::render::parse_size(text)?,
+        None => experiment.as_ref().map_or((1280, 720), |e| e.size),
+    };
     let scene_name = args.scene.clone().or(experiment.as_ref().map(|e| e.scene.clone())).unwrap_or("cornell".into());
     let scene = super::open_scene(&scene_name)?;
     let mut wanted: Vec<String> = graph.output.iter().chain(&graph.hdr).chain(&args.want).cloned().collect();
+    let known = || graph.textures.iter().map(|t| t.0.as_str()).chain(graph.buffers.iter().map(|b| b.0.as_str()));
+    if let Some(name) = wanted.iter().find(|w| !known().any(|k| k == w.as_str())) {
+        let hint = nearest(name, known()).map_or(String::new(), |h| format!(" ({h})"));
+        return Err(LabError::Request(format!("no resource '{name}'{hint}")));
+    }
     wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
     let device = any_device();
     let env = environment(&scene, size, 0.0);

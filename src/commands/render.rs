@@ -180,6 +180,12 @@ fn writable(path: &std::path::Path, endings: &[&str]) -> Result<String, LabError
         Some(p) if !p.as_os_str().is_empty() => p,
         _ => std::path::Path::new("."),
     };
+    if path.is_dir() {
+        return Err(LabError::Request(format!("cannot write '{}': it is a folder", path.display())));
+    }
+    if folder.is_file() {
+        return Err(LabError::Request(format!("cannot write '{}': '{}' is no folder", path.display(), folder.display())));
+    }
     let try_folder = || {
         std::fs::create_dir_all(folder)?;
         tempfile::Builder::new().prefix(".conelab-").tempfile_in(folder)

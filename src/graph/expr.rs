@@ -2,7 +2,7 @@
 //! numbers or booleans, a true result counts as 1.
 
 use rhai::packages::{ArithmeticPackage, BasicMathPackage, LogicPackage, Package};
-use rhai::{AST, ASTNode, Dynamic, Engine, Scope};
+use rhai::{AST, ASTNode, Dynamic, Engine, EvalAltResult, ImmutableString, Scope};
 use serde::de::{Deserialize, Deserializer, Visitor};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -42,6 +42,13 @@ static ENGINE: LazyLock<Engine> = LazyLock::new(|| {
     for_numbers(&mut engine, "min", f64::min);
     for_numbers(&mut engine, "max", f64::max);
     engine.register_fn("select", |c: bool, a: Dynamic, b: Dynamic| if c { a } else { b });
+    // Rhai takes values of different kinds for unequal; that would leave a pass out without a word.
+    engine.set_fast_operators(false);
+    incomparable::<bool, i64>(&mut engine, "true or false is no number: write `flag` or `!flag`");
+    incomparable::<bool, f64>(&mut engine, "true or false is no number: write `flag` or `!flag`");
+    incomparable::<f64, ImmutableString>(&mut engine, "options stand without quotes: choice == option");
+    incomparable::<i64, ImmutableString>(&mut engine, "options stand without quotes: choice == option");
+    incomparable::<bool, ImmutableString>(&mut engine, "true and false stand without quotes");
     engine
 });
 
@@ -50,6 +57,14 @@ fn for_numbers(engine: &mut Engine, name: &str, f: fn(f64, f64) -> f64) {
     engine.register_fn(name, move |a: i64, b: f64| f(a as f64, b));
     engine.register_fn(name, move |a: f64, b: i64| f(a, b as f64));
     engine.register_fn(name, move |a: i64, b: i64| f(a as f64, b as f64));
+}
+
+/// Makes `==` and `!=` between two kinds an error.
+fn incomparable<A: rhai::Variant + Clone, B: rhai::Variant + Clone>(engine: &mut Engine, why: &'static str) {
+    for operator in ["==", "!="] {
+        engine.register_fn(operator, move |_: A, _: B| -> Result<bool, Box<EvalAltResult>> { Err(why.into()) });
+        engine.register_fn(operator, move |_: B, _: A| -> Result<bool, Box<EvalAltResult>> { Err(why.into()) });
+    }
 }
 
 impl Expr {
@@ -172,5 +187,8 @@ mod tests {
         assert!(Expr::new("unknown + 1").eval(&Env::new()).unwrap_err().contains("'unknown' has no value"));
         assert_eq!(Expr::new("a && (b || c > 1)").variables(), ["a", "b", "c"]);
         assert!(Expr::new("1.0 / 0.0").eval(&Env::new()).is_err());
+        let env = Env::from([("flag".into(), Var::Bool(true)), ("n".into(), Var::Number(2.0))]);
+        assert!(Expr::new("flag == 1").eval(&env).unwrap_err().contains("write `flag`"));
+        assert!(Expr::new("n != `exact`").eval(&env).unwrap_err().contains("without quotes"));
     }
 }

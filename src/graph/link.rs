@@ -76,7 +76,10 @@ pub fn link(
     for (file, result) in results {
         match result {
             Ok(shader) => drop(compiled.insert(file, shader)),
-            Err(list) => findings.extend(list.into_iter().filter(|d| !findings.contains(d)).collect::<Vec<_>>()),
+            Err(list) => {
+                let list = list.into_iter().map(|d| where_declared(graph, d));
+                findings.extend(list.filter(|d| !findings.contains(d)).collect::<Vec<_>>());
+            }
         }
     }
     if !findings.is_empty() {
@@ -87,6 +90,22 @@ pub fn link(
     linker.unused(&compiled);
     let findings = linker.findings;
     if findings.iter().any(|f| f.severity == Severity::Error) { Err(findings) } else { Ok((linked, findings)) }
+}
+
+/// A mistake in the generated `params.glsl` is one in the name of a parameter: told where that is declared.
+fn where_declared(graph: &Graph, found: Diagnostic) -> Diagnostic {
+    let line = found.source.as_deref().unwrap_or("");
+    let is_name = |name: &str| {
+        line.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name || word == name.to_uppercase())
+    };
+    match graph.params.list.iter().position(|p| is_name(&p.name)) {
+        Some(i) if found.place.file.starts_with("params.glsl (generated)") => {
+            let name = &graph.params.list[i].name;
+            let at = graph.params_at.get(i).copied().unwrap_or_default();
+            graph.sources.error(at, format!("'{name}' cannot be a parameter's name: GLSL refuses `{line}`"))
+        }
+        _ => found,
+    }
 }
 
 struct Linker<'g> {
@@ -117,9 +136,9 @@ impl Linker<'_> {
             }
         }
         for (key, _) in &pass.bind.0 {
-            if !bound.iter().any(|b| b.name == key.value) && !stages.is_empty() {
-                let names: Vec<&str> =
-                    stages.iter().flat_map(|s| s.interface.bindings.iter().map(|b| b.name.as_str())).collect();
+            let names: Vec<&str> =
+                stages.iter().flat_map(|s| s.interface.bindings.iter().map(|b| b.name.as_str())).collect();
+            if !names.contains(&key.value.as_str()) && !stages.is_empty() {
                 let found = self.graph.sources.error(
                     key.at,
                     format!("no shader of pass '{}' uses the name '{}'", pass.name.value, key.value),
@@ -151,7 +170,13 @@ impl Linker<'_> {
     }
 
     fn outputs(&mut self, pass: &PassDecl, stages: &[Compiled]) {
-        let Some(fragment) = stages.iter().find(|s| s.stage == Stage::Fragment) else { return };
+        let Some(fragment) = stages.iter().find(|s| s.stage == Stage::Fragment) else {
+            if let Some(target) = pass.color.0.first() {
+                let message = format!("pass '{}' has colour attachments and no .frag shader that writes them", pass.name.value);
+                self.findings.push(self.graph.sources.error(target.at, message));
+            }
+            return;
+        };
         let declared = pass.color.0.len();
         for location in &fragment.interface.outputs {
             if *location as usize >= declared {
@@ -235,7 +260,7 @@ impl Linker<'_> {
                         ExternalKind::Storage => "a readonly buffer",
                         ExternalKind::TextureArray => "a sampler2DArray",
                     };
-                    return fail(self, format!("'{name}' is the scene's {expected}, and the shader declares {}", describe(resource)), None);
+                    return fail(self, format!("'{name}' is {expected} of the scene, and the shader declares {}", describe(resource)), None);
                 }
                 Some((Target::External(i), None))
             }
@@ -289,7 +314,11 @@ impl Linker<'_> {
                 e.value.variables().iter().any(|v| *v == param.name || v.strip_prefix(&param.name).is_some_and(|r| r.starts_with('_')))
             });
             let as_format = graph.textures.iter().any(|t| t.1.value.format.value == param.name);
-            if !in_graph && !as_format && !texts.iter().any(|t| t.contains(&in_shader)) {
+            let names = |text: &str| {
+                let end = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
+                text.match_indices(&in_shader).any(|(at, _)| end(&text[at + in_shader.len()..]))
+            };
+            if !in_graph && !as_format && !texts.iter().any(|t| names(t)) {
                 let at = graph.params_at.get(i).copied().unwrap_or_default();
                 self.findings.push(warn(at, format!("parameter '{}' is declared and never used", param.name)));
             }
@@ -311,7 +340,8 @@ pub fn describe(resource: &Resource) -> String {
             if *compare { "Shadow" } else { "" }
         ),
         Resource::Storage { shape, format, .. } => {
-            format!("an image{} of format {}", shape.name(), format.unwrap_or("(none)"))
+            let format = format.map_or(String::from("without a format"), |f| format!("of format {f}"));
+            format!("an image{} {format}", shape.name())
         }
     }
 }
@@ -355,6 +385,9 @@ fn mismatch(
         Resource::Storage { format, read, write, .. } => {
             if formats.iter().any(|f| f.is_depth()) {
                 return Some((format!("'{name}' is a depth texture, which cannot be a storage image"), None));
+            }
+            if formats.iter().any(|f| f.name.ends_with("_srgb")) {
+                return Some((format!("'{name}' is sRGB-encoded, which a storage image cannot be"), None));
             }
             if *write && decl.is_some_and(|d| d.history) {
                 return Some((format!("the history of '{name}' is read-only"), None));

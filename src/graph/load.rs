@@ -95,7 +95,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         graph.outputs.extend(file.outputs.0.iter().map(|o| o.value.clone()));
         wanted.extend(file.outputs.0);
     }
-    let list = check_params(&decls, &graph.sources, &mut errors);
+    let list = check_params(&decls, &graph.sources, &mut errors, &mut broken);
     graph.params_at = list.iter().map(|p| declared_at(&decls, &p.name)).collect();
     graph.params = Params::new(list);
     let mut check = Check { graph: &graph, folders, errors, broken, variables: HashSet::new() };
@@ -146,7 +146,7 @@ fn include(
     let file = match sources.read(path) {
         Ok(file) => file,
         Err(e) => {
-            let known = ron_files(&folders.passes);
+            let known = if path.exists() { Vec::new() } else { ron_files(&folders.passes) };
             let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
             let found = match from {
                 Some(at) => sources.error(at, e.message),
@@ -170,7 +170,12 @@ fn ron_files(folder: &Path) -> Vec<String> {
     entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).filter(|n| n.ends_with(".ron")).collect()
 }
 
-fn check_params(decls: &[Loc<super::param::Decl>], sources: &Sources, errors: &mut Vec<Diagnostic>) -> Vec<Param> {
+fn check_params(
+    decls: &[Loc<super::param::Decl>],
+    sources: &Sources,
+    errors: &mut Vec<Diagnostic>,
+    broken: &mut Vec<String>,
+) -> Vec<Param> {
     let mut list: Vec<Param> = Vec::new();
     for decl in decls {
         let name = decl.value.name();
@@ -190,14 +195,22 @@ fn check_params(decls: &[Loc<super::param::Decl>], sources: &Sources, errors: &m
         }
         match decl.value.param() {
             Ok(param) => list.push(param),
-            Err(message) => errors.push(sources.error(decl.at, message)),
+            Err(message) => {
+                errors.push(sources.error(decl.at, message));
+                broken.push(name.value.clone());
+                if let super::param::Decl::Choice(fields) = &decl.value {
+                    broken.extend(fields.options.iter().map(|o| o.value.clone()));
+                }
+            }
         }
     }
     let names: HashSet<&str> = list.iter().map(|p| p.name.as_str()).collect();
     for decl in decls {
         if let super::param::Decl::Choice(fields) = &decl.value {
-            for option in &fields.options {
-                if !is_identifier(&option.value) {
+            for (i, option) in fields.options.iter().enumerate() {
+                if fields.options[..i].iter().any(|o| o.value == option.value) {
+                    errors.push(sources.error(option.at, format!("option '{}' stands twice", option.value)));
+                } else if !is_identifier(&option.value) {
                     errors.push(sources.error(option.at, format!("'{}' cannot be an option's name", option.value)).help(
                         Some("letters, digits and underscores, starting with a lower-case letter".into()),
                     ));
@@ -338,6 +351,13 @@ impl Check<'_> {
             self.format(&t.format, true);
             for view in &t.views.0 {
                 self.format(view, false);
+                let sizes = [&t.format, view].map(|f| Format::named(&f.value).map(|f| f.bytes));
+                if let [Some(a), Some(b)] = sizes
+                    && a != b
+                {
+                    let message = format!("'{name}' has texels of {a} bytes and cannot be viewed as '{}' of {b}", view.value);
+                    self.error(view.at, message);
+                }
             }
         }
         for (_, buffer) in &self.graph.buffers {
@@ -402,8 +422,9 @@ impl Check<'_> {
         self.attachments(pass, at);
         if let Some(target) = &pass.clear {
             let buffer = self.graph.buffers.iter().any(|b| b.0 == target.value);
-            if !buffer {
-                self.texture_name(target);
+            if !buffer && self.texture_name(target) && self.is_depth(&target.value) {
+                let message = format!("'{}' is a depth texture: clear it where it is attached, depth: (clear: 1.0)", target.value);
+                self.error(target.at, message);
             }
         }
         if let Some(copy) = &pass.copy {
@@ -411,7 +432,15 @@ impl Check<'_> {
         }
     }
 
+    fn is_depth(&self, texture: &str) -> bool {
+        let found = self.graph.textures.iter().find(|t| t.0 == texture);
+        found.and_then(|t| Format::named(&t.1.value.format.value)).is_some_and(|f| f.is_depth())
+    }
+
     fn copy(&mut self, copy: &super::file::CopyDecl) {
+        if copy.from.value == copy.to.value {
+            self.error(copy.to.at, format!("'{}' is copied to itself", copy.to.value));
+        }
         let is_buffer = |n: &str| self.graph.buffers.iter().any(|b| b.0 == n);
         match (is_buffer(&copy.from.value), is_buffer(&copy.to.value)) {
             (true, true) => {}
@@ -436,7 +465,12 @@ impl Check<'_> {
                 self.error(shader.at, format!("pass '{name}' has two {stage:?} shaders"));
             }
             stages.push(stage);
-            if !self.folders.shaders.join(&shader.value).is_file() {
+            let path = self.folders.shaders.join(&shader.value);
+            // The compiler's own words for this are pages of built-in functions.
+            if std::fs::read_to_string(&path).is_ok_and(|text| !text.contains("#version")) {
+                self.error(shader.at, format!("shader '{}' has no line `#version 460`, which must be its first", shader.value));
+            }
+            if !path.is_file() {
                 let known = files_of(&self.folders.shaders);
                 let found = self.graph.sources.error(shader.at, format!("no shader file '{}'", shader.value));
                 self.errors.push(found.nearest(&shader.value, known.iter().map(String::as_str)));
@@ -496,20 +530,32 @@ impl Check<'_> {
 
     fn attachments(&mut self, pass: &PassDecl, at: At) {
         let name = &pass.name.value;
+        // A choice of formats is taken for colour; an unknown format was told where it stands.
+        // A choice of formats must hold formats of one kind, which the first tells.
         let depth_format = |g: &Graph, n: &str| {
-            g.textures.iter().find(|t| t.0 == n).and_then(|t| Format::named(&t.1.value.format.value)).map(|f| f.is_depth())
+            let name = &g.textures.iter().find(|t| t.0 == n)?.1.value.format.value;
+            let choice = g.params.list.iter().find(|p| p.name == *name);
+            let first = match choice.map(|p| &p.kind) {
+                Some(Kind::Choice(options)) => options.first()?,
+                _ => name,
+            };
+            Format::named(first).map(|f| f.is_depth())
         };
+        let volume = |g: &Graph, n: &str| g.textures.iter().any(|t| t.0 == n && t.1.value.size.0.len() == 3);
         for target in &pass.color.0 {
             let t = &target.value;
             self.exprs(t.mip.iter().chain(&t.layer));
             if self.texture_name(&t.to) && depth_format(self.graph, &t.to.value) == Some(true) {
                 self.error(t.to.at, format!("'{}' is a depth texture and cannot be a colour attachment", t.to.value));
             }
+            if volume(self.graph, &t.to.value) {
+                self.error(t.to.at, format!("'{}' is 3D and cannot be an attachment; write to it as an image", t.to.value));
+            }
         }
         if let Some(depth) = &pass.depth {
             let t = &depth.value;
             self.exprs(t.layer.iter());
-            if self.texture_name(&t.to) && depth_format(self.graph, &t.to.value) != Some(true) {
+            if self.texture_name(&t.to) && depth_format(self.graph, &t.to.value) == Some(false) {
                 self.error(t.to.at, format!("'{}' is no depth texture (d32 or d16)", t.to.value));
             }
         }

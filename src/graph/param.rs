@@ -170,6 +170,11 @@ fn make<T>(fields: &Fields<T>, kind: Kind, value: impl Fn(&T) -> Value) -> Resul
     if fields.help.trim().is_empty() || fields.help.contains('\n') {
         return Err(format!("parameter '{name}' needs one line of help"));
     }
+    if let Some((low, high)) = fields.range
+        && (low >= high || low.is_nan() || high.is_nan())
+    {
+        return Err(format!("parameter '{name}': its range goes from {low} to {high}, which holds nothing"));
+    }
     if fields.constant && matches!(kind, Kind::Vector(_) | Kind::Colour) {
         return Err(format!("parameter '{name}': a vector cannot be a constant"));
     }

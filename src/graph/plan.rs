@@ -278,6 +278,19 @@ impl Planner<'_> {
             if mips > most {
                 self.error(texture.at, format!("'{name}' has {mips} mips; {extent:?} texels allow {most}"));
             }
+            let limits = &self.input.device.limits;
+            let side = if t.size.0.len() == 3 { limits.max_image_dimension3_d } else { limits.max_image_dimension2_d };
+            for (n, ex) in extent.iter().zip(&t.size.0) {
+                if *n > side {
+                    let message = format!("'{name}' is {n} texels long; {} allows {side}", self.input.device.name);
+                    self.error(ex.at, message);
+                }
+            }
+            let most_layers = limits.max_image_array_layers;
+            if layers > most_layers {
+                let message = format!("'{name}' has {layers} layers; {} allows {most_layers}", self.input.device.name);
+                self.error(texture.at, message);
+            }
             let Some(format) = self.format(&t.format.value) else {
                 self.error(t.format.at, format!("'{}' is no format", t.format.value));
                 continue;
@@ -300,9 +313,10 @@ impl Planner<'_> {
             .buffers
             .iter()
             .map(|(name, buffer)| {
+                let before = self.errors.len();
                 let bytes = self.value(&buffer.value.size);
                 let limit = self.input.device.limits.max_storage_buffer_range;
-                if !(4.0..=f64::from(limit)).contains(&bytes) {
+                if self.errors.len() == before && !(4.0..=f64::from(limit)).contains(&bytes) {
                     self.error(
                         buffer.value.size.at,
                         format!("buffer '{name}' is {bytes} bytes; {} allows 4 to {limit}", self.input.device.name),
@@ -520,6 +534,7 @@ impl Planner<'_> {
             let threads = match &dispatch.value {
                 Dispatch::Indirect(name, offset) => {
                     let buffer = self.buffer(&name.value)?;
+                    self.command(name.at, buffer, *offset, 12);
                     step.uses.push(Use::indirect(buffer));
                     return Some(Work::DispatchIndirect(buffer, *offset));
                 }
@@ -542,6 +557,7 @@ impl Planner<'_> {
                 Draw::Vertices(n) => Work::Vertices(self.count(n, 0, "vertex count")),
                 Draw::Indirect(name, offset) => {
                     let buffer = self.buffer(&name.value)?;
+                    self.command(name.at, buffer, *offset, 16);
                     step.uses.push(Use::indirect(buffer));
                     Work::DrawIndirect(buffer, *offset)
                 }
@@ -577,6 +593,18 @@ impl Planner<'_> {
         step.uses.push(Use::transfer(Res::Texture(from, false), mips, true, false));
         step.uses.push(Use::transfer(Res::Texture(to, false), mips, false, true));
         Some(Work::CopyTexture(from, to))
+    }
+
+    /// Whether a command of that many bytes lies in a buffer.
+    fn command(&mut self, at: At, buffer: usize, offset: u64, bytes: u64) {
+        let (name, decl) = &self.graph.buffers[buffer];
+        // A wrong size was told where it stands.
+        let Some(size) = decl.value.size.value.eval(&self.env).ok().filter(|s| *s >= 4.0) else { return };
+        if offset % 4 != 0 {
+            self.error(at, format!("a command begins at a multiple of 4 bytes, which {offset} is not"));
+        } else if (offset + bytes) as f64 > size {
+            self.error(at, format!("a command of {bytes} bytes at byte {offset} ends outside '{name}', which has {size} bytes"));
+        }
     }
 
     fn covered(&mut self, pass: &PassDecl, link: &Linked, step: &Step, name: &str) -> Option<[u32; 3]> {

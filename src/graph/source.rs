@@ -245,6 +245,9 @@ fn explain(error: &ron::Error) -> (String, Option<String>) {
             (format!("unknown name '{found}'"), nearest(found, expected.iter().copied()))
         }
         ron::Error::MissingStructField { field, .. } => (format!("field '{field}' is missing"), None),
+        ron::Error::ExpectedComma => {
+            (String::from("expected a comma"), Some(String::from("one is missing before this, or a whole number has a point")))
+        }
         ron::Error::Message(text) => (text.clone(), None),
         other => (other.to_string(), None),
     }
@@ -344,9 +347,14 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Entries<T> {
                 f.write_str("a map from names to values: { \"name\": (...) }")
             }
             fn visit_map<A: serde::de::MapAccess<'de>>(self, mut map: A) -> Result<Entries<T>, A::Error> {
-                let mut out = Vec::new();
+                let mut out: Vec<(Loc<String>, Loc<T>)> = Vec::new();
                 while let Some((key, raw)) = map.next_entry::<Loc<String>, &'de ron::value::RawValue>()? {
+                    let twice = out.iter().any(|(k, _)| k.value == key.value);
+                    if twice {
+                        report(key.at.offset, format!("'{}' stands twice", key.value), None);
+                    }
                     match parse_raw(raw) {
+                        Some(_) if twice => {}
                         Some(value) => out.push((key, value)),
                         None => mark_broken(std::iter::once(key.value.as_str())),
                     }

@@ -171,6 +171,8 @@ pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
         })
         .collect();
     for step in &mut plan.steps {
+        // Clears stay in GENERAL too; for copies the validation layer insists on the layouts made for them.
+        let copy = matches!(step.work, super::plan::Work::CopyTexture(..));
         for u in &mut step.uses {
             let Res::Texture(t, _) = u.res else { continue };
             let (layout, usage) = match u.kind {
@@ -179,7 +181,7 @@ pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
                 UseKind::Color => (Layout::COLOR_ATTACHMENT_OPTIMAL, vk::ImageUsageFlags::COLOR_ATTACHMENT),
                 UseKind::Depth => (Layout::DEPTH_ATTACHMENT_OPTIMAL, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
                 UseKind::DepthRead => (Layout::DEPTH_READ_ONLY_OPTIMAL, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
-                UseKind::Transfer if stored[t] => (Layout::GENERAL, vk::ImageUsageFlags::TRANSFER_DST),
+                UseKind::Transfer if stored[t] && !copy => (Layout::GENERAL, vk::ImageUsageFlags::TRANSFER_DST),
                 UseKind::Transfer if u.write => (Layout::TRANSFER_DST_OPTIMAL, vk::ImageUsageFlags::TRANSFER_DST),
                 UseKind::Transfer => (Layout::TRANSFER_SRC_OPTIMAL, vk::ImageUsageFlags::TRANSFER_SRC),
                 _ => (Layout::SHADER_READ_ONLY_OPTIMAL, vk::ImageUsageFlags::SAMPLED),

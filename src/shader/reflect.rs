@@ -114,7 +114,7 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
         }
     }
     for mode in &entry.exec_modes {
-        if mode.exec_mode == Mode::LocalSize {
+        if matches!(mode.exec_mode, Mode::LocalSize | Mode::LocalSizeId) {
             for (size, operand) in interface.local_size.iter_mut().zip(&mode.operands) {
                 *size = match operand.value {
                     ConstantValue::U32(v) => v,

@@ -203,7 +203,9 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 clip_distance: have.shader_clip_distance == vk::TRUE,
                 depth_clamp: have.depth_clamp == vk::TRUE,
                 bc: have.texture_compression_bc == vk::TRUE,
-                anisotropy: have.sampler_anisotropy == vk::TRUE,
+                // Software devices filter anisotropically at a cost of seconds a frame.
+                anisotropy: have.sampler_anisotropy == vk::TRUE
+                    && core.device_type != vk::PhysicalDeviceType::CPU,
                 write_without_format: have.shader_storage_image_write_without_format == vk::TRUE,
                 multi_draw_indirect: have.multi_draw_indirect == vk::TRUE
                     && have.draw_indirect_first_instance == vk::TRUE,

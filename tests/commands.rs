@@ -1,0 +1,366 @@
+//! The program as people and scripts run it: what it writes, what it says when it cannot, what it leaves behind.
+
+mod common;
+
+use common::{conelab, fails, root, succeeds};
+use exr::prelude::read_first_rgba_layer_from_file;
+use insta::assert_snapshot;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// Settings that a software device renders in about a second.
+const SMALL: &[&str] = &["--size", "96x64", "--set", "voxel_dim=32", "--set", "shadow_dim=512"];
+
+struct Out(TempDir);
+
+impl Out {
+    fn new() -> Out {
+        Out(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        std::fs::write(self.path(name), content).unwrap();
+        self.path(name)
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// A command's text without the names of folders.
+    fn tidy(&self, text: &str) -> String {
+        text.replace(&format!("{}/", self.0.path().display()), "OUT/").replace(&format!("{}/", root().display()), "")
+    }
+}
+
+/// `conelab render configs/default.ron`, small, of a built-in scene.
+fn render(scene: &str, output: &Path) -> Command {
+    let mut command = conelab(root());
+    command.args(["render", "configs/default.ron", "--scene", scene]).args(SMALL).arg("-o").arg(output);
+    command
+}
+
+/// The same with nothing set.
+fn plain(output: &Path) -> Command {
+    let mut command = conelab(root());
+    command.args(["render", "configs/default.ron", "-o"]).arg(output);
+    command
+}
+
+/// Width, height and texels of an EXR.
+fn read_exr(path: &Path) -> (usize, usize, Vec<[f32; 4]>) {
+    let image = read_first_rgba_layer_from_file(
+        path,
+        |size, _| (size, vec![[0.0; 4]; size.area()]),
+        |(size, texels): &mut (exr::math::Vec2<usize>, Vec<[f32; 4]>), at, (r, g, b, a): (f32, f32, f32, f32)| {
+            texels[at.y() * size.width() + at.x()] = [r, g, b, a];
+        },
+    )
+    .unwrap();
+    let (size, texels) = image.layer_data.channel_data.pixels;
+    (size.width(), size.height(), texels)
+}
+
+#[test]
+fn render_writes_a_png_and_its_measurements() {
+    let out = Out::new();
+    let said = succeeds(
+        render("cornell", &out.path("box.png"))
+            .arg("--json")
+            .arg(out.path("box.json"))
+            .args(["--warmup", "1", "--frames", "3"]),
+    );
+    assert!(said.contains("GPU ms") && said.contains("shading") && said.contains("memory of the graph"), "{said}");
+    assert!(out.tidy(&said).ends_with("wrote OUT/box.png\nwrote OUT/box.json\n"), "{said}");
+    assert_eq!(out.names(), ["box.json", "box.png"]);
+
+    let picture = image::open(out.path("box.png")).unwrap();
+    assert_eq!((picture.width(), picture.height(), picture.color()), (96, 64, image::ColorType::Rgb8));
+    let mean = picture.to_rgb8().as_raw().iter().map(|v| f64::from(*v)).sum::<f64>() / (96.0 * 64.0 * 3.0);
+    assert!((5.0..200.0).contains(&mean), "mean brightness {mean} of 255");
+
+    let stats: serde_json::Value = serde_json::from_slice(&std::fs::read(out.path("box.json")).unwrap()).unwrap();
+    let fields: Vec<&str> = stats.as_object().unwrap().keys().map(String::as_str).collect();
+    let documented = [
+        "bytes",
+        "cpu_ms",
+        "device",
+        "experiment",
+        "graph",
+        "params",
+        "passes",
+        "scene",
+        "scene_bytes",
+        "schema",
+        "size",
+        "total_bytes",
+        "total_gpu_ms",
+        "triangles",
+        "version",
+        "warmup",
+        "warnings",
+    ];
+    assert_eq!(fields, documented);
+    assert_eq!(stats["schema"], "conelab-stats-1");
+    assert_eq!(stats["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(
+        (&stats["experiment"], &stats["graph"], &stats["scene"]),
+        (&"default".into(), &"vct".into(), &"cornell".into())
+    );
+    assert_eq!(stats["size"], serde_json::json!([96, 64]));
+    assert_eq!(stats["warmup"], 1);
+    assert_eq!(stats["warnings"], serde_json::json!([]));
+    assert_eq!(stats["device"]["kind"], "cpu");
+    assert!(["name", "driver", "api"].iter().all(|f| stats["device"][f].as_str().is_some_and(|s| !s.is_empty())));
+    // Every parameter is there, in its own JSON type.
+    assert_eq!(stats["params"]["voxel_dim"], 32);
+    assert_eq!(stats["params"]["temporal"], false);
+    assert_eq!(stats["params"]["voxelizer"], "raster");
+    assert_eq!(stats["params"]["volume_size"], serde_json::json!([32.0, 32.0, 32.0]));
+    for pass in stats["passes"].as_array().unwrap() {
+        assert_eq!(pass["frames"], 3, "{pass}");
+        let [min, median, p95] = ["min", "median", "p95"].map(|f| pass["gpu_ms"][f].as_f64().unwrap());
+        assert!(0.0 <= min && min <= median && median <= p95, "{pass}");
+    }
+    let sum: u64 = stats["bytes"].as_object().unwrap().values().map(|b| b.as_u64().unwrap()).sum();
+    assert_eq!(stats["total_bytes"], sum);
+    assert!(stats["bytes"]["voxelRadiance"].as_u64().unwrap() >= 32 * 32 * 32 * 8);
+    assert!(stats["triangles"].as_u64().unwrap() > 0 && stats["scene_bytes"].as_u64().unwrap() > 0);
+}
+
+#[test]
+fn the_same_command_gives_the_same_bytes() {
+    for (scene, voxelizer) in
+        [("cornell", "raster"), ("cornell", "tessellated"), ("triangles", "raster"), ("triangles", "tessellated")]
+    {
+        let out = Out::new();
+        let one = |name: &str, more: &[&str]| {
+            succeeds(render(scene, &out.path(name)).args(["--set", &format!("voxelizer={voxelizer}")]).args(more));
+            std::fs::read(out.path(name)).unwrap()
+        };
+        let first = one("a.exr", &[]);
+        let (width, height, texels) = read_exr(&out.path("a.exr"));
+        assert_eq!((width, height), (96, 64));
+        assert!(texels.iter().flatten().all(|v| v.is_finite()), "{scene}, {voxelizer}");
+        assert!(texels.iter().any(|t| t[0] > 0.05), "{scene}, {voxelizer}: black");
+        assert!(one("b.exr", &[]) == first, "{scene}, {voxelizer}: two runs differ");
+        // Sums of integers do not depend on the order of the triangles.
+        assert!(one("c.exr", &["--shuffle", "7"]) == first, "{scene}, {voxelizer}: the order of triangles shows");
+    }
+}
+
+#[test]
+fn resources_come_as_they_are() {
+    let out = Out::new();
+    // Slices of a volume lie below one another: mip 2 of 32^3 is 8 wide and 8 * 8 high.
+    succeeds(render("cornell", &out.path("mip.exr")).args(["--resource", "voxelRadiance:2"]));
+    let (width, height, texels) = read_exr(&out.path("mip.exr"));
+    assert_eq!((width, height), (8, 64));
+    assert!(texels.iter().any(|t| t[3] > 0.0) && texels.iter().flatten().all(|v| v.is_finite()));
+    succeeds(render("cornell", &out.path("normal.png")).args(["--resource", "surfaceNormal"]));
+    assert_eq!(image::open(out.path("normal.png")).unwrap().width(), 96);
+}
+
+#[test]
+fn wrong_arguments_are_told_and_leave_nothing() {
+    let out = Out::new();
+    let png = out.path("x.png");
+    let told = |more: &[&str]| out.tidy(&fails(plain(&png).args(more)));
+    assert_snapshot!(told(&["--set", "voxel_dmi=64"]), @r"
+    error: --set:1:1: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)
+        | voxel_dmi=64
+    ");
+    assert_snapshot!(told(&["--set", "voxel_dim"]), @"error: --set voxel_dim: expected NAME=VALUE");
+    assert_snapshot!(told(&["--set", "voxel_dim=9000"]), @r"
+    error: --set:1:1: error: 'voxel_dim': 9000 is outside 16 to 512
+        | voxel_dim=9000
+    ");
+    assert_snapshot!(told(&["--set", "voxelizer=tesselated"]), @r"
+    error: --set:1:1: error: 'voxelizer' has no option 'tesselated' (did you mean 'tessellated'?)
+        | voxelizer=tesselated
+    ");
+    assert_snapshot!(told(&["--set", "volume_size=(1, 2)"]), @r"
+    error: --set:1:1: error: 'volume_size': expected 3 numbers in parentheses, got (1, 2)
+        | volume_size=(1, 2)
+    ");
+    assert_snapshot!(told(&["--set", "voxel_dmi=64", "--set", "bias=x"]), @r"
+    error: --set:1:1: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)
+        | voxel_dmi=64
+    --set:2:1: error: 'bias': expected a number, got x
+        | bias=x
+    ");
+    assert_snapshot!(told(&["--size", "0x64"]), @"error: a picture of 0x64 cannot be made: each side is 1 to 16384 pixels");
+    assert_snapshot!(told(&["--size", "64"]), @"error: --size 64: expected WIDTHxHEIGHT, for example 1280x720");
+    assert_snapshot!(told(&["--size", "64x-1"]), @"error: --size 64x-1: expected WIDTHxHEIGHT, for example 1280x720");
+    assert_snapshot!(told(&["--size", "100000x64"]), @"error: a picture of 100000x64 cannot be made: each side is 1 to 16384 pixels");
+    assert_snapshot!(told(&["--frames", "0"]), @"error: --frames must be 1 to 1000000");
+    assert_snapshot!(told(&["--scene", "cornel"]), @"error: no scene 'cornel': did you mean 'cornell'? Built-in scenes: atrium, cornell, furnace, white-sky, thin-walls, triangles; otherwise give a .ron, .obj, .gltf or .glb file");
+    assert_snapshot!(told(&["--scene", "missing/model.gltf"]), @"error: cannot read missing/model.gltf: No such file or directory (os error 2). Check the path and its permissions");
+    assert_snapshot!(told(&["--camera", "side", "--scene", "cornell"]), @"error: scene 'cornell' has no camera 'side' (known: default)");
+    assert_snapshot!(told(&["--scene", "cornell", "--camera", "(eye: (0, 0, 1), target: (0, 0, 0))"]), @"error: --camera: 1:35: Unexpected missing field named `fov_y` in `PlacedCamera`; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)");
+    let resource = |name: &str| out.tidy(&fails(render("cornell", &png).args(["--resource", name])));
+    assert_snapshot!(resource("voxelRadience"), @"error: no texture 'voxelRadience' (did you mean 'voxelRadiance'?)");
+    assert_snapshot!(resource("voxelRadiance:9"), @"error: 'voxelRadiance' has 6 mips and 1 layers; there is no mip 9, layer 0");
+    assert_snapshot!(resource("voxelRadiance:x"), @"error: --resource voxelRadiance:x: 'x' is no mip");
+    assert_snapshot!(resource("voxelHistory"), @"error: 'voxelHistory' is not made with these parameters: no pass that runs uses it");
+    assert_snapshot!(told(&["--device", "Voodoo"]).split(": found").next().unwrap(), @"error: no Vulkan 1.3 device named 'Voodoo'");
+    assert!(out.names().is_empty(), "{:?}", out.names());
+}
+
+#[test]
+fn files_that_are_missing_or_broken() {
+    let out = Out::new();
+    let png = out.path("x.png");
+    let experiment = |path: &Path| out.tidy(&fails(conelab(root()).arg("render").arg(path).arg("-o").arg(&png)));
+    assert_snapshot!(experiment(&out.path("missing.ron")), @r"
+    error: OUT/missing.ron: error: cannot read it: No such file or directory (os error 2)
+        = help: give the path of an experiment, for example configs/default.ron
+    ");
+    assert_snapshot!(experiment(&out.write("empty.ron", "")), @"error: OUT/empty.ron:1:1: error: Expected opening `(` for struct `ExperimentFile`");
+    assert_snapshot!(experiment(&out.write("other.ron", "(graph: \"vtc.ron\", scene: \"cornell\")")), @r"
+    error: passes/vtc.ron: error: cannot read it: No such file or directory (os error 2)
+        = help: did you mean 'vct.ron'?
+    ");
+    let scene = |name: &str, content: &[u8]| {
+        let path = out.write(name, content);
+        out.tidy(&fails(&mut render(path.to_str().unwrap(), &png)))
+    };
+    assert_snapshot!(scene("broken.gltf", b"{ \"asset\": { \"version\": \"2.0\" }, "), @"error: cannot load the model OUT/broken.gltf: EOF while parsing a value at line 1 column 33. Export it again as glTF 2.0 without compression extensions");
+    assert_snapshot!(scene("broken.glb", &[0x67, 0x6c, 0x54, 0x46, 2, 0, 0, 0, 255, 255, 255, 255]), @"error: cannot load the model OUT/broken.glb: could not completely read the object. Export it again as glTF 2.0 without compression extensions");
+    assert_snapshot!(scene("broken.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n"), @"error: cannot load the model OUT/broken.obj: face vertex index out of bounds at or before line 3. Export it again");
+    assert_snapshot!(scene("picture.bmp", b"BM"), @"error: no scene 'OUT/picture.bmp': the file's extension must be .ron, .obj, .gltf or .glb; convert other formats to glTF");
+    let mut home = conelab(root());
+    home.env("CONELAB_HOME", out.0.path()).args(["render", "configs/default.ron", "-o"]).arg(&png);
+    assert_snapshot!(out.tidy(&fails(&mut home)).replace(out.0.path().to_str().unwrap(), "OUT"), @"error: CONELAB_HOME is 'OUT', which has no passes and shaders folders");
+    assert!(!png.exists());
+}
+
+#[test]
+fn outputs_that_cannot_be_written() {
+    let out = Out::new();
+    let file = out.write("file", "");
+    std::fs::create_dir(out.path("folder.png")).unwrap();
+    let told = |path: &Path| out.tidy(&fails(&mut render("cornell", path)));
+    assert_snapshot!(told(&file.join("x.png")), @"error: cannot write 'OUT/file/x.png': 'OUT/file' is no folder");
+    assert_snapshot!(told(&out.path("x.jpg")), @"error: 'OUT/x.jpg': give it a name that ends in .png or .exr");
+    assert_snapshot!(told(&out.path("x")), @"error: 'OUT/x': give it a name that ends in .png or .exr");
+    assert_snapshot!(told(&out.path("folder.png")), @"error: cannot write 'OUT/folder.png': it is a folder");
+    let json = file.join("x.json");
+    assert_snapshot!(out.tidy(&fails(render("cornell", &out.path("x.png")).arg("--json").arg(json))), @"error: cannot write 'OUT/file/x.json': 'OUT/file' is no folder");
+    assert_eq!(out.names(), ["file", "folder.png"]);
+    assert_eq!(std::fs::read_dir(out.path("folder.png")).unwrap().count(), 0);
+}
+
+#[test]
+fn a_failure_keeps_the_old_picture() {
+    let out = Out::new();
+    let old = out.write("x.png", "old");
+    fails(render("cornell", &old).args(["--set", "nothing=1"]));
+    assert_eq!(std::fs::read(&old).unwrap(), b"old");
+    succeeds(&mut render("cornell", &old));
+    assert!(image::open(&old).is_ok());
+    assert_eq!(out.names(), ["x.png"]);
+}
+
+#[test]
+fn graph_explains_itself() {
+    let graph = |args: &[&str]| succeeds(conelab(root()).arg("graph").args(args));
+    let text = graph(&["passes/vct.ron", "--size", "64x48"]);
+    assert!(text.starts_with("graph vct: "), "{text}");
+    for part in ["\norder\n", "  shading\n", "reads voxelRadiance", "\nresources ", "voxelColor", "\nleft out\n"] {
+        assert!(text.contains(part), "'{part}' is not in\n{text}");
+    }
+    assert!(text.contains("voxelize tessellated: voxelizer == tessellated is false"), "{text}");
+    let other = graph(&["configs/default.ron", "--set", "voxelizer=tessellated"]);
+    assert!(!other.contains("voxelize tessellated: voxelizer == tessellated is false"), "{other}");
+
+    let dot = graph(&["passes/vct.ron", "--dot"]);
+    assert!(dot.starts_with("digraph ") && dot.ends_with("}\n"), "{dot}");
+    assert!(dot.contains("\"pass inject\" -> \"voxelRadiance\";"), "{dot}");
+
+    let params = graph(&["passes/vct.ron", "--params"]);
+    assert!(
+        params.contains("  voxel_dim = 128 voxels  (a whole number, 16 to 512)\n      Edge of the volume"),
+        "{params}"
+    );
+    assert!(params.contains("  voxelizer = raster  (one of raster, tessellated)\n"), "{params}");
+
+    let out = Out::new();
+    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "vtc.ron"]))), @r"
+    error: passes/vtc.ron: error: cannot read it: No such file or directory (os error 2)
+        = help: did you mean 'vct.ron'?
+    ");
+    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/vct.ron", "--set", "bais=1"]))), @"error: no parameter 'bais' (did you mean 'bias'?)");
+    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/vct.ron", "--want", "depht"]))), @"error: no resource 'depht' (did you mean 'depth'?)");
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap().flatten() {
+        match entry.file_type().unwrap().is_dir() {
+            true => copy(&entry.path(), &to.join(entry.file_name())),
+            false => drop(std::fs::copy(entry.path(), to.join(entry.file_name())).unwrap()),
+        }
+    }
+}
+
+#[test]
+fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
+    // Scenes whose models are kept elsewhere are no part of the repository: graphs and experiments are.
+    let files = || {
+        let mut command = conelab(root());
+        command.args([
+            "check",
+            "passes/vct.ron",
+            "configs/default.ron",
+            "configs/thesis.ron",
+            "configs/scenes/workshop.ron",
+        ]);
+        command
+    };
+    assert_eq!(succeeds(&mut files()), "checked 4 files, 0 errors\n");
+
+    let out = Out::new();
+    for folder in ["passes", "shaders", "configs"] {
+        copy(&root().join(folder), &out.path(folder));
+    }
+    let edit = |name: &str, old: &str, new: &str| {
+        let text = std::fs::read_to_string(out.path(name)).unwrap();
+        assert!(text.contains(old), "{name}");
+        std::fs::write(out.path(name), text.replacen(old, new, 1)).unwrap();
+    };
+    edit("configs/thesis.ron", "\"voxel_dim\": 256", "\"voxel_dim\": 8");
+    let mut command = files();
+    command.env("CONELAB_HOME", out.0.path()).current_dir(out.0.path());
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert_snapshot!(out.tidy(&String::from_utf8_lossy(&output.stdout)), @r#"
+    configs/thesis.ron:9:9: error: 'voxel_dim': 8 is outside 16 to 512
+        |         "voxel_dim": 8,
+    checked 4 files, 1 errors
+    "#);
+    edit("shaders/include/cone.glsl", "vec4", "vec5");
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("shaders/include/cone.glsl:") && said.contains("vec5"), "{said}");
+}
+
+#[test]
+fn check_of_everything_succeeds() {
+    assert!(succeeds(conelab(root()).arg("check")).ends_with(" 0 errors\n"));
+}
+
+#[test]
+fn devices_are_listed() {
+    let text = succeeds(conelab(root()).arg("devices"));
+    assert!(text.contains("llvmpipe") && text.contains("(cpu, ") && text.contains("yes tessellation"), "{text}");
+}

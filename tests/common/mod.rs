@@ -1,0 +1,102 @@
+//! What several tests share: the program itself, a device with validation, pictures as numbers.
+#![allow(dead_code, reason = "each test uses a part")]
+
+use conelab::experiment::Experiment;
+use conelab::lab::{Home, Lab, Session};
+use conelab::scene::Scene;
+use conelab::vulkan::GpuOptions;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::Arc;
+
+/// The repository.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Compiled shaders and pipelines, kept between the tests of one build.
+pub fn cache() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("cache")
+}
+
+/// The program, on the folders of `home`, with a software device and the validation layer.
+pub fn conelab(home: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_conelab"));
+    command.env("CONELAB_HOME", home).env("CONELAB_CACHE", cache()).current_dir(home);
+    command.env("CONELAB_DEVICE", "llvmpipe").env("CONELAB_VALIDATION", "true");
+    command
+}
+
+/// Standard output of a command that succeeds.
+#[track_caller]
+pub fn succeeds(command: &mut Command) -> String {
+    let (ok, out, err) = text(&command.output().unwrap());
+    assert!(ok, "{command:?}\n{out}{err}");
+    out
+}
+
+/// Standard error of a command that fails with exit code 1.
+#[track_caller]
+pub fn fails(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let (_, out, err) = text(&output);
+    assert_eq!(output.status.code(), Some(1), "{command:?}\n{out}{err}");
+    err
+}
+
+fn text(output: &Output) -> (bool, String, String) {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.success(), text(&output.stdout), text(&output.stderr))
+}
+
+/// A software device with the validation layer.
+pub fn lab(home: &Path) -> Lab {
+    let home = Home { root: home.to_path_buf(), cache: Some(cache()) };
+    let options = GpuOptions { device: Some("llvmpipe".into()), validation: true, cache: None };
+    Lab::open(home, options).unwrap()
+}
+
+/// A built-in scene.
+pub fn scene(name: &str) -> Arc<Scene> {
+    Arc::new(Scene::open(name, &|_, _| {}).unwrap())
+}
+
+/// An experiment of the repository's method: scene, size and what differs from the defaults.
+pub fn experiment(scene: &str, size: (u32, u32), params: &[(&str, &str)]) -> Experiment {
+    let mut experiment = Experiment::read(&root().join("configs/default.ron")).unwrap();
+    experiment.scene = scene.into();
+    experiment.size = size;
+    for (name, value) in params {
+        let name = conelab::graph::source::Loc { value: (*name).to_string(), at: Default::default() };
+        experiment.params.push((name, (*value).to_string()));
+    }
+    experiment
+}
+
+/// A session that keeps the content of `wanted`.
+#[track_caller]
+pub fn prepare(lab: &Lab, experiment: &Experiment, wanted: &[&str]) -> Session {
+    let wanted = wanted.iter().map(|w| (*w).to_string()).collect();
+    match lab.prepare(experiment, scene(&experiment.scene), |_| Ok(wanted)) {
+        Ok((session, _)) => session,
+        Err(e) => panic!("{e}"),
+    }
+}
+
+/// Every message of the validation layer is a failure.
+#[track_caller]
+pub fn assert_clean(lab: &Lab) {
+    let messages = lab.gpu.messages();
+    assert!(messages.is_empty(), "{}", messages.join("\n"));
+}
+
+/// Texels of a texture, four floats each.
+#[track_caller]
+pub fn floats(session: &mut Session, name: &str, mip: u32) -> Vec<[f32; 4]> {
+    conelab::picture::to_floats(&session.texels(name, mip, 0).unwrap())
+}
+
+/// Mean of the red, green and blue of some texels.
+pub fn mean(texels: &[[f32; 4]]) -> f64 {
+    texels.iter().flat_map(|t| &t[..3]).map(|v| f64::from(*v)).sum::<f64>() / (3 * texels.len()) as f64
+}

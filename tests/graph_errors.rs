@@ -1,0 +1,1147 @@
+//! Wrong graphs, shaders and experiments: each test makes one mistake in files that are right, and compares everything
+//! that is said about it.
+
+use conelab::experiment::Experiment;
+use conelab::graph::plan::{PlanInput, plan};
+use conelab::graph::source::Diagnostic;
+use conelab::lab::{Home, LabError, any_device, environment, params_of};
+use conelab::scene::Scene;
+use conelab::vulkan::DeviceInfo;
+use insta::assert_snapshot;
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+const GRAPH: &str = r#"(
+    include: ["shared.ron"],
+    params: [
+        Int(name: "cells", default: 64, range: (16, 512), help: "Edge of the grid."),
+        Choice(name: "method", options: ["fast", "exact"], help: "How fragments are found."),
+        Choice(name: "grid_format", options: ["rgba8", "rgba16f"], help: "Texels of the grid."),
+        Bool(name: "bright", default: false, help: "Twice the light."),
+    ],
+    textures: {
+        "grid": (size: ("cells", "cells", "cells"), format: "grid_format", mips: "log2(cells) + 1"),
+        "count": (size: ("cells", "cells"), format: "r32ui", views: ["r32i"]),
+        "picture": (size: ("width", "height"), format: "rgba16f", history: true),
+        "depth": (size: ("width", "height"), format: "d32"),
+    },
+    buffers: {
+        "work": (size: "cells * 16", indirect: true),
+    },
+    passes: [
+        (name: "prepare", shaders: ["prepare.comp"], dispatch: Groups(1, 1, 1)),
+        (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),
+        (name: "reduce", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
+            bind: { "src": (of: "grid", mip: "mip - 1"), "dst": (of: "grid", mip: "mip") }),
+        (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+            raster: (size: ("cells", "cells"), samples: "4")),
+        (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+            bind: { "last": (of: "picture", history: true) },
+            color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
+    ],
+    output: "picture",
+)
+"#;
+
+const SHARED: &str = r#"(
+    params: [
+        Float(name: "level", default: 0.5, range: (0.0, 1.0), help: "Brightness."),
+    ],
+)
+"#;
+
+const RUN: &str = r#"(
+    graph: "graph.ron",
+    scene: "triangles",
+    size: (64, 48),
+    params: {
+        "level": 0.25,
+    },
+)
+"#;
+
+const PREPARE: &str = "#version 460
+layout(std430) writeonly buffer Work { uint words[]; } work;
+void main() { work.words[0] = work.words.length(); }
+";
+
+const FILL: &str = "#version 460
+#extension GL_GOOGLE_include_directive : require
+#include \"light.glsl\"
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+uniform writeonly image3D grid;
+void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light()); }
+";
+
+const LIGHT: &str = "#include \"params.glsl\"
+vec4 light() {
+    return vec4(params.level * (params.bright ? 2.0 : 1.0));
+}
+";
+
+const REDUCE: &str = "#version 460
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+uniform sampler3D src;
+uniform writeonly image3D dst;
+void main() { imageStore(dst, ivec3(gl_GlobalInvocationID), texelFetch(src, ivec3(gl_GlobalInvocationID) * 2, 0)); }
+";
+
+const FULL: &str = "#version 460
+void main() { gl_Position = vec4(vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2) * 2.0 - 1.0, 0.0, 1.0); }
+";
+
+const SCATTER: &str = "#version 460
+layout(r32ui) uniform uimage2D count;
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    if (imageLoad(count, pixel).r < 100u) imageAtomicAdd(count, pixel, 1u);
+}
+";
+
+const PAINT: &str = "#version 460
+uniform sampler3D grid;
+uniform usampler2D count;
+uniform sampler2D last;
+layout(location = 0) out vec4 color;
+void main() {
+    color = texelFetch(grid, ivec3(0), 0) * float(texelFetch(count, ivec2(0), 0).r) + texelFetch(last, ivec2(0), 0);
+}
+";
+
+/// A folder with files that are right, and a device that has everything.
+struct Bench {
+    folder: TempDir,
+    device: DeviceInfo,
+}
+
+fn bench() -> Bench {
+    let mut bench = Bench { folder: tempfile::tempdir().unwrap(), device: any_device() };
+    bench.device.name = String::from("Test GPU");
+    for (name, text) in [
+        ("passes/graph.ron", GRAPH),
+        ("passes/shared.ron", SHARED),
+        ("configs/run.ron", RUN),
+        ("shaders/prepare.comp", PREPARE),
+        ("shaders/fill.comp", FILL),
+        ("shaders/include/light.glsl", LIGHT),
+        ("shaders/reduce.comp", REDUCE),
+        ("shaders/full.vert", FULL),
+        ("shaders/scatter.frag", SCATTER),
+        ("shaders/paint.frag", PAINT),
+    ] {
+        bench.write(name, text);
+    }
+    bench
+}
+
+impl Bench {
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        let path = self.path(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+
+    /// Replaces the only `old` of a file.
+    #[track_caller]
+    fn edit(self, name: &str, old: &str, new: &str) -> Bench {
+        let text = std::fs::read_to_string(self.path(name)).unwrap();
+        assert_eq!(text.matches(old).count(), 1, "'{old}' stands once in {name}");
+        self.write(name, &text.replace(old, new));
+        self
+    }
+
+    fn add(self, name: &str, text: &str) -> Bench {
+        self.write(name, text);
+        self
+    }
+
+    /// Everything said between reading the experiment and having the plan of a frame.
+    fn findings(&self) -> String {
+        let list = self.check().unwrap_or_else(|errors| errors);
+        let text = list.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+        text.replace(&format!("{}/", self.folder.path().display()), "")
+    }
+
+    fn check(&self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        let home = Home { root: self.folder.path().to_path_buf(), cache: None };
+        let experiment = Experiment::read(&self.path("configs/run.ron"))?;
+        let (graph, linked, warnings) = home.graph(&experiment.graph)?;
+        let params = params_of(&graph, &experiment).map_err(|e| match e {
+            LabError::Input(list) => list,
+            other => panic!("{other}"),
+        })?;
+        let scene = Scene::open(&experiment.scene, &|_, _| {}).unwrap();
+        let env = environment(&scene, experiment.size, experiment.time);
+        let wanted = graph.output.iter().chain(&graph.outputs).cloned().collect();
+        let input = PlanInput { params: &params, env, wanted, device: &self.device };
+        plan(&graph, &linked, &input)?;
+        Ok(warnings)
+    }
+}
+
+/// One mistake in the graph.
+#[track_caller]
+fn graph(old: &str, new: &str) -> String {
+    bench().edit("passes/graph.ron", old, new).findings()
+}
+
+/// One mistake in a shader.
+#[track_caller]
+fn shader(name: &str, old: &str, new: &str) -> String {
+    bench().edit(&format!("shaders/{name}"), old, new).findings()
+}
+
+/// One mistake in the experiment.
+#[track_caller]
+fn experiment(old: &str, new: &str) -> String {
+    bench().edit("configs/run.ron", old, new).findings()
+}
+
+#[test]
+fn the_files_are_right() {
+    assert_eq!(bench().findings(), "");
+}
+
+#[test]
+fn text_that_is_no_ron() {
+    // A comma is missing after the first pass; a bracket at the end; a file that is not text at all.
+    assert_snapshot!(graph("dispatch: Groups(1, 1, 1)),", "dispatch: Groups(1, 1, 1))"), @r#"
+    passes/graph.ron:20:9: error: expected a comma
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),
+        = help: one is missing before this, or a whole number has a point
+    "#);
+    assert_snapshot!(graph("output: \"picture\",\n)", "output: \"picture\",\n"), @r#"
+    passes/graph.ron:29:23: error: Unexpected end of RON
+        |     output: "picture",
+    "#);
+    assert_snapshot!(graph("output: \"picture\",", "output: picture,"), @r"
+    passes/graph.ron:29:13: error: Expected string
+        |     output: picture,
+    ");
+    assert_snapshot!(graph("range: (16, 512), help: \"Edge", "range: (16, 512), help: \"Edge\\q"), @r#"
+    passes/graph.ron:4:66: error: Unknown escape character
+        |         Int(name: "cells", default: 64, range: (16, 512), help: "Edge\q of the grid."),
+    "#);
+    let bench = bench();
+    std::fs::write(bench.path("passes/graph.ron"), [0xff, 0xfe, 0x00]).unwrap();
+    assert_snapshot!(bench.findings(), @"passes/graph.ron: error: cannot read it: stream did not contain valid UTF-8");
+}
+
+#[test]
+fn fields_and_variants_that_do_not_exist() {
+    assert_snapshot!(graph("output: \"picture\"", "outptu: \"picture\""), @r#"
+    passes/graph.ron:29:5: error: unknown field 'outptu'
+        |     outptu: "picture",
+        = help: did you mean 'output'?
+    "#);
+    assert_snapshot!(graph("shaders: [\"fill.comp\"], ", "shader: [\"fill.comp\"], "), @r#"
+    passes/graph.ron:20:24: error: unknown field 'shader'
+        |         (name: "fill", shader: ["fill.comp"], dispatch: Indirect("work", 0)),
+        = help: did you mean 'shaders'?
+    "#);
+    assert_snapshot!(graph("samples: \"4\"", "sample: \"4\""), @r#"
+    passes/graph.ron:24:48: error: unknown field 'sample'
+        |             raster: (size: ("cells", "cells"), sample: "4")),
+        = help: did you mean 'samples'?
+    "#);
+    assert_snapshot!(graph("dispatch: Groups(1, 1, 1)", "dispatch: Group(1, 1, 1)"), @r#"
+    passes/graph.ron:19:64: error: unknown name 'Group'
+        |         (name: "prepare", shaders: ["prepare.comp"], dispatch: Group(1, 1, 1)),
+        = help: did you mean 'Groups'?
+    "#);
+    assert_snapshot!(graph("Bool(name: \"bright\"", "Boolean(name: \"bright\""), @r#"
+    passes/graph.ron:7:9: error: unknown name 'Boolean'
+        |         Boolean(name: "bright", default: false, help: "Twice the light."),
+        = help: did you mean 'Bool'?
+    "#);
+    assert_snapshot!(graph("format: \"d32\"", "format: \"d32\", sampler: (filter: bilinear)"), @r#"
+    passes/graph.ron:13:79: error: unknown name 'bilinear'
+        |         "depth": (size: ("width", "height"), format: "d32", sampler: (filter: bilinear)),
+        = help: did you mean 'linear'?
+    "#);
+}
+
+#[test]
+fn values_of_the_wrong_kind() {
+    assert_snapshot!(graph("\"depth\": (size: (\"width\", \"height\")", "\"depth\": (size: \"width\""), @r#"
+    passes/graph.ron:13:32: error: expected two sizes (width, height) or three (width, height, depth)
+        |         "depth": (size: "width", format: "d32"),
+    "#);
+    assert_snapshot!(graph("format: \"rgba16f\", history: true", "format: \"rgba16f\", history: \"yes\""), @r#"
+    passes/graph.ron:12:75: error: Expected boolean
+        |         "picture": (size: ("width", "height"), format: "rgba16f", history: "yes"),
+    "#);
+    assert_snapshot!(graph("clear: 1.0", "clear: (1, 0)"), @r#"
+    passes/graph.ron:27:87: error: Expected float
+        |             color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: (1, 0))),
+    "#);
+    assert_snapshot!(graph("bind: { \"last\": (of: \"picture\", history: true) }", "bind: { \"last\": \"picture\" }"), @r#"
+    passes/graph.ron:26:29: error: Expected opening `(` for struct `Bind`
+        |             bind: { "last": "picture" },
+    "#);
+    assert_snapshot!(graph("(name: \"prepare\", ", "("), @r#"
+    passes/graph.ron:19:62: error: field 'name' is missing
+        |         (shaders: ["prepare.comp"], dispatch: Groups(1, 1, 1)),
+    "#);
+}
+
+#[test]
+fn names_that_nothing_has() {
+    assert_snapshot!(graph("to: \"depth\"", "to: \"detph\""), @r#"
+    passes/graph.ron:27:72: error: no texture is named 'detph'
+        |             color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "detph", clear: 1.0)),
+        = help: did you mean 'depth'?
+    "#);
+    assert_snapshot!(graph("Indirect(\"work\", 0)", "Indirect(\"wrok\", 0)"), @r#"
+    passes/graph.ron:20:67: error: no buffer is named 'wrok'
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("wrok", 0)),
+        = help: did you mean 'work'?
+    "#);
+    assert_snapshot!(graph("mips: \"log2(cells) + 1\"", "mips: \"log2(cell) + 1\""), @r#"
+    passes/graph.ron:10:82: error: unknown variable 'cell' in 'log2(cell) + 1'
+        |         "grid": (size: ("cells", "cells", "cells"), format: "grid_format", mips: "log2(cell) + 1"),
+        = help: did you mean 'cells'?
+    "#);
+    assert_snapshot!(graph("when: \"method == fast\"", "when: \"method == fats\""), @r#"
+    passes/graph.ron:25:31: error: unknown variable 'fats' in 'method == fats'
+        |         (name: "paint", when: "method == fats", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: did you mean 'fast'?
+    "#);
+    assert_snapshot!(graph("[\"full.vert\", \"paint.frag\"]", "[\"full.vert\", \"pant.frag\"]"), @r#"
+    passes/graph.ron:25:72: error: no shader file 'pant.frag'
+        |         (name: "paint", when: "method == fast", shaders: ["full.vert", "pant.frag"], draw: Fullscreen,
+        = help: did you mean 'paint.frag'?
+    "#);
+    assert_snapshot!(graph("[\"full.vert\", \"paint.frag\"]", "[\"full.vert\", \"paint.fragment\"]"), @r#"
+    passes/graph.ron:25:72: error: 'paint.fragment' is no shader: expected .vert, .tesc, .tese, .geom, .frag or .comp
+        |         (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.fragment"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("format: \"rgba16f\", history", "format: \"rgb16f\", history"), @r#"
+    passes/graph.ron:12:56: error: no format is named 'rgb16f'
+        |         "picture": (size: ("width", "height"), format: "rgb16f", history: true),
+        = help: did you mean 'rgba16f'?
+    "#);
+    assert_snapshot!(graph("format: \"r32ui\", views", "format: \"method\", views"), @r#"
+    passes/graph.ron:11:53: error: option 'fast' of 'method' is no format
+        |         "count": (size: ("cells", "cells"), format: "method", views: ["r32i"]),
+    passes/graph.ron:11:53: error: option 'exact' of 'method' is no format
+        |         "count": (size: ("cells", "cells"), format: "method", views: ["r32i"]),
+    "#);
+    assert_snapshot!(graph("output: \"picture\"", "output: \"pictures\""), @r#"
+    passes/graph.ron:29:13: error: no texture is named 'pictures'
+        |     output: "pictures",
+        = help: did you mean 'picture'?
+    "#);
+    assert_snapshot!(graph("each_mip: (texture: \"grid\"", "each_mip: (texture: \"grids\""), @r#"
+    passes/graph.ron:21:46: error: no texture is named 'grids'
+        |         (name: "reduce", each_mip: (texture: "grids", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
+        = help: did you mean 'grid'?
+    "#);
+    assert_snapshot!(graph("Cover(\"dst\")", "Cover(\"dts\")"), @r#"
+    passes/graph.ron:21:106: error: no texture is named 'dts'
+        |         (name: "reduce", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dts"),
+        = help: known: count, depth, grid, picture
+    "#);
+}
+
+#[test]
+fn expressions() {
+    assert_snapshot!(graph("\"cells * 16\"", "\"cells * \""), @r#"
+    passes/graph.ron:16:24: error: 'cells * ' is no expression: Script is incomplete (line 1, position 9)
+        |         "work": (size: "cells * ", indirect: true),
+    "#);
+    assert_snapshot!(graph("\"cells * 16\"", "\"pow(cells, 2)\""), @r#"
+    passes/graph.ron:16:24: error: 'pow(cells, 2)': Function not found: pow (f64, i64) (line 1, position 1)
+        |         "work": (size: "pow(cells, 2)", indirect: true),
+    "#);
+    assert_snapshot!(graph("\"cells * 16\"", "\"cells * mip\""), @r#"
+    passes/graph.ron:16:24: error: 'cells * mip': 'mip' has no value here
+        |         "work": (size: "cells * mip", indirect: true),
+    "#);
+    assert_snapshot!(graph("\"cells * 16\"", "\"cells * (1 / 2)\""), @r#"
+    passes/graph.ron:16:24: error: buffer 'work' is 0 bytes; Test GPU allows 4 to 4294967295
+        |         "work": (size: "cells * (1 / 2)", indirect: true),
+    "#);
+    // Comparisons of different kinds would be false without a word.
+    assert_snapshot!(graph("when: \"method == fast\"", "when: \"bright == 1\""), @r#"
+    passes/graph.ron:25:31: error: 'bright == 1': Runtime error: true or false is no number: write `flag` or `!flag` (line 1, position 8)
+        |         (name: "paint", when: "bright == 1", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("when: \"method == fast\"", "when: \"method == 'fast'\""), @r#"
+    passes/graph.ron:25:31: error: 'method == 'fast'' is no expression: Invalid character: 'fast' (line 1, position 11)
+        |         (name: "paint", when: "method == 'fast'", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("when: \"method == fast\"", "when: \"method == `fast`\""), @r#"
+    passes/graph.ron:25:31: error: 'method == `fast`': Runtime error: options stand without quotes: choice == option (line 1, position 8)
+        |         (name: "paint", when: "method == `fast`", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("when: \"method == fast\"", "when: \"method = fast\""), @r#"
+    passes/graph.ron:25:31: error: 'method = fast' is no expression: Unexpected '=' (line 1, position 8)
+        |         (name: "paint", when: "method = fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("when: \"method == fast\"", "when: \"cells && bright\""), @r#"
+    passes/graph.ron:25:31: error: 'cells && bright': Data type incorrect: f64 (expecting bool) (line 1, position 1)
+        |         (name: "paint", when: "cells && bright", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+}
+
+#[test]
+fn two_things_of_one_name() {
+    assert_snapshot!(graph("\"count\": (size", "\"grid\": (size"), @r#"
+    passes/graph.ron:11:9: error: 'grid' stands twice
+        |         "grid": (size: ("cells", "cells"), format: "r32ui", views: ["r32i"]),
+    "#);
+    assert_snapshot!(graph("\"work\": (size", "\"depth\": (size"), @r#"
+    passes/graph.ron:16:9: error: resource 'depth' is declared twice
+        |         "depth": (size: "cells * 16", indirect: true),
+    passes/graph.ron:20:67: error: no buffer is named 'work'
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),
+        = help: known: depth
+    "#);
+    assert_snapshot!(graph("name: \"bright\"", "name: \"cells\""), @r#"
+    passes/graph.ron:7:20: error: parameter 'cells' is declared twice
+        |         Bool(name: "cells", default: false, help: "Twice the light."),
+    "#);
+    assert_snapshot!(graph("name: \"bright\"", "name: \"level\""), @r#"
+    passes/graph.ron:7:20: error: parameter 'level' is declared twice
+        |         Bool(name: "level", default: false, help: "Twice the light."),
+    "#);
+    assert_snapshot!(graph("name: \"reduce\"", "name: \"fill\""), @r#"
+    passes/graph.ron:21:16: error: two passes are named 'fill'; timings could not tell them apart
+        |         (name: "fill", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
+    "#);
+    assert_snapshot!(graph("\"work\": (size", "\"camera\": (size"), @r#"
+    passes/graph.ron:16:9: error: 'camera' is a resource that every scene offers; choose another name
+        |         "camera": (size: "cells * 16", indirect: true),
+    passes/graph.ron:20:67: error: no buffer is named 'work'
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),
+        = help: known: camera
+    "#);
+    assert_snapshot!(graph("\"dst\": (of: \"grid\", mip: \"mip\")", "\"src\": (of: \"grid\", mip: \"mip\")"), @r#"
+    passes/graph.ron:21:106: error: no texture is named 'dst'
+        |         (name: "reduce", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
+        = help: known: count, depth, grid, picture
+    passes/graph.ron:22:58: error: 'src' stands twice
+        |             bind: { "src": (of: "grid", mip: "mip - 1"), "src": (of: "grid", mip: "mip") }),
+    "#);
+    assert_snapshot!(graph("options: [\"fast\", \"exact\"]", "options: [\"fast\", \"fast\"]"), @r#"
+    passes/graph.ron:5:50: error: option 'fast' stands twice
+        |         Choice(name: "method", options: ["fast", "fast"], help: "How fragments are found."),
+    "#);
+}
+
+#[test]
+fn parameters() {
+    assert_snapshot!(graph("default: 64", "default: 1024"), @r#"
+    passes/graph.ron:4:9: error: default of 'cells': 1024 is outside 16 to 512
+        |         Int(name: "cells", default: 1024, range: (16, 512), help: "Edge of the grid."),
+    "#);
+    assert_snapshot!(graph("default: 64, ", ""), @r#"
+    passes/graph.ron:4:9: error: parameter 'cells' has no default
+        |         Int(name: "cells", range: (16, 512), help: "Edge of the grid."),
+    "#);
+    assert_snapshot!(graph("default: 64", "default: 64.5"), @r#"
+    passes/graph.ron:4:39: error: expected a comma
+        |         Int(name: "cells", default: 64.5, range: (16, 512), help: "Edge of the grid."),
+        = help: one is missing before this, or a whole number has a point
+    "#);
+    assert_snapshot!(graph("range: (16, 512)", "range: (512, 16)"), @r#"
+    passes/graph.ron:4:9: error: parameter 'cells': its range goes from 512 to 16, which holds nothing
+        |         Int(name: "cells", default: 64, range: (512, 16), help: "Edge of the grid."),
+    "#);
+    assert_snapshot!(graph("options: [\"fast\", \"exact\"]", "default: \"slow\", options: [\"fast\", \"exact\"]"), @r#"
+    passes/graph.ron:5:9: error: default of 'method' has no option 'slow' (known: exact, fast)
+        |         Choice(name: "method", default: "slow", options: ["fast", "exact"], help: "How fragments are found."),
+    "#);
+    assert_snapshot!(graph("options: [\"fast\", \"exact\"]", "options: [\"fast\", \"cells\"]"), @r#"
+    passes/graph.ron:5:50: error: option 'cells' has the name of a parameter or variable, which expressions could not tell apart
+        |         Choice(name: "method", options: ["fast", "cells"], help: "How fragments are found."),
+    "#);
+    assert_snapshot!(graph("options: [\"fast\", \"exact\"]", "options: [\"fast\", \"very exact\"]"), @r#"
+    passes/graph.ron:5:50: error: 'very exact' cannot be an option's name
+        |         Choice(name: "method", options: ["fast", "very exact"], help: "How fragments are found."),
+        = help: letters, digits and underscores, starting with a lower-case letter
+    "#);
+    assert_snapshot!(graph("options: [\"fast\", \"exact\"], ", ""), @r#"
+    passes/graph.ron:5:9: error: choice 'method' has no options
+        |         Choice(name: "method", help: "How fragments are found."),
+    passes/graph.ron:25:31: error: unknown variable 'fast' in 'method == fast'
+        |         (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph(", help: \"Edge of the grid.\"", ""), @r#"
+    passes/graph.ron:4:57: error: field 'help' is missing
+        |         Int(name: "cells", default: 64, range: (16, 512)),
+    "#);
+    assert_snapshot!(graph("help: \"Edge of the grid.\"", "help: \" \""), @r#"
+    passes/graph.ron:4:9: error: parameter 'cells' needs one line of help
+        |         Int(name: "cells", default: 64, range: (16, 512), help: " "),
+    "#);
+    assert_snapshot!(graph("name: \"bright\"", "name: \"is-bright\""), @r#"
+    passes/graph.ron:7:20: error: 'is-bright' cannot be a parameter's name
+        |         Bool(name: "is-bright", default: false, help: "Twice the light."),
+        = help: letters, digits and underscores, starting with a lower-case letter
+    "#);
+    assert_snapshot!(graph("name: \"bright\"", "name: \"width\""), @r#"
+    passes/graph.ron:7:20: error: 'width' is a variable that every graph has
+        |         Bool(name: "width", default: false, help: "Twice the light."),
+    "#);
+    assert_snapshot!(graph("name: \"bright\"", "name: \"sample\""), @r#"
+    passes/graph.ron:7:20: error: 'sample' cannot be a parameter's name: GLSL refuses `bool sample;`
+        |         Bool(name: "sample", default: false, help: "Twice the light."),
+    "#);
+    assert_snapshot!(
+        graph("Bool(name: \"bright\", default: false", "Vec3(name: \"bright\", constant: true, default: (0, 0, 0)"),
+        @r#"
+        passes/graph.ron:7:9: error: parameter 'bright': a vector cannot be a constant
+            |         Vec3(name: "bright", constant: true, default: (0, 0, 0), help: "Twice the light."),
+        "#
+    );
+}
+
+#[test]
+fn passes_of_two_kinds_and_of_none() {
+    assert_snapshot!(graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "comment: \"later\""), @r#"
+    passes/graph.ron:19:9: error: pass 'prepare' does nothing: give it dispatch, draw, clear or copy
+        |         (name: "prepare", comment: "later"),
+    "#);
+    assert_snapshot!(graph("dispatch: Groups(1, 1, 1)", "dispatch: Groups(1, 1, 1), clear: \"work\""), @r#"
+    passes/graph.ron:19:9: error: pass 'prepare' does several things: dispatch, draw, clear and copy exclude each other
+        |         (name: "prepare", shaders: ["prepare.comp"], dispatch: Groups(1, 1, 1), clear: "work"),
+    passes/graph.ron:19:9: error: pass 'prepare' clears or copies: it takes no shaders
+        |         (name: "prepare", shaders: ["prepare.comp"], dispatch: Groups(1, 1, 1), clear: "work"),
+    "#);
+    assert_snapshot!(graph("shaders: [\"prepare.comp\"], ", ""), @r#"
+    passes/graph.ron:19:9: error: pass 'prepare' dispatches: it needs one .comp shader and no other
+        |         (name: "prepare", dispatch: Groups(1, 1, 1)),
+    "#);
+    assert_snapshot!(graph("[\"prepare.comp\"]", "[\"full.vert\"]"), @r#"
+    passes/graph.ron:19:9: error: pass 'prepare' dispatches: it needs one .comp shader and no other
+        |         (name: "prepare", shaders: ["full.vert"], dispatch: Groups(1, 1, 1)),
+    "#);
+    assert_snapshot!(graph("[\"full.vert\", \"scatter.frag\"]", "[\"scatter.frag\"]"), @r#"
+    passes/graph.ron:23:9: error: pass 'scatter' draws: it needs a .vert shader and no .comp
+        |         (name: "scatter", shaders: ["scatter.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("[\"full.vert\", \"scatter.frag\"]", "[\"full.vert\", \"scatter.frag\", \"paint.frag\"]"), @r#"
+    passes/graph.ron:23:66: error: pass 'scatter' has two Fragment shaders
+        |         (name: "scatter", shaders: ["full.vert", "scatter.frag", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("(name: \"scatter\", ", "(name: \"scatter\", topology: patches, "), @r#"
+    passes/graph.ron:23:9: error: pass 'scatter': patches need both a .tesc and a .tese shader, and they need patches
+        |         (name: "scatter", topology: patches, shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("dispatch: Groups(1, 1, 1)", "copy: (from: \"work\", to: \"count\")"), @r#"
+    passes/graph.ron:19:9: error: pass 'prepare' clears or copies: it takes no shaders
+        |         (name: "prepare", shaders: ["prepare.comp"], copy: (from: "work", to: "count")),
+    passes/graph.ron:19:79: error: no buffer is named 'count'
+        |         (name: "prepare", shaders: ["prepare.comp"], copy: (from: "work", to: "count")),
+        = help: known: work
+    "#);
+    assert_snapshot!(graph("each_mip: (texture: \"grid\", from: 1)", "each_mip: (texture: \"grid\", from: 1), repeat: 2"), @r#"
+    passes/graph.ron:21:9: error: pass 'reduce' has both repeat and each_mip
+        |         (name: "reduce", each_mip: (texture: "grid", from: 1), repeat: 2, shaders: ["reduce.comp"], dispatch: Cover("dst"),
+    "#);
+}
+
+#[test]
+fn attachments() {
+    assert_snapshot!(graph("(to: \"picture\", clear", "(to: \"depth\", clear"), @r#"
+    passes/graph.ron:27:26: error: 'depth' is a depth texture and cannot be a colour attachment
+        |             color: [(to: "depth", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
+    "#);
+    assert_snapshot!(graph("depth: (to: \"depth\"", "depth: (to: \"picture\""), @r#"
+    passes/graph.ron:27:72: error: 'picture' is no depth texture (d32 or d16)
+        |             color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "picture", clear: 1.0)),
+    "#);
+    assert_snapshot!(graph("\"depth\": (size: (\"width\", \"height\")", "\"depth\": (size: (\"width\", \"height / 2\")"), @r#"
+    passes/graph.ron:27:72: error: attachments differ in size: 64x48 and 64x24
+        |             color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
+    "#);
+    assert_snapshot!(graph("clear: (0, 0, 0, 1))]", "clear: (0, 0, 0, 1), mip: 1)]"), @r#"
+    passes/graph.ron:27:26: error: mip 1 or layer 0 does not exist
+        |             color: [(to: "picture", clear: (0, 0, 0, 1), mip: 1)], depth: (to: "depth", clear: 1.0)),
+    "#);
+    assert_snapshot!(graph("(to: \"picture\", clear", "(to: \"grid\", clear"), @r#"
+    passes/graph.ron:27:26: error: 'grid' is 3D and cannot be an attachment; write to it as an image
+        |             color: [(to: "grid", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
+    "#);
+    assert_snapshot!(graph("raster: (size: (\"cells\", \"cells\"), samples: \"4\")", "raster: ()"), @r#"
+    passes/graph.ron:23:9: error: pass 'scatter' draws without attachments: give raster: (size: ("w", "h"))
+        |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("depth: (to: \"depth\", clear: 1.0)", "raster: (samples: 4)"), @r#"
+    passes/graph.ron:25:9: error: pass 'paint': samples are for drawing without attachments
+        |         (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(graph("depth: (to: \"depth\", clear: 1.0)", "raster: (size: (64, 64))"), @r#"
+    passes/graph.ron:27:75: error: pass 'paint' has attachments: its size is theirs
+        |             color: [(to: "picture", clear: (0, 0, 0, 1))], raster: (size: (64, 64))),
+    "#);
+    assert_snapshot!(
+        graph("\"last\": (of: \"picture\", history: true)", "\"last\": (of: \"picture\")"),
+        @r#"
+        passes/graph.ron:25:16: error: pass 'paint' uses 'picture' in two ways at once (Sampled and Color)
+            |         (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        "#
+    );
+}
+
+#[test]
+fn what_must_be_declared_first() {
+    assert_snapshot!(graph(", indirect: true", ""), @r#"
+    passes/graph.ron:20:67: error: buffer 'work' is not declared with `indirect: true`
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),
+    "#);
+    assert_snapshot!(graph("format: \"rgba16f\", history: true", "format: \"rgba16f\""), @r#"
+    passes/graph.ron:26:34: error: 'picture' is not declared with `history: true`
+        |             bind: { "last": (of: "picture", history: true) },
+    "#);
+    assert_snapshot!(
+        graph("bind: { \"last\"", "bind: { \"count\": (of: \"count\", as: \"rgba8\"), \"last\""),
+        @r#"
+        passes/graph.ron:26:48: error: 'count' is not declared to be viewed as 'rgba8'
+            |             bind: { "count": (of: "count", as: "rgba8"), "last": (of: "picture", history: true) },
+            = help: declare it: views: ["rgba8"]
+        "#
+    );
+    assert_snapshot!(graph("views: [\"r32i\"]", "views: [\"rg32f\"]"), @r#"
+    passes/graph.ron:11:70: error: 'count' has texels of 4 bytes and cannot be viewed as 'rg32f' of 8
+        |         "count": (size: ("cells", "cells"), format: "r32ui", views: ["rg32f"]),
+    "#);
+    assert_snapshot!(graph("Indirect(\"work\", 0)", "Indirect(\"work\", 2)"), @r#"
+    passes/graph.ron:20:67: error: a command begins at a multiple of 4 bytes, which 2 is not
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 2)),
+    "#);
+    assert_snapshot!(graph("Indirect(\"work\", 0)", "Indirect(\"work\", 1020)"), @r#"
+    passes/graph.ron:20:67: error: a command of 12 bytes at byte 1020 ends outside 'work', which has 1024 bytes
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 1020)),
+    "#);
+}
+
+#[test]
+fn includes_of_graphs() {
+    assert_snapshot!(
+        bench().edit("passes/shared.ron", "(\n    params", "(\n    include: [\"graph.ron\"],\n    params").findings(),
+        @r#"
+        passes/shared.ron:2:15: error: 'passes/graph.ron' includes itself
+            |     include: ["graph.ron"],
+        "#
+    );
+    assert_snapshot!(graph("\"shared.ron\"", "\"share.ron\""), @r#"
+    passes/graph.ron:2:15: error: cannot read it: No such file or directory (os error 2)
+        |     include: ["share.ron"],
+        = help: did you mean 'shared.ron'?
+    "#);
+    // A mistake in an included file is told with that file's name.
+    assert_snapshot!(bench().edit("passes/shared.ron", "default: 0.5", "default: 5").findings(), @r#"
+    passes/shared.ron:3:9: error: default of 'level': 5 is outside 0 to 1
+        |         Float(name: "level", default: 5, range: (0.0, 1.0), help: "Brightness."),
+    "#);
+}
+
+#[test]
+fn texts_of_shaders() {
+    assert_snapshot!(shader("fill.comp", "light());", "light()"), @r"
+    shaders/fill.comp:6: error: '' :  syntax error, unexpected RIGHT_BRACE, expecting RIGHT_PAREN or COMMA
+        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light() }
+    ");
+    assert_snapshot!(shader("include/light.glsl", "params.level *", "params.levle *"), @r"
+    shaders/include/light.glsl:3: error: 'levle' : no such field in structure 'params'
+        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:3: error: '*' :  wrong operand types: no operation '*' exists that takes a left-hand operand of type 'layout( column_major std140) uniform block{layout( column_major std140 offset=0) uniform highp float level, layout( column_major std140 offset=4) uniform highp int cells, layout( column_major std140 offset=8) uniform highp int method, layout( column_major std140 offset=12) uniform highp int grid_format, layout( column_major std140 offset=16) uniform bool bright}' and a right operand of type ' temp float' (or there is no acceptable conversion)
+        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:3: error: 'constructor' : can't convert
+        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:3: error: ' temp 4-component vector of float' : cannot construct with these arguments
+        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:3: error: 'return' : cannot convert return value to function return type
+        | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
+    ");
+    assert_snapshot!(shader("include/light.glsl", "vec4 light", "vec3 light"), @r"
+    shaders/include/light.glsl:3: error: 'return' : cannot convert return value to function return type
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    shaders/fill.comp:6: error: 'imageStore' : no matching overloaded function found
+        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light()); }
+    ");
+    assert_snapshot!(shader("fill.comp", "light.glsl", "lihgt.glsl"), @r#"
+    shaders/fill.comp:3: error: '#include' : no such include; did you mean 'light.glsl'? for header name: lihgt.glsl
+        | #include "lihgt.glsl"
+    shaders/fill.comp:6: error: 'light' : no matching overloaded function found
+        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light()); }
+    shaders/fill.comp:6: error: 'imageStore' : no matching overloaded function found
+        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light()); }
+    "#);
+    assert_snapshot!(shader("fill.comp", "#extension GL_GOOGLE_include_directive : require\n", ""), @"");
+    assert_snapshot!(shader("prepare.comp", "#version 460\n", ""), @r#"
+    passes/graph.ron:19:37: error: shader 'prepare.comp' has no line `#version 460`, which must be its first
+        |         (name: "prepare", shaders: ["prepare.comp"], dispatch: Groups(1, 1, 1)),
+    "#);
+    assert_snapshot!(shader("include/light.glsl", "#include", "#include \"light.glsl\"\n#include"), @r#"
+    shaders/include/light.glsl:1: error: '#include' : includes are nested more than 32 deep for header name: light.glsl
+        | #include "light.glsl"
+    shaders/include/light.glsl:2: error: '#include' : includes are nested more than 32 deep for header name: params.glsl
+        | #include "params.glsl"
+    shaders/include/light.glsl:4: error: 'params' : undeclared identifier
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:4: error: 'level' : vector swizzle too long
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:4: error: 'level' : unknown swizzle selection
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:4: error: 'bright' : vector swizzle too long
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:4: error: 'bright' : unknown swizzle selection
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:4: error: 'bright' : vector swizzle selection out of range
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:4: error: '' : boolean expression expected
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    shaders/include/light.glsl:3: error: 'light' : function already has a body
+        | vec4 light() {
+    shaders/include/light.glsl:4: error: 'return' : void function cannot return a value
+        | return vec4(params.level * (params.bright ? 2.0 : 1.0));
+    "#);
+    assert_snapshot!(shader("prepare.comp", "void main()", "void other()"), @r"
+    shaders/prepare.comp: error: compilation error:
+    prepare.comp: error: Linking compute stage: Missing entry point: Each stage requires one entry point
+    ");
+    // The same mistake in an include of two shaders is told once.
+    assert_snapshot!(
+        bench()
+            .edit("shaders/reduce.comp", "#version 460", "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"light.glsl\"")
+            .edit("shaders/include/light.glsl", "return vec4(", "return vec5(")
+            .findings(),
+        @r"
+        shaders/include/light.glsl:3: error: 'vec5' : no matching overloaded function found
+            | return vec5(params.level * (params.bright ? 2.0 : 1.0));
+        shaders/include/light.glsl:3: error: 'return' : cannot convert return value to function return type
+            | return vec5(params.level * (params.bright ? 2.0 : 1.0));
+        "
+    );
+}
+
+#[test]
+fn what_shaders_bind() {
+    assert_snapshot!(shader("fill.comp", "image3D grid;\nvoid main() { imageStore(grid", "image3D gird;\nvoid main() { imageStore(gird"), @r"
+    shaders/fill.comp:5: error: 'gird' is an image3D without a format that neither the graph nor the scene declares (pass 'fill')
+        | uniform writeonly image3D gird;
+        = help: did you mean 'grid'?
+    ");
+    assert_snapshot!(shader("fill.comp", "image3D grid;\nvoid main() { imageStore(grid", "image3D elsewhere;\nvoid main() { imageStore(elsewhere"), @r#"
+    shaders/fill.comp:5: error: 'elsewhere' is an image3D without a format that neither the graph nor the scene declares (pass 'fill')
+        | uniform writeonly image3D elsewhere;
+        = help: declare it in the graph, or rename it: bind: {"elsewhere": (of: "...")}
+    "#);
+    assert_snapshot!(
+        shader("paint.frag", "uniform sampler3D grid;", "uniform sampler2D grid;\n#define ivec3 ivec2"),
+        @r"
+        shaders/paint.frag:2: error: 'grid' is 3D, and the shader declares a sampler2D (pass 'paint')
+            | uniform sampler2D grid;
+            = help: declare it as 3D
+        "
+    );
+    assert_snapshot!(
+        shader("scatter.frag", "layout(r32ui) uniform uimage2D count;", "layout(r32i) uniform iimage2D count;\n#define imageAtomicAdd(a, b, c) imageAtomicAdd(a, b, int(c))"),
+        @r"
+        shaders/scatter.frag:2: error: 'count' has format r32ui, and the shader declares r32i (pass 'scatter')
+            | layout(r32i) uniform iimage2D count;
+            = help: write layout(r32ui), or bind it as another declared view
+        "
+    );
+    assert_snapshot!(shader("fill.comp", "uniform writeonly image3D", "layout(rgba8) uniform writeonly image3D"), @r"
+    shaders/fill.comp:5: error: 'grid' has format grid_format, and the shader declares rgba8 (pass 'fill')
+        | layout(rgba8) uniform writeonly image3D grid;
+        = help: its format is a choice: write to a `writeonly` image without a format, and read by sampler
+    ");
+    assert_snapshot!(shader("paint.frag", "usampler2D count", "sampler2D count"), @r"
+    shaders/paint.frag:3: error: 'count' has format r32ui, and the shader declares a sampler2D (pass 'paint')
+        | uniform sampler2D count;
+        = help: declare a usampler
+    ");
+    assert_snapshot!(shader("paint.frag", "uniform sampler2D last", "uniform usampler2D last"), @r"
+    shaders/paint.frag:4: error: 'picture' has format rgba16f, and the shader declares a usampler2D (pass 'paint')
+        | uniform usampler2D last;
+        = help: declare a sampler
+    ");
+    assert_snapshot!(
+        bench()
+            .edit("shaders/paint.frag", "uniform sampler2D last;", "uniform sampler2DShadow last;")
+            .edit("shaders/paint.frag", "texelFetch(last, ivec2(0), 0)", "texture(last, vec3(0))")
+            .findings(),
+        @r"
+        shaders/paint.frag:4: error: the sampler of 'picture' does not fit: the shader declares a sampler2DShadow (pass 'paint')
+            | uniform sampler2DShadow last;
+            = help: bind it with sampler: (compare: less_or_equal)
+        "
+    );
+    assert_snapshot!(
+        graph("history: true) }", "history: true, sampler: (compare: less)) }"),
+        @r"
+        shaders/paint.frag:4: error: the sampler of 'picture' does not fit: the shader declares a sampler2D (pass 'paint')
+            | uniform sampler2D last;
+            = help: declare a Shadow sampler, or bind it with a sampler that does not compare
+        "
+    );
+    assert_snapshot!(
+        bench().add("shaders/prepare.comp", &PREPARE.replace("work", "count")).findings(),
+        @r"
+        shaders/prepare.comp:2: error: 'count' is a texture, and the shader declares a writeonly buffer (pass 'prepare')
+            | layout(std430) writeonly buffer Work { uint words[]; } count;
+        "
+    );
+    assert_snapshot!(
+        bench()
+            .edit("shaders/fill.comp", "uniform writeonly image3D grid;", "uniform writeonly image3D grid;\nlayout(std430) buffer Lights { uint n; } lights;")
+            .edit("shaders/fill.comp", "{ imageStore", "{ lights.n = 1; imageStore")
+            .findings(),
+        @r"
+        shaders/fill.comp:6: error: 'lights' is a readonly buffer of the scene, and the shader declares a buffer (pass 'fill')
+            | layout(std430) buffer Lights { uint n; } lights;
+        "
+    );
+    assert_snapshot!(shader("paint.frag", "uniform sampler2D last;", "uniform sampler2D last[2];\n#define last last[0]"), @"shaders/paint.frag: error: 'last' is an array of resources; bind them one by one, with names of their own");
+}
+
+#[test]
+fn outputs_of_fragment_shaders() {
+    assert_snapshot!(
+        bench()
+            .edit("shaders/paint.frag", "out vec4 color;", "out vec4 color;\nlayout(location = 1) out vec4 extra;")
+            .edit("shaders/paint.frag", "    color =", "    extra = vec4(1);\n    color =")
+            .findings(),
+        @r#"
+        passes/graph.ron:25:16: error: 'paint.frag' writes location 1, but pass 'paint' declares 1 colour attachments
+            |         (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        "#
+    );
+    assert_snapshot!(graph("clear: (0, 0, 0, 1))]", "clear: (0, 0, 0, 1)), (to: \"count\")]"), @r#"
+    passes/graph.ron:27:59: error: pass 'paint' declares 'count' as colour 1, but 'paint.frag' does not write that location
+        |             color: [(to: "picture", clear: (0, 0, 0, 1)), (to: "count")], depth: (to: "depth", clear: 1.0)),
+    "#);
+    assert_snapshot!(graph("[\"full.vert\", \"paint.frag\"]", "[\"full.vert\"]"), @r#"
+    passes/graph.ron:26:21: error: no shader of pass 'paint' uses the name 'last'
+        |             bind: { "last": (of: "picture", history: true) },
+    passes/graph.ron:27:21: error: pass 'paint' has colour attachments and no .frag shader that writes them
+        |             color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
+    "#);
+}
+
+#[test]
+fn keys_of_bind_that_no_shader_uses() {
+    assert_snapshot!(graph("\"src\": (of", "\"srcs\": (of"), @r#"
+    shaders/reduce.comp:3: error: 'src' is a sampler3D that neither the graph nor the scene declares (pass 'reduce')
+        | uniform sampler3D src;
+        = help: did you mean 'srcs'?
+    passes/graph.ron:22:21: error: no shader of pass 'reduce' uses the name 'srcs'
+        |             bind: { "srcs": (of: "grid", mip: "mip - 1"), "dst": (of: "grid", mip: "mip") }),
+        = help: did you mean 'src'?
+    "#);
+    assert_snapshot!(graph("\"last\": (of", "\"previous\": (of"), @r#"
+    shaders/paint.frag:4: error: 'last' is a sampler2D that neither the graph nor the scene declares (pass 'paint')
+        | uniform sampler2D last;
+        = help: declare it in the graph, or rename it: bind: {"last": (of: "...")}
+    passes/graph.ron:26:21: error: no shader of pass 'paint' uses the name 'previous'
+        |             bind: { "previous": (of: "picture", history: true) },
+        = help: known: count, grid, last
+    "#);
+    assert_snapshot!(graph("bind: { \"src\": (of: \"grid\", mip: \"mip - 1\")", "bind: { \"src\": (of: \"work\", mip: \"mip - 1\")"), @r#"
+    passes/graph.ron:22:33: error: 'work' is a buffer: it has no mip, layer, format, history or sampler
+        |             bind: { "src": (of: "work", mip: "mip - 1"), "dst": (of: "grid", mip: "mip") }),
+    "#);
+}
+
+#[test]
+fn declared_and_never_used() {
+    assert_snapshot!(
+        graph("buffers: {", "buffers: {\n        \"spare\": (size: 64),"),
+        @r#"
+        passes/graph.ron:16:9: warning: 'spare' is declared and never used
+            |         "spare": (size: 64),
+        "#
+    );
+    assert_snapshot!(
+        graph("textures: {", "textures: {\n        \"spare\": (size: (8, 8), format: \"r8\"),"),
+        @r#"
+        passes/graph.ron:10:9: warning: 'spare' is declared and never used
+            |         "spare": (size: (8, 8), format: "r8"),
+        "#
+    );
+    assert_snapshot!(
+        graph("params: [", "params: [\n        Float(name: \"spare\", default: 1, help: \"Nothing.\"),"),
+        @r#"
+        passes/graph.ron:4:21: warning: parameter 'spare' is declared and never used
+            |         Float(name: "spare", default: 1, help: "Nothing."),
+        "#
+    );
+    // A longer name that begins the same way is not a use.
+    assert_snapshot!(
+        graph("params: [", "params: [\n        Float(name: \"lev\", default: 1, help: \"Nothing.\"),"),
+        @r#"
+        passes/graph.ron:4:21: warning: parameter 'lev' is declared and never used
+            |         Float(name: "lev", default: 1, help: "Nothing."),
+        "#
+    );
+}
+
+#[test]
+fn sizes() {
+    assert_snapshot!(graph("mips: \"log2(cells) + 1\"", "mips: \"log2(cells) + 2\""), @r#"
+    passes/graph.ron:10:9: error: 'grid' has 8 mips; [64, 64, 64] texels allow 7
+        |         "grid": (size: ("cells", "cells", "cells"), format: "grid_format", mips: "log2(cells) + 2"),
+    "#);
+    assert_snapshot!(graph("\"count\": (size: (\"cells\", \"cells\")", "\"count\": (size: (\"cells - 64\", \"cells\")"), @r#"
+    passes/graph.ron:11:26: error: size 'cells - 64' is 0, and must be at least 1
+        |         "count": (size: ("cells - 64", "cells"), format: "r32ui", views: ["r32i"]),
+    "#);
+    assert_snapshot!(graph("\"count\": (size: (\"cells\", \"cells\")", "\"count\": (size: (\"cells\", \"0 - cells\")"), @r#"
+    passes/graph.ron:11:35: error: size '0 - cells' is -64, and must be at least 1
+        |         "count": (size: ("cells", "0 - cells"), format: "r32ui", views: ["r32i"]),
+    "#);
+    assert_snapshot!(graph("\"count\": (size: (\"cells\", \"cells\")", "\"count\": (size: (\"cells * 1000\", \"cells\")"), @r#"
+    passes/graph.ron:11:26: error: 'count' is 64000 texels long; Test GPU allows 16384
+        |         "count": (size: ("cells * 1000", "cells"), format: "r32ui", views: ["r32i"]),
+    "#);
+    assert_snapshot!(graph("\"grid\": (size: (\"cells\", ", "\"grid\": (size: (\"cells * 100\", "), @r#"
+    passes/graph.ron:10:25: error: 'grid' is 6400 texels long; Test GPU allows 4096
+        |         "grid": (size: ("cells * 100", "cells", "cells"), format: "grid_format", mips: "log2(cells) + 1"),
+    "#);
+    assert_snapshot!(graph("views: [\"r32i\"]", "views: [\"r32i\"], layers: 2"), @r"
+    shaders/scatter.frag:2: error: 'count' is 2DArray, and the shader declares an image2D of format r32ui (pass 'scatter')
+        | layout(r32ui) uniform uimage2D count;
+        = help: declare it as 2DArray
+    shaders/paint.frag:3: error: 'count' is 2DArray, and the shader declares a usampler2D (pass 'paint')
+        | uniform usampler2D count;
+        = help: declare it as 2DArray
+    ");
+    assert_snapshot!(graph("\"grid\": (size", "\"grid\": (layers: 2, size"), @r#"
+    passes/graph.ron:10:9: error: 'grid' is 3D and cannot have layers
+        |         "grid": (layers: 2, size: ("cells", "cells", "cells"), format: "grid_format", mips: "log2(cells) + 1"),
+    "#);
+    assert_snapshot!(graph("\"cells * 16\"", "\"cells * 100000000\""), @r#"
+    passes/graph.ron:16:24: error: buffer 'work' is 6400000000 bytes; Test GPU allows 4 to 4294967295
+        |         "work": (size: "cells * 100000000", indirect: true),
+    "#);
+    assert_snapshot!(graph("\"cells * 16\"", "0"), @r#"
+    passes/graph.ron:16:24: error: buffer 'work' is 0 bytes; Test GPU allows 4 to 4294967295
+        |         "work": (size: 0, indirect: true),
+    "#);
+    assert_snapshot!(graph("samples: \"4\"", "samples: \"3\""), @r#"
+    passes/graph.ron:24:57: error: Test GPU has no rasterisation with 3 samples; it has 1, 2, 4, 8, 16
+        |             raster: (size: ("cells", "cells"), samples: "3")),
+    "#);
+    assert_snapshot!(graph("raster: (size: (\"cells\", \"cells\")", "raster: (size: (\"cells * 1000\", \"cells\")"), @r#"
+    passes/graph.ron:24:28: error: viewport 64000x64 is larger than the 16384 that Test GPU allows
+        |             raster: (size: ("cells * 1000", "cells"), samples: "4")),
+    "#);
+    assert_snapshot!(graph("mip: \"mip - 1\"", "mip: \"mip + 1\""), @r#"
+    passes/graph.ron:22:33: error: mip 7 or layer 0 of 'grid' does not exist: it has 7 mips and 1 layers
+        |             bind: { "src": (of: "grid", mip: "mip + 1"), "dst": (of: "grid", mip: "mip") }),
+    "#);
+    assert_snapshot!(graph("Groups(1, 1, 1)", "Groups(100000, 1, 1)"), @r#"
+    passes/graph.ron:19:64: error: [100000, 1, 1] groups are more than the [65535, 65535, 65535] that Test GPU allows
+        |         (name: "prepare", shaders: ["prepare.comp"], dispatch: Groups(100000, 1, 1)),
+    "#);
+    assert_snapshot!(graph("each_mip: (texture: \"grid\", from: 1)", "repeat: \"cells * 100\""), @r#"
+    passes/graph.ron:21:34: error: repeat 'cells * 100' is 6400, more than 4096
+        |         (name: "reduce", repeat: "cells * 100", shaders: ["reduce.comp"], dispatch: Cover("dst"),
+    "#);
+}
+
+#[test]
+fn what_no_device_can_do() {
+    // Depth is cleared where it is attached; copies need two textures of one size; sRGB is no storage format.
+    assert_snapshot!(graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "clear: \"depth\""), @r#"
+    passes/graph.ron:19:34: error: 'depth' is a depth texture: clear it where it is attached, depth: (clear: 1.0)
+        |         (name: "prepare", clear: "depth"),
+    "#);
+    assert_snapshot!(
+        graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "copy: (from: \"picture\", to: \"count\")"),
+        @r#"
+        passes/graph.ron:19:40: error: 'picture' and 'count' differ in size, mips or texel size
+            |         (name: "prepare", copy: (from: "picture", to: "count")),
+        "#
+    );
+    assert_snapshot!(
+        graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "copy: (from: \"picture\", to: \"picture\")"),
+        @r#"
+        passes/graph.ron:19:55: error: 'picture' is copied to itself
+            |         (name: "prepare", copy: (from: "picture", to: "picture")),
+        "#
+    );
+    assert_snapshot!(
+        bench()
+            .edit("passes/graph.ron", "options: [\"rgba8\", \"rgba16f\"]", "options: [\"rgba8_srgb\", \"rgba16f\"]")
+            .findings(),
+        @r"
+        shaders/fill.comp:5: error: 'grid' is sRGB-encoded, which a storage image cannot be (pass 'fill')
+            | uniform writeonly image3D grid;
+        shaders/reduce.comp:4: error: 'grid' is sRGB-encoded, which a storage image cannot be (pass 'reduce')
+            | uniform writeonly image3D dst;
+        "
+    );
+}
+
+#[test]
+fn what_this_device_lacks() {
+    let conservative = || {
+        bench()
+            .edit("passes/graph.ron", "(name: \"scatter\", ", "(name: \"scatter\", when: \"method == exact\", ")
+            .edit("passes/graph.ron", "when: \"method == fast\", ", "")
+            .edit("passes/graph.ron", "samples: \"4\"", "conservative: overestimate")
+            .edit("configs/run.ron", "\"level\": 0.25,", "\"method\": \"exact\",")
+    };
+    assert_snapshot!(conservative().findings(), @"");
+    let mut without = conservative();
+    without.device.name = String::from("Software rasteriser");
+    without.device.features.conservative_rasterization = false;
+    assert_snapshot!(without.findings(), @r#"
+    passes/graph.ron:23:16: error: pass 'scatter' needs conservative rasterisation (VK_EXT_conservative_rasterization), which Software rasteriser does not have (it runs because method is exact)
+        |         (name: "scatter", when: "method == exact", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+        = help: use --set method=fast
+    "#);
+    // Not asked for, not missed.
+    let without = without.edit("configs/run.ron", "\"exact\"", "\"fast\"");
+    assert_snapshot!(without.findings(), @"");
+
+    let mut without = bench();
+    without.device.features.fragment_stores = false;
+    without.device.features.write_without_format = false;
+    assert_snapshot!(without.findings(), @r#"
+    passes/graph.ron:20:16: error: pass 'fill' needs writing images without a format, which Test GPU does not have
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),
+    passes/graph.ron:21:16: error: pass 'reduce' needs writing images without a format, which Test GPU does not have
+        |         (name: "reduce", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
+    passes/graph.ron:23:16: error: pass 'scatter' needs stores from fragment shaders, which Test GPU does not have
+        |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+    "#);
+}
+
+#[test]
+fn experiments() {
+    assert_snapshot!(experiment("\"graph.ron\"", "\"graphs.ron\""), @r"
+    passes/graphs.ron: error: cannot read it: No such file or directory (os error 2)
+        = help: did you mean 'graph.ron'?
+    ");
+    assert_snapshot!(experiment("graph: \"graph.ron\",", ""), @r"
+    configs/run.ron:8:1: error: field 'graph' is missing
+        | )
+    ");
+    assert_snapshot!(experiment("scene:", "scenes:"), @r#"
+    configs/run.ron:3:5: error: unknown field 'scenes'
+        |     scenes: "triangles",
+        = help: did you mean 'scene'?
+    "#);
+    assert_snapshot!(experiment("\"level\"", "\"levle\""), @r#"
+    configs/run.ron:6:9: error: no parameter 'levle' (did you mean 'level'?)
+        |         "levle": 0.25,
+    "#);
+    assert_snapshot!(experiment("0.25", "1.25"), @r#"
+    configs/run.ron:6:9: error: 'level': 1.25 is outside 0 to 1
+        |         "level": 1.25,
+    "#);
+    assert_snapshot!(experiment("0.25", "\"bright\""), @r#"
+    configs/run.ron:6:9: error: 'level': expected a number, got "bright"
+        |         "level": "bright",
+    "#);
+    assert_snapshot!(experiment("\"level\": 0.25", "\"method\": \"exakt\""), @r#"
+    configs/run.ron:6:9: error: 'method' has no option 'exakt' (did you mean 'exact'?)
+        |         "method": "exakt",
+    "#);
+    assert_snapshot!(experiment("\"level\": 0.25", "\"cells\": 64.5"), @r#"
+    configs/run.ron:6:9: error: 'cells': expected a whole number, got 64.5
+        |         "cells": 64.5,
+    "#);
+    assert_snapshot!(experiment("\"level\": 0.25", "\"level\": 0.25, \"level\": 0.5"), @r#"
+    configs/run.ron:6:24: error: 'level' stands twice
+        |         "level": 0.25, "level": 0.5,
+    "#);
+    assert_snapshot!(experiment("(64, 48)", "(64, 0)"), @r"
+    configs/run.ron:4:11: error: a picture of 64x0 cannot be made: each side is 1 to 16384 pixels
+        |     size: (64, 0),
+    ");
+    assert_snapshot!(experiment("(64, 48)", "(64, -48)"), @r"
+    configs/run.ron:4:17: error: Integer is out of bounds
+        |     size: (64, -48),
+    ");
+    assert_snapshot!(experiment("(64, 48)", "(64, 48), camera: (eye: (0, 0, 1), target: (0, 0, 0))"), @r"
+    configs/run.ron:4:63: error: field 'fov_y' is missing
+        |     size: (64, 48), camera: (eye: (0, 0, 1), target: (0, 0, 0)),
+    ");
+    let missing = bench();
+    std::fs::remove_file(missing.path("configs/run.ron")).unwrap();
+    assert_snapshot!(missing.findings(), @r"
+    configs/run.ron: error: cannot read it: No such file or directory (os error 2)
+        = help: give the path of an experiment, for example configs/default.ron
+    ");
+}
+
+#[test]
+fn several_mistakes_are_told_at_once() {
+    let graph = bench()
+        .edit("passes/shared.ron", "default: 0.5", "default: 5")
+        .edit("passes/graph.ron", "format: \"d32\"", "format: \"d24\"")
+        .edit("passes/graph.ron", "raster: (size", "rater: (size")
+        .edit("passes/graph.ron", "method == fast", "method == fats")
+        .edit("passes/graph.ron", "\"work\": (size: \"cells", "\"work\": (size: \"cell");
+    assert_snapshot!(graph.findings(), @r#"
+    passes/graph.ron:13:54: error: no format is named 'd24'
+        |         "depth": (size: ("width", "height"), format: "d24"),
+    passes/graph.ron:16:24: error: unknown variable 'cell' in 'cell * 16'
+        |         "work": (size: "cell * 16", indirect: true),
+        = help: did you mean 'cells'?
+    passes/graph.ron:24:13: error: unknown field 'rater'
+        |             rater: (size: ("cells", "cells"), samples: "4")),
+        = help: did you mean 'raster'?
+    passes/graph.ron:25:31: error: unknown variable 'fats' in 'method == fats'
+        |         (name: "paint", when: "method == fats", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: did you mean 'fast'?
+    passes/shared.ron:3:9: error: default of 'level': 5 is outside 0 to 1
+        |         Float(name: "level", default: 5, range: (0.0, 1.0), help: "Brightness."),
+    "#);
+    let shaders = bench()
+        .edit("shaders/fill.comp", "light()", "ligth()")
+        .edit("shaders/reduce.comp", "sampler3D", "sampler4D")
+        .edit("shaders/paint.frag", "* float(", "* flaot(");
+    assert_snapshot!(shaders.findings(), @r"
+    shaders/fill.comp:6: error: 'ligth' : no matching overloaded function found
+        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), ligth()); }
+    shaders/fill.comp:6: error: 'imageStore' : no matching overloaded function found
+        | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), ligth()); }
+    shaders/paint.frag:7: error: 'flaot' : no matching overloaded function found
+        | color = texelFetch(grid, ivec3(0), 0) * flaot(texelFetch(count, ivec2(0), 0).r) + texelFetch(last, ivec2(0), 0);
+    shaders/reduce.comp:3: error: '' :  syntax error, unexpected IDENTIFIER, expecting LEFT_BRACE or COMMA or SEMICOLON
+        | uniform sampler4D src;
+    ");
+    let links = bench()
+        .edit("shaders/reduce.comp", "uniform sampler3D src;", "uniform sampler3D source;\n#define src source")
+        .edit("shaders/paint.frag", "usampler2D count", "sampler2D count")
+        .edit("passes/graph.ron", "\"last\": (of", "\"past\": (of");
+    assert_snapshot!(links.findings(), @r#"
+    shaders/reduce.comp:3: error: 'source' is a sampler3D that neither the graph nor the scene declares (pass 'reduce')
+        | uniform sampler3D source;
+        = help: did you mean 'src'?
+    passes/graph.ron:22:21: error: no shader of pass 'reduce' uses the name 'src'
+        |             bind: { "src": (of: "grid", mip: "mip - 1"), "dst": (of: "grid", mip: "mip") }),
+        = help: did you mean 'source'?
+    shaders/paint.frag:3: error: 'count' has format r32ui, and the shader declares a sampler2D (pass 'paint')
+        | uniform sampler2D count;
+        = help: declare a usampler
+    shaders/paint.frag:4: error: 'last' is a sampler2D that neither the graph nor the scene declares (pass 'paint')
+        | uniform sampler2D last;
+        = help: did you mean 'past'?
+    passes/graph.ron:26:21: error: no shader of pass 'paint' uses the name 'past'
+        |             bind: { "past": (of: "picture", history: true) },
+        = help: did you mean 'last'?
+    "#);
+    let settings =
+        bench().edit("configs/run.ron", "\"level\": 0.25", "\"levle\": 1, \"cells\": 3, \"method\": \"exact\"");
+    assert_snapshot!(settings.findings(), @r#"
+    configs/run.ron:6:9: error: no parameter 'levle' (did you mean 'level'?)
+        |         "levle": 1, "cells": 3, "method": "exact",
+    configs/run.ron:6:21: error: 'cells': 3 is outside 16 to 512
+        |         "levle": 1, "cells": 3, "method": "exact",
+    "#);
+}

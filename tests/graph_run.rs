@@ -1,0 +1,898 @@
+//! Graphs that have nothing to do with voxels, each checked against the same computation on the CPU. The validation layer
+//! watches every frame, synchronization included.
+
+mod common;
+
+use common::{assert_clean, conelab, floats, prepare, succeeds};
+use conelab::experiment::Experiment;
+use conelab::lab::{Lab, Session};
+use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
+use std::fmt::Write;
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// A home of its own for one graph, and a device for it.
+struct Bench(TempDir);
+
+/// A shader with the usual first lines.
+fn glsl(text: &str) -> String {
+    format!("#version 460\n#extension GL_GOOGLE_include_directive : require\n{text}")
+}
+
+/// One triangle over the picture.
+const FULL: &str = "void main() {
+    gl_Position = vec4(vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2) * 2.0 - 1.0, 0.0, 1.0);
+}";
+
+impl Bench {
+    fn new(graph: &str, shaders: &[(&str, &str)]) -> Bench {
+        let bench = Bench(tempfile::tempdir().unwrap());
+        bench.write("passes/graph.ron", graph);
+        bench.write("configs/run.ron", "(graph: \"graph.ron\", scene: \"triangles\", size: (32, 24))");
+        for (name, text) in shaders {
+            bench.write(&format!("shaders/{name}"), &glsl(text));
+        }
+        let scene = std::fs::read_to_string(common::root().join("shaders/include/scene.glsl")).unwrap();
+        bench.write("shaders/include/scene.glsl", &scene);
+        bench
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::create_dir_all(self.path(name).parent().unwrap()).unwrap();
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    /// Replaces the only `old` of a file.
+    #[track_caller]
+    fn edit(&self, name: &str, old: &str, new: &str) {
+        let text = std::fs::read_to_string(self.path(name)).unwrap();
+        assert_eq!(text.matches(old).count(), 1, "'{old}' stands once in {name}");
+        self.write(name, &text.replace(old, new));
+    }
+
+    fn lab(&self) -> Lab {
+        common::lab(self.0.path())
+    }
+
+    /// Runs frames that leave `wanted` to be read.
+    #[track_caller]
+    fn run(&self, lab: &Lab, wanted: &[&str], frames: usize) -> Session {
+        let experiment = Experiment::read(&self.path("configs/run.ron")).unwrap();
+        let mut session = prepare(lab, &experiment, wanted);
+        for _ in 0..frames {
+            session.frame(0.0).unwrap();
+        }
+        session.finish().unwrap();
+        assert_clean(lab);
+        session
+    }
+}
+
+/// The 32-bit words of a buffer.
+fn words(session: &mut Session, name: &str) -> Vec<u32> {
+    let index = session.graph.buffers.iter().position(|b| b.0 == name).unwrap();
+    let bytes = session.program.read_buffer(index).unwrap();
+    bytes.chunks_exact(4).map(|b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]])).collect()
+}
+
+/// The first channel of a texture's mip.
+#[track_caller]
+fn reds(session: &mut Session, name: &str, mip: u32) -> Vec<f32> {
+    floats(session, name, mip).iter().map(|t| t[0]).collect()
+}
+
+#[test]
+fn reaction_and_diffusion_over_frames() {
+    // Gray and Scott 1984: two reactants in a texture that keeps its last frame.
+    let bench = Bench::new(
+        r#"(
+            params: [
+                Float(name: "feed", default: 0.037, range: (0.0, 0.1), help: "Inflow of u."),
+                Float(name: "kill", default: 0.06, range: (0.0, 0.1), help: "Outflow of v."),
+            ],
+            textures: { "state": (size: (32, 32), format: "rg32f", history: true) },
+            passes: [
+                (name: "react", shaders: ["react.comp"], dispatch: Cover("state"),
+                    bind: { "last": (of: "state", history: true) }),
+            ],
+        )"#,
+        &[(
+            "react.comp",
+            "#include \"params.glsl\"
+            #include \"scene.glsl\"
+            layout(local_size_x = 8, local_size_y = 8) in;
+            layout(rg32f) uniform readonly image2D last;
+            layout(rg32f) uniform writeonly image2D state;
+            vec2 at(ivec2 p) { return imageLoad(last, p & 31).xy; }
+            void main() {
+                ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+                if (camera.frame == 0) {
+                    bool inside = all(greaterThanEqual(p, ivec2(12))) && all(lessThan(p, ivec2(20)));
+                    imageStore(state, p, vec4(1.0, inside ? 1.0 : 0.0, 0.0, 0.0));
+                    return;
+                }
+                vec2 c = at(p);
+                vec2 around = at(p + ivec2(1, 0)) + at(p - ivec2(1, 0)) + at(p + ivec2(0, 1)) + at(p - ivec2(0, 1)) - 4.0 * c;
+                float rate = c.x * c.y * c.y;
+                c += vec2(0.2, 0.1) * around + vec2(params.feed * (1.0 - c.x) - rate, rate - (params.feed + params.kill) * c.y);
+                imageStore(state, p, vec4(c, 0.0, 0.0));
+            }",
+        )],
+    );
+    let lab = bench.lab();
+    for frames in [1, 2, 21] {
+        let mut session = bench.run(&lab, &["state"], frames);
+        let found = floats(&mut session, "state", 0);
+        let expected = react(frames - 1);
+        let worst =
+            found.iter().zip(&expected).map(|(f, e)| (f[0] - e[0]).abs().max((f[1] - e[1]).abs())).fold(0.0, f32::max);
+        assert!(worst < 1e-4, "{worst} after {frames} frames");
+    }
+}
+
+fn react(steps: usize) -> Vec<[f32; 2]> {
+    let inside = |i: usize| (12..20).contains(&(i % 32)) && (12..20).contains(&(i / 32));
+    let mut state: Vec<[f32; 2]> = (0..1024).map(|i| [1.0, if inside(i) { 1.0 } else { 0.0 }]).collect();
+    for _ in 0..steps {
+        let last = state.clone();
+        let at = |x: usize, y: usize| last[y % 32 * 32 + x % 32];
+        for (i, c) in state.iter_mut().enumerate() {
+            let (x, y) = (i % 32, i / 32);
+            let near = [at(x + 1, y), at(x + 31, y), at(x, y + 1), at(x, y + 31)];
+            let around: [f32; 2] = std::array::from_fn(|k| near.iter().map(|n| n[k]).sum::<f32>() - 4.0 * c[k]);
+            let rate = c[0] * c[1] * c[1];
+            *c = [
+                c[0] + 0.2 * around[0] + 0.037 * (1.0 - c[0]) - rate,
+                c[1] + 0.1 * around[1] + rate - (0.037 + 0.06) * c[1],
+            ];
+        }
+    }
+    state
+}
+
+/// Blur, pyramid, histogram, a list and its indirect dispatch, a view of another format, copies and clears.
+const IMAGES: &str = r#"(
+    params: [
+        Int(name: "edge", default: 64, range: (16, 256), help: "Edge of the images."),
+        Float(name: "bright", default: 0.75, range: (0.0, 1.0), help: "Least value of a bright texel."),
+    ],
+    textures: {
+        "source": (size: ("edge", "edge"), format: "r32f"),
+        "wide": (size: ("edge", "edge"), format: "r32f"),
+        "blurred": (size: ("edge", "edge"), format: "r32f", sampler: (filter: nearest)),
+        "pyramid": (size: ("edge", "edge"), format: "r32f", mips: "log2(edge) + 1"),
+        "base": (size: ("edge", "edge"), format: "r32f", sampler: (filter: nearest)),
+        "packed": (size: ("edge / 4", "edge / 4"), format: "rgba8", views: ["r32ui"]),
+        "unpacked": (size: ("edge / 4", "edge / 4"), format: "rgba32f"),
+        "marked": (size: ("edge", "edge"), format: "r32ui"),
+        "kept": (size: ("edge", "edge"), format: "r32ui"),
+    },
+    buffers: {
+        "histogram": (size: "16 * 4"),
+        "list": (size: "16 + edge * edge * 4", indirect: true),
+        "listCopy": (size: "16 + edge * edge * 4"),
+    },
+    passes: [
+        (name: "source", shaders: ["source.comp"], dispatch: Cover("source")),
+        (name: "blur x", shaders: ["blur_x.comp"], dispatch: Cover("wide")),
+        (name: "blur y", shaders: ["blur_y.comp"], dispatch: Cover("blurred")),
+        (name: "pyramid base", copy: (from: "blurred", to: "base")),
+        (name: "pyramid begin", shaders: ["begin.comp"], dispatch: Cover("pyramid")),
+        (name: "pyramid", each_mip: (texture: "pyramid", from: 1), shaders: ["half.comp"], dispatch: Cover("dst"),
+            bind: { "src": (of: "pyramid", mip: "mip - 1"), "dst": (of: "pyramid", mip: "mip") }),
+        (name: "no counts", clear: "histogram", value: (3, 0, 0, 0)),
+        (name: "count", shaders: ["count.comp"], dispatch: Cover("source")),
+        (name: "no list", clear: "list"),
+        (name: "collect", shaders: ["collect.comp"], dispatch: Cover("source")),
+        (name: "size", shaders: ["size.comp"], dispatch: Groups(1, 1, 1)),
+        (name: "no marks", clear: "marked", value: (7, 0, 0, 0)),
+        (name: "mark", shaders: ["mark.comp"], dispatch: Indirect("list", 0)),
+        (name: "keep marks", copy: (from: "marked", to: "kept")),
+        (name: "keep list", copy: (from: "list", to: "listCopy")),
+        (name: "nothing packed", clear: "packed"),
+        (name: "pack", shaders: ["pack.comp"], dispatch: Cover("source"),
+            bind: { "packed": (of: "packed", as: "r32ui") }),
+        (name: "unpack", shaders: ["unpack.comp"], dispatch: Cover("unpacked")),
+    ],
+)"#;
+
+const IMAGE_SHADERS: &[(&str, &str)] = &[
+    (
+        "source.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        uniform writeonly image2D source;
+        void main() {
+            uvec2 p = gl_GlobalInvocationID.xy;
+            imageStore(source, ivec2(p), vec4(float((p.x * 7 + p.y * p.y * 13) % 32) / 32.0));
+        }",
+    ),
+    (
+        "blur_x.comp",
+        "layout(local_size_x = 64) in;
+        uniform sampler2D source;
+        uniform writeonly image2D wide;
+        void main() {
+            ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+            int last = textureSize(source, 0).x - 1;
+            float a = texelFetch(source, ivec2(max(p.x - 1, 0), p.y), 0).r, b = texelFetch(source, p, 0).r;
+            imageStore(wide, p, vec4(0.25 * (a + 2.0 * b + texelFetch(source, ivec2(min(p.x + 1, last), p.y), 0).r)));
+        }",
+    ),
+    (
+        "blur_y.comp",
+        "layout(local_size_x = 1, local_size_y = 64) in;
+        layout(r32f) uniform readonly image2D wide;
+        uniform writeonly image2D blurred;
+        void main() {
+            ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+            int last = imageSize(wide).y - 1;
+            float a = imageLoad(wide, ivec2(p.x, max(p.y - 1, 0))).r, b = imageLoad(wide, p).r;
+            imageStore(blurred, p, vec4(0.25 * (a + 2.0 * b + imageLoad(wide, ivec2(p.x, min(p.y + 1, last))).r)));
+        }",
+    ),
+    (
+        "begin.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        uniform sampler2D base;
+        uniform writeonly image2D pyramid;
+        void main() {
+            ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+            imageStore(pyramid, p, textureLod(base, (vec2(p) + 0.5) / vec2(imageSize(pyramid)), 0.0));
+        }",
+    ),
+    (
+        "half.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        uniform sampler2D src;
+        uniform writeonly image2D dst;
+        void main() {
+            ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+            if (any(greaterThanEqual(p, imageSize(dst)))) return;
+            float sum = 0.0;
+            for (int i = 0; i < 4; i++) sum += texelFetch(src, 2 * p + ivec2(i & 1, i >> 1), 0).r;
+            imageStore(dst, p, vec4(0.25 * sum));
+        }",
+    ),
+    (
+        "count.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        uniform sampler2D source;
+        layout(std430) buffer Histogram { uint bins[16]; } histogram;
+        void main() {
+            float value = texelFetch(source, ivec2(gl_GlobalInvocationID.xy), 0).r;
+            atomicAdd(histogram.bins[min(uint(value * 16.0), 15u)], 1u);
+        }",
+    ),
+    (
+        "collect.comp",
+        "#include \"params.glsl\"
+        layout(local_size_x = 8, local_size_y = 8) in;
+        uniform sampler2D source;
+        layout(std430) buffer List { uvec3 groups; uint count; uint texels[]; } list;
+        void main() {
+            uvec2 p = gl_GlobalInvocationID.xy;
+            if (texelFetch(source, ivec2(p), 0).r >= params.bright) list.texels[atomicAdd(list.count, 1u)] = p.x | p.y << 16;
+        }",
+    ),
+    (
+        "size.comp",
+        "layout(std430) buffer List { uvec3 groups; uint count; uint texels[]; } list;
+        void main() { list.groups = uvec3((list.count + 31u) / 32u, 1u, 1u); }",
+    ),
+    (
+        "mark.comp",
+        "layout(local_size_x = 32) in;
+        layout(std430) readonly buffer List { uvec3 groups; uint count; uint texels[]; } list;
+        layout(r32ui) uniform uimage2D marked;
+        void main() {
+            if (gl_GlobalInvocationID.x >= list.count) return;
+            uint texel = list.texels[gl_GlobalInvocationID.x];
+            ivec2 p = ivec2(texel & 0xffffu, texel >> 16);
+            imageStore(marked, p, imageLoad(marked, p) + 1u);
+        }",
+    ),
+    (
+        "pack.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        uniform sampler2D source;
+        layout(r32ui) uniform uimage2D packed;
+        void main() {
+            ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+            uint value = packUnorm4x8(vec4(p & 3, 4, 4.0 * texelFetch(source, p, 0).r) / 4.0);
+            if (imageLoad(packed, p / 4).r < value) imageAtomicMax(packed, p / 4, value);
+        }",
+    ),
+    (
+        "unpack.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        uniform sampler2D packed;
+        uniform writeonly image2D unpacked;
+        void main() {
+            ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+            imageStore(unpacked, p, texelFetch(packed, p, 0));
+        }",
+    ),
+];
+
+#[test]
+fn blur_pyramid_histogram_lists_and_views() {
+    const N: usize = 64;
+    let bench = Bench::new(IMAGES, IMAGE_SHADERS);
+    let lab = bench.lab();
+    let wanted = ["pyramid", "histogram", "kept", "listCopy", "unpacked", "blurred"];
+    // The fourth frame is like the first: whatever frames leave behind is overwritten.
+    let mut session = bench.run(&lab, &wanted, 4);
+
+    let source: Vec<f32> = (0..N * N).map(|i| ((i % N * 7 + (i / N) * (i / N) * 13) % 32) as f32 / 32.0).collect();
+    let blur = |image: &[f32], step: &dyn Fn(usize, isize) -> usize| -> Vec<f32> {
+        (0..N * N).map(|i| 0.25 * (image[step(i, -1)] + 2.0 * image[i] + image[step(i, 1)])).collect()
+    };
+    let wide = blur(&source, &|i, d| i / N * N + (i % N).saturating_add_signed(d).min(N - 1));
+    let blurred = blur(&wide, &|i, d| (i / N).saturating_add_signed(d).min(N - 1) * N + i % N);
+    assert!(reds(&mut session, "blurred", 0) == blurred, "blur");
+
+    let mut level = blurred;
+    for mip in 0..=6 {
+        let n = N >> mip;
+        assert!(reds(&mut session, "pyramid", mip) == level, "mip {mip}");
+        level = (0..n / 2 * (n / 2))
+            .map(|i| {
+                let at = 2 * (i / (n / 2)) * n + 2 * (i % (n / 2));
+                0.25 * (level[at] + level[at + 1] + level[at + n] + level[at + n + 1])
+            })
+            .collect();
+    }
+
+    let mut bins = vec![3; 16];
+    for value in &source {
+        bins[(value * 16.0) as usize] += 1;
+    }
+    assert_eq!(words(&mut session, "histogram"), bins);
+
+    let bright: Vec<usize> = (0..N * N).filter(|i| source[*i] >= 0.75).collect();
+    let list = words(&mut session, "listCopy");
+    assert_eq!(list[..4], [bright.len().div_ceil(32) as u32, 1, 1, bright.len() as u32]);
+    let mut texels: Vec<usize> =
+        list[4..4 + bright.len()].iter().map(|t| (t >> 16) as usize * N + (t & 0xffff) as usize).collect();
+    texels.sort_unstable();
+    assert_eq!(texels, bright);
+    let marks: Vec<f32> = source.iter().map(|v| if *v >= 0.75 { 8.0 } else { 7.0 }).collect();
+    assert!(reds(&mut session, "kept", 0) == marks, "marks");
+
+    let round = |v: f32| (v * 255.0).round() as u32;
+    for (i, texel) in floats(&mut session, "unpacked", 0).iter().enumerate() {
+        let pack = |k: usize| {
+            let (x, y) = (i % 16 * 4 + k % 4, i / 16 * 4 + k / 4);
+            let value = [(x & 3) as f32 / 4.0, (y & 3) as f32 / 4.0, 1.0, source[y * N + x]];
+            value.iter().rev().fold(0, |word, v| word << 8 | round(*v))
+        };
+        let most = (0..16).map(pack).max().unwrap();
+        let found = texel.iter().rev().fold(0, |word, v| word << 8 | round(*v));
+        assert_eq!(found, most, "block {i}");
+    }
+}
+
+#[test]
+fn what_nobody_needs_is_neither_run_nor_made() {
+    let bench = Bench::new(IMAGES, IMAGE_SHADERS);
+    let lab = bench.lab();
+    let ran = |session: &Session| -> Vec<String> {
+        let mut list: Vec<String> =
+            session.program.plan.steps.iter().map(|s| session.graph.passes[s.pass].value.name.value.clone()).collect();
+        list.dedup();
+        list
+    };
+    let made = |session: &Session| -> Vec<(String, u64)> { session.program.memory(&session.graph) };
+    let session = bench.run(&lab, &["histogram"], 1);
+    assert_eq!(ran(&session), ["source", "no counts", "count"]);
+    let names: Vec<String> = made(&session).into_iter().map(|m| m.0).collect();
+    assert_eq!(names, ["source", "histogram"]);
+    let session = bench.run(&lab, &["kept"], 1);
+    assert_eq!(ran(&session), ["source", "no list", "collect", "size", "no marks", "mark", "keep marks"]);
+    let source = made(&session).iter().find(|m| m.0 == "source").unwrap().1;
+    assert!((64 * 64 * 4..64 * 64 * 8).contains(&source), "{source} bytes");
+    let session = bench.run(&lab, &["packed"], 1);
+    assert_eq!(ran(&session), ["source", "nothing packed", "pack"]);
+}
+
+#[test]
+fn pixels_of_a_triangle_by_samples() {
+    // A triangle drawn without attachments: with several samples a fragment runs where any of them is inside.
+    let bench = Bench::new(
+        r#"(
+            params: [Int(name: "sample_count", default: 1, range: (1, 16), help: "Samples a pixel.")],
+            buffers: { "hits": (size: "32 * 32 * 4") },
+            passes: [
+                (name: "no hits", clear: "hits"),
+                (name: "draw", shaders: ["corner.vert", "hit.frag"], draw: Vertices(3),
+                    raster: (size: (32, 32), samples: "sample_count")),
+            ],
+        )"#,
+        &[
+            (
+                "corner.vert",
+                "const vec2 corners[3] = vec2[](vec2(3.3, 2.1), vec2(29.7, 11.4), vec2(8.2, 30.6));
+                void main() { gl_Position = vec4(corners[gl_VertexIndex] / 16.0 - 1.0, 0.0, 1.0); }",
+            ),
+            (
+                "hit.frag",
+                "layout(std430) buffer Hits { uint n[]; } hits;
+                void main() { uvec2 p = uvec2(gl_FragCoord.xy); atomicAdd(hits.n[p.y * 32 + p.x], 1u); }",
+            ),
+        ],
+    );
+    let lab = bench.lab();
+    let corners = [[3.3f32, 2.1], [29.7, 11.4], [8.2, 30.6]];
+    let inside = |x: f32, y: f32| {
+        (0..3).all(|i| {
+            let ([ax, ay], [bx, by]) = (corners[i], corners[(i + 1) % 3]);
+            (bx - ax) * (y - ay) - (by - ay) * (x - ax) > 0.0
+        })
+    };
+    // Vulkan's standard sample locations, in sixteenths.
+    let four = [[6, 2], [14, 6], [2, 10], [10, 14]];
+    for (samples, places) in [(1, &[[8, 8]][..]), (4, &four[..])] {
+        bench.write(
+            "configs/run.ron",
+            &format!("(graph: \"graph.ron\", scene: \"triangles\", size: (32, 24), params: {{ \"sample_count\": {samples} }})"),
+        );
+        let found = words(&mut bench.run(&lab, &["hits"], 2), "hits");
+        let expected: Vec<u32> = (0..1024)
+            .map(|i| {
+                let (x, y) = ((i % 32) as f32, (i / 32) as f32);
+                u32::from(places.iter().any(|[a, b]| inside(x + *a as f32 / 16.0, y + *b as f32 / 16.0)))
+            })
+            .collect();
+        // A sample on an edge may fall either way.
+        let different = found.iter().zip(&expected).filter(|(a, b)| a != b).count();
+        assert!(different <= 2, "{samples} samples: {different} of {} pixels differ", expected.iter().sum::<u32>());
+    }
+}
+
+#[test]
+fn raster_stages_targets_and_blending() {
+    let bench = Bench::new(
+        r#"(
+            textures: {
+                "gradient": (size: ("width", "height"), format: "rgba32f"),
+                "sum": (size: ("width", "height"), format: "rgba16f"),
+                "quads": (size: ("width", "height"), format: "r8"),
+                "plain": (size: ("width", "height"), format: "r32f"),
+                "curved": (size: ("width", "height"), format: "r32f"),
+                "near": (size: ("width", "height"), format: "d32", sampler: (compare: less)),
+                "lit": (size: ("width", "height"), format: "r32f"),
+                "layers": (size: (8, 8), format: "r32f", layers: "3", mips: "2"),
+                "stack": (size: (8, 8), format: "r32f", layers: "3"),
+            },
+            buffers: { "points": (size: 16) },
+            passes: [
+                (name: "gradient", shaders: ["full.vert", "gradient.frag"], draw: Fullscreen, color: [(to: "gradient")]),
+                (name: "sum begin", clear: "sum", value: (1, 0, 0, 0)),
+                (name: "sum", repeat: 3, shaders: ["full.vert", "index.frag"], draw: Fullscreen, color: [(to: "sum", blend: add)]),
+                (name: "quads", topology: points, shaders: ["point.vert", "quad.geom", "one.frag"], draw: Vertices(6),
+                    color: [(to: "quads", clear: (0, 0, 0, 0))]),
+                (name: "plain", shaders: ["triangle.vert", "one.frag"], draw: Vertices(3), color: [(to: "plain", clear: (0, 0, 0, 0))]),
+                (name: "curved", topology: patches, shaders: ["triangle.vert", "split.tesc", "flat.tese", "one.frag"],
+                    draw: Vertices(3), color: [(to: "curved", clear: (0, 0, 0, 0))]),
+                (name: "no points", clear: "points"),
+                (name: "points", topology: patches, shaders: ["triangle.vert", "split.tesc", "count.tese"], draw: Vertices(3),
+                    raster: (discard: true)),
+                (name: "near", shaders: ["half.vert"], draw: Vertices(6), depth: (to: "near", clear: 1.0)),
+                (name: "lit", shaders: ["full.vert", "lit.frag"], draw: Fullscreen, color: [(to: "lit")]),
+                (name: "layers", repeat: 3, shaders: ["full.vert", "layer.frag"], draw: Fullscreen,
+                    color: [(to: "layers", layer: "index", mip: 1)]),
+                (name: "stack", shaders: ["stack.comp"], dispatch: Threads(8, 8, 3)),
+            ],
+        )"#,
+        &[
+            ("full.vert", FULL),
+            (
+                "gradient.frag",
+                "layout(location = 0) out vec4 color; void main() { color = vec4(gl_FragCoord.xy, 0.5, 1.0); }",
+            ),
+            (
+                "index.frag",
+                "#include \"params.glsl\"
+                layout(location = 0) out vec4 color; void main() { color = vec4(1.0, pass.index, 0.0, 0.25); }",
+            ),
+            ("point.vert", "void main() { gl_Position = vec4(float(gl_VertexIndex), 0.0, 0.0, 1.0); gl_PointSize = 1.0; }"),
+            (
+                "quad.geom",
+                "layout(points) in;
+                layout(triangle_strip, max_vertices = 4) out;
+                void main() {
+                    for (int i = 0; i < 4; i++) {
+                        vec2 pixel = vec2(4.0 * gl_in[0].gl_Position.x, 3.0) + vec2(i & 1, i >> 1) * vec2(2.0, 5.0);
+                        gl_Position = vec4(pixel / vec2(16.0, 12.0) - 1.0, 0.0, 1.0);
+                        EmitVertex();
+                    }
+                }",
+            ),
+            ("one.frag", "layout(location = 0) out float color; void main() { color = 1.0; }"),
+            (
+                "triangle.vert",
+                "const vec2 corners[3] = vec2[](vec2(-0.9, -0.8), vec2(0.8, -0.3), vec2(-0.2, 0.9));
+                void main() { gl_Position = vec4(corners[gl_VertexIndex], 0.0, 1.0); }",
+            ),
+            (
+                "split.tesc",
+                "layout(vertices = 3) out;
+                void main() {
+                    gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;
+                    gl_TessLevelOuter = float[](4.0, 4.0, 4.0, 0.0);
+                    gl_TessLevelInner = float[](4.0, 0.0);
+                }",
+            ),
+            (
+                "flat.tese",
+                "layout(triangles, equal_spacing, ccw) in;
+                void main() {
+                    gl_Position = gl_TessCoord.x * gl_in[0].gl_Position + gl_TessCoord.y * gl_in[1].gl_Position
+                        + gl_TessCoord.z * gl_in[2].gl_Position;
+                }",
+            ),
+            (
+                "count.tese",
+                "layout(triangles, equal_spacing, point_mode) in;
+                layout(std430) buffer Points { uint n; uint corners[3]; } points;
+                void main() {
+                    atomicAdd(points.n, 1u);
+                    for (int i = 0; i < 3; i++) if (gl_TessCoord[i] == 1.0) atomicAdd(points.corners[i], 1u);
+                    gl_Position = vec4(0.0);
+                }",
+            ),
+            (
+                "half.vert",
+                "void main() {
+                    vec2 corner = vec2[](vec2(0), vec2(1, 0), vec2(0, 1), vec2(0, 1), vec2(1, 0), vec2(1))[gl_VertexIndex];
+                    gl_Position = vec4(corner.x - 1.0, corner.y * 2.0 - 1.0, 0.25, 1.0);
+                }",
+            ),
+            (
+                "lit.frag",
+                "uniform sampler2DShadow near;
+                layout(location = 0) out float lit;
+                void main() { lit = texture(near, vec3(gl_FragCoord.xy / vec2(32.0, 24.0), 0.5)); }",
+            ),
+            (
+                "layer.frag",
+                "#include \"params.glsl\"
+                layout(location = 0) out float color; void main() { color = 10.0 + float(pass.index); }",
+            ),
+            (
+                "stack.comp",
+                "layout(local_size_x = 4, local_size_y = 4) in;
+                uniform sampler2DArray layers;
+                uniform writeonly image2DArray stack;
+                void main() {
+                    ivec3 p = ivec3(gl_GlobalInvocationID);
+                    imageStore(stack, p, texelFetch(layers, ivec3(p.xy / 2, p.z), 1) + float(p.x));
+                }",
+            ),
+        ],
+    );
+    let lab = bench.lab();
+    let wanted = ["gradient", "sum", "quads", "plain", "curved", "points", "lit", "stack"];
+    let mut session = bench.run(&lab, &wanted, 5);
+    let at = |i: usize| (i % 32, i / 32);
+    for (i, t) in floats(&mut session, "gradient", 0).iter().enumerate() {
+        assert_eq!(*t, [at(i).0 as f32 + 0.5, at(i).1 as f32 + 0.5, 0.5, 1.0]);
+    }
+    assert!(
+        floats(&mut session, "sum", 0).iter().all(|t| *t == [4.0, 3.0, 0.0, 0.75]),
+        "sums of three draws over a clear"
+    );
+    for (i, v) in reds(&mut session, "quads", 0).iter().enumerate() {
+        let (x, y) = at(i);
+        assert_eq!(*v, f32::from(u8::from(x < 24 && x % 4 < 2 && (3..8).contains(&y))), "quads at {x}, {y}");
+    }
+    let plain = reds(&mut session, "plain", 0);
+    let split = reds(&mut session, "curved", 0);
+    let covered = plain.iter().sum::<f32>();
+    let different = plain.iter().zip(&split).filter(|(a, b)| a != b).count();
+    assert!(covered > 200.0 && different <= 4, "{different} of {covered} pixels differ when the triangle is split");
+    // Level 4: rings of 12, 6 and 1 points (Vulkan specification, "Triangle Tessellation"), each corner once.
+    assert_eq!(words(&mut session, "points"), [19, 1, 1, 1]);
+    for (i, v) in reds(&mut session, "lit", 0).iter().enumerate() {
+        assert_eq!(*v, if at(i).0 < 16 { 0.0 } else { 1.0 }, "depth comparison at {:?}", at(i));
+    }
+    for layer in 0..3 {
+        let texels = conelab::picture::to_floats(&session.texels("stack", 0, layer).unwrap());
+        let expected: Vec<f32> = (0..64).map(|i| 10.0 + layer as f32 + (i % 8) as f32).collect();
+        assert_eq!(texels.iter().map(|t| t[0]).collect::<Vec<_>>(), expected, "layer {layer}");
+    }
+    assert_clean(&lab);
+}
+
+#[test]
+fn an_image_that_only_atomics_touch_is_written() {
+    let bench = Bench::new(
+        r#"(
+            textures: { "count": (size: (4, 4), format: "r32ui") },
+            passes: [
+                (name: "no counts", clear: "count"),
+                (name: "count", shaders: ["count.comp"], dispatch: Groups(10, 1, 1)),
+            ],
+        )"#,
+        &[(
+            "count.comp",
+            "layout(local_size_x = 16) in;
+            layout(r32ui) uniform uimage2D count;
+            void main() { imageAtomicAdd(count, ivec2(gl_LocalInvocationID.x & 3, gl_LocalInvocationID.x >> 2), 1u); }",
+        )],
+    );
+    let lab = bench.lab();
+    assert_eq!(reds(&mut bench.run(&lab, &["count"], 3), "count", 0), [10.0; 16]);
+}
+
+#[test]
+fn hazards_of_every_kind_over_many_frames() {
+    // Each pass depends on the one before through the same buffer or texture: read after write, write after read, write
+    // after write; one lost write shows in the sum.
+    let bench = Bench::new(
+        r#"(
+            textures: { "t": (size: (8, 8), format: "r32f", history: true), "u": (size: (8, 8), format: "r32f") },
+            buffers: { "b": (size: 256), "log": (size: 256) },
+            passes: [
+                (name: "b to t", shaders: ["b_to_t.comp"], dispatch: Groups(1, 1, 1)),
+                (name: "t to u", copy: (from: "t", to: "u")),
+                (name: "u to b", shaders: ["u_to_b.comp"], dispatch: Groups(1, 1, 1), bind: { "past": (of: "t", history: true) }),
+                (name: "keep b", copy: (from: "b", to: "log")),
+                (name: "t again", shaders: ["t_again.comp"], dispatch: Groups(1, 1, 1)),
+                (name: "draw u", shaders: ["full.vert", "add.frag"], draw: Fullscreen, color: [(to: "u", blend: add)]),
+            ],
+        )"#,
+        &[
+            ("full.vert", FULL),
+            (
+                "b_to_t.comp",
+                "layout(local_size_x = 8, local_size_y = 8) in;
+                layout(std430) readonly buffer B { uint n[]; } b;
+                uniform writeonly image2D t;
+                void main() { imageStore(t, ivec2(gl_LocalInvocationID.xy), vec4(b.n[gl_LocalInvocationIndex] + 1u)); }",
+            ),
+            (
+                "u_to_b.comp",
+                "layout(local_size_x = 8, local_size_y = 8) in;
+                uniform sampler2D u;
+                uniform sampler2D past;
+                layout(std430) buffer B { uint n[]; } b;
+                void main() {
+                    ivec2 p = ivec2(gl_LocalInvocationID.xy);
+                    b.n[gl_LocalInvocationIndex] = uint(texelFetch(u, p, 0).r + texelFetch(past, p, 0).r * 0.5);
+                }",
+            ),
+            (
+                "t_again.comp",
+                "layout(local_size_x = 8, local_size_y = 8) in;
+                layout(r32f) uniform image2D t;
+                void main() { ivec2 p = ivec2(gl_LocalInvocationID.xy); imageStore(t, p, vec4(2.0)); }",
+            ),
+            (
+                "add.frag",
+                "layout(location = 0) out vec4 color; void main() { color = vec4(100.0); }",
+            ),
+        ],
+    );
+    let lab = bench.lab();
+    let mut session = bench.run(&lab, &["log", "u", "t"], 40);
+    // b' = (b + 1) + past / 2, with past = 0 in the first frame and 2 in all others.
+    assert_eq!(words(&mut session, "log"), [40 + 39; 64]);
+    assert_eq!(reds(&mut session, "t", 0), [2.0; 64]);
+    assert_eq!(reds(&mut session, "u", 0), [78.0 + 1.0 + 100.0 - 1.0; 64]);
+}
+
+#[test]
+fn a_constant_parameter_is_a_specialisation_constant() {
+    let bench = Bench::new(
+        r#"(
+            params: [
+                Int(name: "taps", default: 3, range: (1, 9), constant: true, help: "Loop count."),
+                Choice(name: "mode", options: ["sum", "product"], constant: true, help: "What is done."),
+                Bool(name: "negate", default: false, constant: true, help: "Sign."),
+                Float(name: "scale", default: 2, range: (0, 10), constant: true, help: "Factor."),
+                Float(name: "offset", default: 0, range: (0, 10), help: "Not constant."),
+            ],
+            buffers: { "result": (size: 16) },
+            passes: [(name: "run", shaders: ["run.comp"], dispatch: Groups(1, 1, 1))],
+        )"#,
+        &[(
+            "run.comp",
+            "#include \"params.glsl\"
+            layout(std430) writeonly buffer Result { float value; } result;
+            void main() {
+                float values[TAPS];
+                float total = MODE == MODE_SUM ? 0.0 : 1.0;
+                for (int i = 0; i < TAPS; i++) {
+                    values[i] = float(i + 1);
+                    total = MODE == MODE_SUM ? total + values[i] : total * values[i];
+                }
+                result.value = (NEGATE ? -1.0 : 1.0) * SCALE * total + params.offset;
+            }",
+        )],
+    );
+    let lab = bench.lab();
+    for (settings, expected) in [
+        ("", 12.0),
+        ("\"taps\": 5", 30.0),
+        ("\"taps\": 4, \"mode\": \"product\", \"scale\": 0.5", 12.0),
+        ("\"negate\": true, \"offset\": 1.0", -11.0),
+    ] {
+        bench.write(
+            "configs/run.ron",
+            &format!("(graph: \"graph.ron\", scene: \"triangles\", size: (8, 8), params: {{ {settings} }})"),
+        );
+        let found = f32::from_bits(words(&mut bench.run(&lab, &["result"], 1), "result")[0]);
+        assert_eq!(found, expected, "{settings}");
+    }
+}
+
+#[test]
+fn a_pass_a_texture_and_a_parameter_take_no_rust() {
+    let bench = Bench::new(
+        r#"(
+            params: [Float(name: "level", default: 0.25, range: (0.0, 1.0), help: "Grey.")],
+            textures: { "picture": (size: ("width", "height"), format: "rgba8") },
+            passes: [
+                (name: "fill", shaders: ["fill.comp"], dispatch: Cover("picture")),
+            ],
+            output: "picture",
+        )"#,
+        &[(
+            "fill.comp",
+            "#include \"params.glsl\"
+            layout(local_size_x = 8, local_size_y = 8) in;
+            uniform writeonly image2D picture;
+            void main() { imageStore(picture, ivec2(gl_GlobalInvocationID.xy), vec4(params.level)); }",
+        )],
+    );
+    let render = |settings: &[&str]| {
+        let mut command = conelab(bench.0.path());
+        command.args(["render", "configs/run.ron", "-o", "out.png", "--json", "out.json"]);
+        command.args(settings.iter().flat_map(|s| ["--set", s]));
+        succeeds(&mut command);
+        let stats: serde_json::Value = serde_json::from_slice(&std::fs::read(bench.path("out.json")).unwrap()).unwrap();
+        let picture = image::open(bench.path("out.png")).unwrap().to_rgb8();
+        (picture.get_pixel(10, 10).0, stats)
+    };
+    let names = |list: &serde_json::Value| -> Vec<String> {
+        list.as_array().unwrap().iter().map(|p| p["name"].as_str().unwrap().to_string()).collect()
+    };
+    let (pixel, stats) = render(&[]);
+    assert_eq!(pixel, [64; 3]);
+    assert_eq!(names(&stats["passes"]), ["fill"]);
+    assert_eq!(stats["params"], serde_json::json!({ "level": 0.25 }));
+
+    // A tint: one parameter, one texture, one pass, one shader.
+    bench.edit(
+        "passes/graph.ron",
+        "help: \"Grey.\")]",
+        "help: \"Grey.\"),\n Colour(name: \"tint\", default: (1, 0.5, 0), help: \"Hue.\")]",
+    );
+    bench.edit("passes/graph.ron", "textures: {", "textures: { \"grey\": (size: (\"width\", \"height\"), format: \"rgba8\"), \"unused\": (size: (512, 512), format: \"rgba8\"),");
+    bench.edit("passes/graph.ron", "dispatch: Cover(\"picture\")),", "dispatch: Cover(\"grey\"), bind: { \"picture\": (of: \"grey\") }),\n (name: \"tint\", shaders: [\"full.vert\", \"tint.frag\"], draw: Fullscreen, color: [(to: \"picture\")]),\n (name: \"idle\", shaders: [\"fill.comp\"], dispatch: Cover(\"unused\"), bind: { \"picture\": (of: \"unused\") }),");
+    bench.write("shaders/full.vert", &glsl(FULL));
+    bench.write(
+        "shaders/tint.frag",
+        &glsl(
+            "#include \"params.glsl\"
+            uniform sampler2D grey;
+            layout(location = 0) out vec4 color;
+            void main() { color = texelFetch(grey, ivec2(gl_FragCoord.xy), 0) * vec4(params.tint, 1.0); }",
+        ),
+    );
+    let (pixel, stats) = render(&["level=1"]);
+    assert_eq!(pixel, [255, 128, 0]);
+    assert_eq!(names(&stats["passes"]), ["fill", "tint"]);
+    assert_eq!(stats["params"], serde_json::json!({ "level": 1.0, "tint": [1.0, 0.5, 0.0] }));
+    // What nobody needs takes no memory.
+    let made: Vec<&str> = stats["bytes"].as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!(made, ["grey", "picture"]);
+    let (pixel, stats) = render(&["level=1", "tint=(0, 1, 0.25)"]);
+    assert_eq!(pixel, [0, 255, 64]);
+    assert_eq!(stats["params"]["tint"], serde_json::json!([0.0, 1.0, 0.25]));
+}
+
+/// A parameter of some kind with a value: its RON kind, the value as RON, and the words a shader must see.
+fn parameter() -> impl Strategy<Value = (&'static str, String, Vec<u32>)> {
+    let float = || (-1000i32..1000).prop_map(|v| v as f32 / 8.0);
+    let vector = |kind: &'static str, n: usize| {
+        prop::collection::vec(float(), n).prop_map(move |v| {
+            let text: Vec<String> = v.iter().map(|x| format!("{x:?}")).collect();
+            (kind, format!("({})", text.join(", ")), v.iter().map(|x| x.to_bits()).collect())
+        })
+    };
+    prop_oneof![
+        any::<bool>().prop_map(|v| ("Bool", v.to_string(), vec![u32::from(v)])),
+        any::<i32>().prop_map(|v| ("Int", v.to_string(), vec![v.cast_unsigned()])),
+        float().prop_map(|v| ("Float", format!("{v:?}"), vec![v.to_bits()])),
+        vector("Vec2", 2),
+        vector("Vec3", 3),
+        vector("Vec4", 4),
+        vector("Colour", 3),
+        (0u32..3).prop_map(|v| ("Choice", format!("option{v}"), vec![v])),
+    ]
+}
+
+/// What a shader reads of these parameters, in this order, when an experiment sets them.
+fn read_by_shader(lab: &Lab, bench: &Bench, list: &[(&str, String, Vec<u32>)]) -> Vec<u32> {
+    let (mut decls, mut set, mut reads, mut n) = (String::new(), String::new(), String::new(), 0);
+    for (i, (kind, value, words)) in list.iter().enumerate() {
+        let default = match *kind {
+            "Bool" => "default: false",
+            "Int" => "default: 0",
+            "Float" => "default: 0",
+            "Vec2" => "default: (0, 0)",
+            "Vec4" => "default: (0, 0, 0, 0)",
+            "Choice" => "options: [\"option0\", \"option1\", \"option2\"]",
+            _ => "default: (0, 0, 0)",
+        };
+        writeln!(decls, "{kind}(name: \"p{i}\", {default}, help: \"Number {i}.\"),").unwrap();
+        let quote = if *kind == "Choice" { "\"" } else { "" };
+        writeln!(set, "\"p{i}\": {quote}{value}{quote},").unwrap();
+        for c in 0..words.len() {
+            let read = match *kind {
+                "Bool" => format!("uint(params.p{i})"),
+                "Int" | "Choice" => format!("uint(params.p{i})"),
+                "Float" => format!("floatBitsToUint(params.p{i})"),
+                _ => format!("floatBitsToUint(params.p{i}[{c}])"),
+            };
+            writeln!(reads, "seen.words[{n}] = {read};").unwrap();
+            n += 1;
+        }
+    }
+    bench.write(
+        "passes/graph.ron",
+        &format!(
+            "(params: [{decls}], buffers: {{ \"seen\": (size: \"{n} * 4\") }},
+            passes: [(name: \"read\", shaders: [\"read.comp\"], dispatch: Groups(1, 1, 1))])"
+        ),
+    );
+    bench.write(
+        "shaders/read.comp",
+        &glsl(&format!(
+            "#include \"params.glsl\"\nlayout(std430) writeonly buffer Seen {{ uint words[]; }} seen;\nvoid main() {{ {reads} }}"
+        )),
+    );
+    bench.write(
+        "configs/run.ron",
+        &format!("(graph: \"graph.ron\", scene: \"triangles\", size: (8, 8), params: {{ {set} }})"),
+    );
+    words(&mut bench.run(lab, &["seen"], 1), "seen")
+}
+
+#[test]
+fn shaders_see_parameters_of_every_kind() {
+    let bench = Bench::new("()", &[]);
+    let lab = bench.lab();
+    // One of each, in an order that needs padding before and after.
+    let f = f32::to_bits;
+    let each = [
+        ("Bool", "true".to_string(), vec![1]),
+        ("Vec3", "(1.0, 2.0, 3.0)".to_string(), vec![f(1.0), f(2.0), f(3.0)]),
+        ("Float", "0.5".to_string(), vec![f(0.5)]),
+        ("Vec2", "(-1.0, 7.0)".to_string(), vec![f(-1.0), f(7.0)]),
+        ("Int", "-3".to_string(), vec![(-3i32).cast_unsigned()]),
+        ("Vec4", "(4.0, 5.0, 6.0, 7.0)".to_string(), vec![f(4.0), f(5.0), f(6.0), f(7.0)]),
+        ("Choice", "option2".to_string(), vec![2]),
+        ("Colour", "(0.25, 0.5, 0.75)".to_string(), vec![f(0.25), f(0.5), f(0.75)]),
+        ("Bool", "false".to_string(), vec![0]),
+    ];
+    let expected: Vec<u32> = each.iter().flat_map(|p| p.2.clone()).collect();
+    assert_eq!(read_by_shader(&lab, &bench, &each), expected);
+
+    // Any sequence (std140: scalars at 4, vec2 at 8, vec3 and vec4 at 16 bytes).
+    let mut runner = TestRunner::new(Config { cases: 32, failure_persistence: None, ..Config::default() });
+    runner
+        .run(&prop::collection::vec(parameter(), 1..14), |list| {
+            let expected: Vec<u32> = list.iter().flat_map(|p| p.2.clone()).collect();
+            prop_assert_eq!(read_by_shader(&lab, &bench, &list), expected);
+            Ok(())
+        })
+        .unwrap();
+}

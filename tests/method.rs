@@ -1,0 +1,359 @@
+//! The method against what is known without it: energy in a furnace, a sphere under a white sky, triangles that overlap
+//! boxes, series that converge. Every number that a bound is put on is printed.
+
+mod common;
+
+use common::{assert_clean, experiment, floats, lab, mean, prepare, root, scene};
+use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
+use conelab::lab::{Lab, LabError, Session};
+use glam::Vec3;
+use std::collections::BTreeSet;
+
+/// What keeps software devices quick.
+const QUICK: (&str, &str) = ("shadow_dim", "512");
+
+/// Runs frames with validation and returns the session, whose `wanted` textures can be read.
+#[track_caller]
+fn frames(lab: &Lab, experiment: &Experiment, wanted: &[&str], count: usize) -> Session {
+    let mut session = prepare(lab, experiment, wanted);
+    for _ in 0..count {
+        session.frame(0.0).unwrap();
+    }
+    session.finish().unwrap();
+    assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
+    assert_clean(lab);
+    session
+}
+
+/// A Cornell box with a moving ball, a point light and a spot light, both with shadows.
+fn workshop() -> String {
+    root().join("configs/scenes/workshop.ron").to_string_lossy().into_owned()
+}
+
+/// Cells that hold a voxel.
+fn occupied(session: &mut Session) -> BTreeSet<[u32; 3]> {
+    let texels = session.texels("voxelIndex", 0, 0).unwrap();
+    let [w, h, _] = texels.extent;
+    let set = texels.bytes.chunks_exact(4).zip(0u32..).filter(|(t, _)| **t != [0; 4]);
+    set.map(|(_, i)| [i % w, i / w % h, i / w / h]).collect()
+}
+
+/// Neither black nor broken.
+#[track_caller]
+fn assert_picture(texels: &[[f32; 4]], what: &str) {
+    assert!(texels.iter().flatten().all(|v| v.is_finite()), "{what}: not a number");
+    let mean = mean(texels);
+    assert!(mean > 0.002, "{what}: the picture is black ({mean})");
+}
+
+#[test]
+fn the_furnace_keeps_its_energy() {
+    // Closed box, emission 1, albedo 0.5, one bounce: radiance 1 + 0.5 everywhere.
+    let lab = lab(root());
+    let mut wrong = Vec::new();
+    for (dim, voxelizer) in [("32", "raster"), ("64", "raster"), ("128", "raster"), ("64", "tessellated")] {
+        let settings = [("voxel_dim", dim), ("voxelizer", voxelizer), QUICK];
+        let mut session = frames(&lab, &experiment("furnace", (64, 48), &settings), &["radiance"], 1);
+        let ratio = mean(&floats(&mut session, "radiance", 0)) / 1.5;
+        println!("furnace, {voxelizer} at {dim}: energy ratio {ratio:.4}");
+        if (ratio - 1.0).abs() > 0.03 {
+            wrong.push(format!("{voxelizer} at {dim}: {ratio:.4}"));
+        }
+    }
+    assert!(wrong.is_empty(), "energy ratios outside 1 +- 0.03: {wrong:?}");
+}
+
+#[test]
+fn a_white_sphere_vanishes_under_a_white_sky() {
+    let lab = lab(root());
+    let mut wrong = Vec::new();
+    for dim in ["32", "64"] {
+        let settings = [("voxel_dim", dim), QUICK];
+        let wanted = ["diffuseIndirect", "occlusion", "surfaceNormal"];
+        let mut session = frames(&lab, &experiment("white-sky", (64, 64), &settings), &wanted, 1);
+        let covered: Vec<bool> = floats(&mut session, "surfaceNormal", 0).iter().map(|t| t[3] > 0.5).collect();
+        for name in ["diffuseIndirect", "occlusion"] {
+            let texels = floats(&mut session, name, 0);
+            let sphere: Vec<[f32; 4]> = texels.iter().zip(&covered).filter(|(_, c)| **c).map(|(t, _)| *t).collect();
+            assert!(sphere.len() > 500, "the sphere covers {} pixels", sphere.len());
+            let ratio = mean(&sphere);
+            let least = sphere.iter().map(|t| t[0]).fold(f32::MAX, f32::min);
+            println!("white sky at {dim}: mean {name} {ratio:.4}, least {least:.4}");
+            if (ratio - 1.0).abs() > 0.01 {
+                wrong.push(format!("{name} at {dim}: {ratio:.4}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "means outside 1 +- 0.01: {wrong:?}");
+}
+
+/// World triangles of a built-in scene in cells of a box volume of edge `size` around `centre`.
+fn triangles_in_cells(name: &str, centre: Vec3, size: f32, dim: u32) -> Vec<[Vec3; 3]> {
+    let scene = scene(name);
+    let mut list = Vec::new();
+    for instance in &scene.instances {
+        let mesh = &scene.meshes[instance.mesh as usize];
+        let at = |i: u32| {
+            let world = instance.transform.transform_point3(mesh.vertices[i as usize].position.into());
+            (world - (centre - 0.5 * size)) / size * dim as f32
+        };
+        list.extend(mesh.indices.chunks_exact(3).map(|t| [at(t[0]), at(t[1]), at(t[2])]));
+    }
+    list
+}
+
+/// Cells that a triangle overlaps by more than `margin` cells (Akenine-Moeller 2001: separating axes).
+fn overlapped(triangles: &[[Vec3; 3]], dim: u32, margin: f32) -> BTreeSet<[u32; 3]> {
+    let mut cells = BTreeSet::new();
+    for t in triangles {
+        let low = t[0].min(t[1]).min(t[2]).floor().max(Vec3::ZERO).as_uvec3();
+        let high = t[0].max(t[1]).max(t[2]).max(Vec3::ZERO).as_uvec3().min(glam::UVec3::splat(dim - 1));
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                for x in low.x..=high.x {
+                    let centre = Vec3::new(x as f32, y as f32, z as f32) + 0.5;
+                    if overlaps(t.map(|v| v - centre), 0.5 - margin) {
+                        cells.insert([x, y, z]);
+                    }
+                }
+            }
+        }
+    }
+    cells
+}
+
+fn overlaps(t: [Vec3; 3], half: f32) -> bool {
+    let edges = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
+    let mut axes = vec![Vec3::X, Vec3::Y, Vec3::Z, edges[0].cross(edges[1])];
+    axes.extend(edges.iter().flat_map(|e| [Vec3::X, Vec3::Y, Vec3::Z].map(|a| a.cross(*e))));
+    axes.iter().filter(|a| a.length_squared() > 1e-12).all(|axis| {
+        let p = t.map(|v| v.dot(*axis));
+        let reach = half * (axis.x.abs() + axis.y.abs() + axis.z.abs());
+        p.iter().copied().fold(f32::MAX, f32::min) <= reach && p.iter().copied().fold(f32::MIN, f32::max) >= -reach
+    })
+}
+
+/// Share of `a` that is in `b`.
+fn share(a: &BTreeSet<[u32; 3]>, b: &BTreeSet<[u32; 3]>) -> f64 {
+    a.intersection(b).count() as f64 / a.len().max(1) as f64
+}
+
+#[test]
+fn voxels_are_the_cells_that_triangles_overlap() {
+    let lab = lab(root());
+    const DIM: u32 = 32;
+    // Volumes that hold the scene, with borders that no wall of it lies on.
+    for (name, centre, size) in [("cornell", Vec3::new(2.78, 2.73, 2.79), 6.03), ("triangles", Vec3::ZERO, 5.03)] {
+        let triangles = triangles_in_cells(name, centre, size, DIM);
+        let touched = overlapped(&triangles, DIM, -1e-3);
+        let crossed = overlapped(&triangles, DIM, 1e-3);
+        let centre = format!("({}, {}, {})", centre.x, centre.y, centre.z);
+        let size = format!("({size}, {size}, {size})");
+        let mut cells = |settings: &[(&str, &str)]| {
+            let base =
+                [("voxel_dim", "32"), ("volume", "box"), ("volume_center", &centre), ("volume_size", &size), QUICK];
+            let experiment = experiment(name, (32, 32), &[&base[..], settings].concat());
+            occupied(&mut frames(&lab, &experiment, &["voxelIndex", "radiance"], 1))
+        };
+        let dilate = cells(&[("conservative", "dilate")]);
+        let msaa = cells(&[("conservative", "msaa")]);
+        let centres = cells(&[("conservative", "off")]);
+        let tessellated = cells(&[("voxelizer", "tessellated")]);
+        let dense = cells(&[("voxelizer", "tessellated"), ("tess_rate", "2.0")]);
+        println!(
+            "{name} at {DIM}: {} cells touched, {} crossed by more than a thousandth",
+            touched.len(),
+            crossed.len()
+        );
+        for (mode, set) in [
+            ("dilate", &dilate),
+            ("msaa", &msaa),
+            ("off", &centres),
+            ("tessellated", &tessellated),
+            ("tess_rate 2", &dense),
+        ] {
+            let (found, right) = (share(&crossed, set), share(set, &touched));
+            println!(
+                "  {mode:<12} {:>6} cells: {:.3} of those crossed, {right:.4} of its own are touched",
+                set.len(),
+                found
+            );
+            assert!(right > 0.999, "{name}, {mode}: {right:.4} of its voxels are touched by a triangle");
+        }
+        assert!(share(&crossed, &dilate) > 0.999, "{name}: dilated triangles miss crossed cells");
+        assert!(share(&centres, &msaa) > 0.99, "{name}: more samples find less");
+        assert!(share(&msaa, &dilate) > 0.999, "{name}: samples find what conservative coverage misses");
+        assert!(share(&dense, &dilate) > 0.999, "{name}: points lie in cells that no triangle overlaps");
+        assert!(share(&tessellated, &dense) > 0.95, "{name}: more points find less");
+        assert!(share(&msaa, &tessellated) > 0.8, "{name}: the voxelizers disagree");
+    }
+}
+
+#[test]
+fn every_conservative_mode_runs_or_says_why_not() {
+    let lab = lab(root());
+    for mode in ["msaa", "off", "hardware", "dilate"] {
+        let experiment = experiment("cornell", (48, 32), &[("voxel_dim", "32"), ("conservative", mode), QUICK]);
+        if mode == "hardware" && !lab.gpu.info.features.conservative_rasterization {
+            let result = lab.prepare(&experiment, scene("cornell"), |_| Ok(vec!["radiance".into()]));
+            let Err(LabError::Input(errors)) = result else { panic!("no error without the extension") };
+            let text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+            assert!(text.contains("VK_EXT_conservative_rasterization"), "{text}");
+            assert!(text.contains("conservative=msaa|off|dilate"), "{text}");
+            println!("skipped: {} has no VK_EXT_conservative_rasterization, which the error says", lab.gpu.info.name);
+            continue;
+        }
+        let mut session = frames(&lab, &experiment, &["voxelIndex", "radiance"], 2);
+        assert!(occupied(&mut session).len() > 2000, "{mode}");
+        assert_picture(&floats(&mut session, "radiance", 0), mode);
+    }
+}
+
+#[test]
+fn every_merge_rule_keeps_the_colours() {
+    let lab = lab(root());
+    for merge in ["average", "running_average", "maximum"] {
+        for voxelizer in ["raster", "tessellated"] {
+            let what = format!("{merge}, {voxelizer}");
+            let settings = [("voxel_dim", "32"), ("merge", merge), ("voxelizer", voxelizer), QUICK];
+            let experiment = experiment("cornell", (48, 32), &settings);
+            let mut session = frames(&lab, &experiment, &["voxelIndex", "voxelColor", "radiance"], 2);
+            let cells = occupied(&mut session);
+            let colours = floats(&mut session, "voxelColor", 0);
+            let in_cells: Vec<[f32; 4]> =
+                cells.iter().map(|[x, y, z]| colours[((z * 32 + y) * 32 + x) as usize]).collect();
+            // The box is white, red, green: means lie between its darkest and lightest albedo.
+            let mean = mean(&in_cells);
+            println!("{what}: {} voxels of mean albedo {mean:.3}", cells.len());
+            assert!((0.4..0.75).contains(&mean), "{what}: mean albedo {mean:.3}");
+            assert!(in_cells.iter().filter(|c| c[0] > 2.0 * c[1]).count() > 100, "{what}: no red wall");
+            assert!(in_cells.iter().filter(|c| c[1] > 2.0 * c[0]).count() > 100, "{what}: no green wall");
+            assert_picture(&floats(&mut session, "radiance", 0), &what);
+        }
+    }
+}
+
+#[test]
+fn every_warp_runs_with_both_voxelizers() {
+    let lab = lab(root());
+    for warp in ["none", "spline", "logistic", "perspective"] {
+        for voxelizer in ["raster", "tessellated"] {
+            let what = format!("{warp}, {voxelizer}");
+            let mut settings = vec![("voxel_dim", "32"), ("warp", warp), ("voxelizer", voxelizer), QUICK];
+            if warp == "perspective" {
+                // From before the box to its back wall.
+                settings.extend([("warp_near", "6.0"), ("warp_far", "16.0")]);
+            }
+            let experiment = experiment("cornell", (48, 32), &settings);
+            let mut session = frames(&lab, &experiment, &["voxelIndex", "radiance", "diffuseIndirect"], 2);
+            let voxels = occupied(&mut session).len();
+            let indirect = floats(&mut session, "diffuseIndirect", 0);
+            println!("{what}: {voxels} voxels, mean diffuse indirect {:.4}", mean(&indirect));
+            assert!(voxels > 500, "{what}: {voxels} voxels");
+            assert_picture(&floats(&mut session, "radiance", 0), &what);
+            assert_picture(&indirect, &what);
+        }
+    }
+}
+
+#[test]
+fn the_temporal_filter_forgets_at_its_rate() {
+    // A ball moves from frame 1 to frame 2 and rests: what is left of the difference shrinks by the factor each frame.
+    let lab = lab(root());
+    let at = |time: f64, settings: &[(&str, &str)]| {
+        let settings = [&[("voxel_dim", "32"), QUICK], settings].concat();
+        let mut experiment = experiment(&workshop(), (48, 32), &settings);
+        experiment.time = time;
+        prepare(&lab, &experiment, &["voxelRadiance", "radiance"])
+    };
+    let mut still = at(1.0, &[]);
+    still.frame(0.0).unwrap();
+    let still = floats(&mut still, "voxelRadiance", 0);
+    let mut filtered = at(0.0, &[("temporal", "true"), ("temporal_factor", "0.5")]);
+    let mut differences = Vec::new();
+    for frame in 0..6 {
+        filtered.frame(if frame == 0 { 1.0 } else { 0.0 }).unwrap();
+        let now = floats(&mut filtered, "voxelRadiance", 0);
+        let sum: f64 = now.iter().zip(&still).map(|(a, b)| f64::from((a[0] - b[0]).abs() + (a[3] - b[3]).abs())).sum();
+        differences.push(sum);
+    }
+    println!("differences from the unfiltered radiance: {differences:.4?}");
+    assert!(differences[0] > 10.0, "the ball does not move: {differences:?}");
+    for pair in differences.windows(2) {
+        let rate = pair[1] / pair[0];
+        assert!((rate - 0.5).abs() < 0.02, "shrinks by {rate:.3}: {differences:?}");
+    }
+    assert_picture(&floats(&mut filtered, "radiance", 0), "temporal");
+    assert_clean(&lab);
+}
+
+#[test]
+fn the_volume_that_follows_the_camera_moves_by_whole_voxels() {
+    let lab = lab(root());
+    let mut sets = Vec::new();
+    // The camera moves by less than a voxel (0.25 m), then by one.
+    for x in [2.76, 2.80, 3.05] {
+        let settings = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), QUICK];
+        let mut experiment = experiment("cornell", (48, 32), &settings);
+        experiment.camera =
+            CameraChoice::Placed(PlacedCamera { eye: (x, 2.73, 1.0), target: (2.78, 2.73, 5.0), fov_y: 60.0 });
+        let mut session = frames(&lab, &experiment, &["voxelIndex", "radiance"], 2);
+        assert_picture(&floats(&mut session, "radiance", 0), "camera volume");
+        sets.push(occupied(&mut session));
+    }
+    assert!(sets[0].len() > 1000, "{} voxels", sets[0].len());
+    assert!(sets[0] == sets[1], "a move of less than a voxel changes voxels");
+    let moved: BTreeSet<[u32; 3]> = sets[0].iter().filter(|c| c[0] > 0).map(|[x, y, z]| [x - 1, *y, *z]).collect();
+    let same = share(&moved, &sets[2]);
+    println!("voxels that a move by one voxel shifts by one cell: {same:.4}");
+    assert!(same > 0.999, "{same}");
+}
+
+#[test]
+fn a_list_that_is_full_is_told() {
+    let lab = lab(root());
+    let settings = [("voxel_dim", "128"), ("voxel_capacity", "10000"), QUICK];
+    let experiment = experiment("cornell", (32, 32), &settings);
+    let mut session = prepare(&lab, &experiment, &["radiance"]);
+    session.frame(0.0).unwrap();
+    session.finish().unwrap();
+    let failed = session.failed_checks().unwrap();
+    assert_eq!(failed.len(), 1, "{failed:?}");
+    assert!(failed[0].starts_with("voxels were dropped: the voxel list is full, raise voxel_capacity ("), "{failed:?}");
+    assert_clean(&lab);
+}
+
+#[test]
+fn every_view_shows_something() {
+    let lab = lab(root());
+    let views = ["shaded", "direct", "diffuse", "specular", "occlusion", "normal", "depth", "density"];
+    let mut all: Vec<Vec<(&str, &str)>> = views.iter().map(|v| vec![("view", *v)]).collect();
+    all.extend(
+        ["radiance", "color", "normal", "alpha", "density"].map(|v| vec![("view", "voxels"), ("voxel_view", v)]),
+    );
+    all.push(vec![("view", "voxels"), ("voxel_view_mip", "2")]);
+    all.push(vec![("view", "voxels"), ("voxelizer", "tessellated")]);
+    all.push(vec![("view", "density"), ("warp", "spline")]);
+    for settings in all {
+        let what = format!("{settings:?}");
+        let settings = [&[("voxel_dim", "32"), QUICK], &settings[..]].concat();
+        let mut session = frames(&lab, &experiment(&workshop(), (64, 48), &settings), &["display"], 1);
+        assert_picture(&floats(&mut session, "display", 0), &what);
+    }
+}
+
+#[test]
+fn the_thesis_preset_renders() {
+    let lab = lab(root());
+    let mut experiment = Experiment::read(&root().join("configs/thesis.ron")).unwrap();
+    let small = common::experiment("cornell", (64, 48), &[("voxel_dim", "64"), QUICK]);
+    experiment.scene.clone_from(&small.scene);
+    experiment.size = small.size;
+    experiment.params.extend(small.params);
+    let mut session = frames(&lab, &experiment, &["radiance", "display"], 2);
+    for name in ["radiance", "display"] {
+        let texels = floats(&mut session, name, 0);
+        println!("thesis preset: mean {name} {:.4}", mean(&texels));
+        assert_picture(&texels, name);
+    }
+}
