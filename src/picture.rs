@@ -90,11 +90,10 @@ fn png(width: u32, height: u32, texels: &Texels) -> Result<Vec<u8>, LabError> {
 
 fn exr(width: u32, height: u32, texels: &Texels) -> Result<Vec<u8>, LabError> {
     let floats = to_floats(texels);
-    let channel = |name: &str, i: usize| {
-        AnyChannel::new(name, FlatSamples::F32(floats.iter().map(|p| p[i]).collect()))
-    };
+    let channel = |name: &str, i: usize| AnyChannel::new(name, FlatSamples::F32(floats.iter().map(|p| p[i]).collect()));
     // EXR keeps channels in alphabetical order.
-    let channels = AnyChannels::sort(["A", "B", "G", "R"].iter().zip([3, 2, 1, 0]).map(|(n, i)| channel(n, i)).collect());
+    let channels =
+        AnyChannels::sort(["A", "B", "G", "R"].iter().zip([3, 2, 1, 0]).map(|(n, i)| channel(n, i)).collect());
     let size = (width as usize, height as usize);
     let layer = Layer::new(size, LayerAttributes::default(), exr::prelude::Encoding::SMALL_LOSSLESS, channels);
     let mut out = Cursor::new(Vec::new());

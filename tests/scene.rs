@@ -8,8 +8,7 @@ use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
 use tempfile::TempDir;
 
-const QUAD: &str =
-    "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+const QUAD: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
 
 fn open(spec: impl AsRef<Path>) -> Result<Scene, SceneError> {
     Scene::open(&spec.as_ref().to_string_lossy(), &|_, _| {})
@@ -30,10 +29,7 @@ fn image(folder: &TempDir, name: &str, w: u32, h: u32, texel: impl Fn(u32, u32) 
     let path = folder.path().join(name);
     let rgba = image::RgbaImage::from_fn(w, h, |x, y| image::Rgba(texel(x, y)));
     if name.ends_with("jpg") {
-        image::DynamicImage::ImageRgba8(rgba)
-            .into_rgb8()
-            .save(path)
-            .unwrap();
+        image::DynamicImage::ImageRgba8(rgba).into_rgb8().save(path).unwrap();
     } else {
         rgba.save(path).unwrap();
     }
@@ -51,21 +47,14 @@ fn assert_error(result: Result<Scene, SceneError>, pieces: &[&str]) {
 #[track_caller]
 fn assert_warning(scene: &Scene, pieces: &[&str]) {
     let fits = |warning: &&String| pieces.iter().all(|piece| warning.contains(piece));
-    assert!(
-        scene.warnings.iter().any(|w| fits(&w)),
-        "{pieces:?} not in {:#?}",
-        scene.warnings
-    );
+    assert!(scene.warnings.iter().any(|w| fits(&w)), "{pieces:?} not in {:#?}", scene.warnings);
 }
 
 /// World corners of all triangles, in the order of the file.
 fn triangles(scene: &Scene) -> Vec<[Vec3; 3]> {
     let mut all = Vec::new();
     for (i, instance) in scene.instances.iter().enumerate() {
-        let (mesh, world) = (
-            &scene.meshes[instance.mesh as usize],
-            scene.instance_transform(i, 0.0),
-        );
+        let (mesh, world) = (&scene.meshes[instance.mesh as usize], scene.instance_transform(i, 0.0));
         for t in mesh.indices.as_chunks::<3>().0 {
             all.push(t.map(|i| world.transform_point3(mesh.vertices[i as usize].position.into())));
         }
@@ -96,20 +85,10 @@ fn assert_same_scene(a: &Scene, b: &Scene) {
         assert_eq!(m.name, n.name);
         assert!(m.base_color.abs_diff_eq(n.base_color, 1e-5), "{m:?} {n:?}");
         assert!(m.emission.abs_diff_eq(n.emission, 1e-4), "{m:?} {n:?}");
-        assert_eq!(
-            (m.metallic, m.roughness, m.two_sided),
-            (n.metallic, n.roughness, n.two_sided),
-            "{}",
-            m.name
-        );
+        assert_eq!((m.metallic, m.roughness, m.two_sided), (n.metallic, n.roughness, n.two_sided), "{}", m.name);
         assert_eq!(m.alpha_cutoff, n.alpha_cutoff, "{}", m.name);
         let maps = |x: &conelab::scene::Material| {
-            [
-                x.base_color_texture,
-                x.metallic_roughness_texture,
-                x.normal_texture,
-                x.emission_texture,
-            ]
+            [x.base_color_texture, x.metallic_roughness_texture, x.normal_texture, x.emission_texture]
         };
         for (s, t) in maps(m).into_iter().zip(maps(n)) {
             let (Some(s), Some(t)) = (s, t) else {
@@ -117,19 +96,10 @@ fn assert_same_scene(a: &Scene, b: &Scene) {
                 continue;
             };
             let (s, t) = (&a.textures[s as usize], &b.textures[t as usize]);
-            assert_eq!(
-                (s.width, s.height, s.format),
-                (t.width, t.height, t.format),
-                "{}",
-                m.name
-            );
+            assert_eq!((s.width, s.height, s.format), (t.width, t.height, t.format), "{}", m.name);
             // Red of a metallic-roughness image means nothing; the rest must be the same.
             let far = |(x, y): (&[u8; 4], &[u8; 4])| x[1..] != y[1..];
-            let pairs = s.mips[0]
-                .as_chunks::<4>()
-                .0
-                .iter()
-                .zip(t.mips[0].as_chunks::<4>().0);
+            let pairs = s.mips[0].as_chunks::<4>().0.iter().zip(t.mips[0].as_chunks::<4>().0);
             assert_eq!(pairs.filter(|&p| far(p)).count(), 0, "texels of {}", m.name);
         }
     }
@@ -139,9 +109,7 @@ fn assert_same_scene(a: &Scene, b: &Scene) {
 fn obj_with_every_kind_of_map() {
     let dir = folder();
     image(&dir, "color.png", 8, 4, |x, _| [x as u8 * 30, 100, 50, 255]);
-    image(&dir, "mask.png", 8, 4, |x, _| {
-        [if x < 4 { 255 } else { 0 }, 0, 0, 255]
-    });
+    image(&dir, "mask.png", 8, 4, |x, _| [if x < 4 { 255 } else { 0 }, 0, 0, 255]);
     image(&dir, "rough.png", 4, 4, |_, _| [64, 64, 64, 255]);
     image(&dir, "metal.bmp", 4, 4, |_, _| [200, 200, 200, 255]);
     image(&dir, "wall_normal.tga", 4, 4, |_, _| [128, 128, 255, 255]);
@@ -155,33 +123,17 @@ fn obj_with_every_kind_of_map() {
     assert_eq!((scene.triangle_count(), scene.meshes.len()), (3, 2));
     assert_eq!(scene.bounds(), (Vec3::ZERO, Vec3::new(2.0, 1.0, 0.0)));
     let (full, old) = (&scene.materials[0], &scene.materials[1]);
-    assert_eq!(
-        (full.roughness, full.metallic, full.alpha_cutoff),
-        (0.25, 0.75, 0.5)
-    );
+    assert_eq!((full.roughness, full.metallic, full.alpha_cutoff), (0.25, 0.75, 0.5));
     assert_eq!(full.emission, Vec3::new(2.0, 3.0, 4.0));
     assert_eq!(old.roughness, (2.0f32 / 200.0).sqrt());
     let texture = |index: Option<u32>| &scene.textures[index.unwrap() as usize];
     let color = texture(full.base_color_texture);
-    assert_eq!(
-        (color.width, color.height, color.format),
-        (8, 4, TextureFormat::Rgba8Srgb)
-    );
-    assert_eq!(
-        (color.mips[0][3], color.mips[0][31]),
-        (255, 0),
-        "the mask is the colour's alpha"
-    );
+    assert_eq!((color.width, color.height, color.format), (8, 4, TextureFormat::Rgba8Srgb));
+    assert_eq!((color.mips[0][3], color.mips[0][31]), (255, 0), "the mask is the colour's alpha");
     let rough_metal = texture(full.metallic_roughness_texture);
     assert_eq!((rough_metal.mips[0][1], rough_metal.mips[0][2]), (64, 200));
-    assert_eq!(
-        texture(full.normal_texture).format,
-        TextureFormat::Rgba8Unorm
-    );
-    assert_eq!(
-        texture(full.emission_texture).format,
-        TextureFormat::Rgba8Srgb
-    );
+    assert_eq!(texture(full.normal_texture).format, TextureFormat::Rgba8Unorm);
+    assert_eq!(texture(full.emission_texture).format, TextureFormat::Rgba8Srgb);
     // A bare model is lit and seen.
     assert_eq!(scene.lights.len(), 1);
     assert!(scene.lights[0].shadow && scene.cameras.contains_key("default") && scene.sky.x > 0.0);
@@ -196,21 +148,10 @@ fn smooth_normals_stop_at_creases() {
     // Two faces that meet at 30 degrees and a third at 90.
     let obj = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv -0.866 -0.5 0\nv 0 -1 0\nf 1 2 3\nf 2 1 4\nf 1 3 5\n";
     let scene = open(write(&dir, "crease.obj", obj)).unwrap();
-    let normals: Vec<Vec3> = scene.meshes[0]
-        .vertices
-        .iter()
-        .filter(|v| v.position == [0.0; 3])
-        .map(|v| v.normal.into())
-        .collect();
-    assert_eq!(
-        normals.len(),
-        2,
-        "the flat pair shares one vertex, the crease has its own: {normals:?}"
-    );
-    assert!(
-        normals.iter().any(|n| n.y > 0.9 && n.x < -0.1),
-        "{normals:?}"
-    );
+    let normals: Vec<Vec3> =
+        scene.meshes[0].vertices.iter().filter(|v| v.position == [0.0; 3]).map(|v| v.normal.into()).collect();
+    assert_eq!(normals.len(), 2, "the flat pair shares one vertex, the crease has its own: {normals:?}");
+    assert!(normals.iter().any(|n| n.y > 0.9 && n.x < -0.1), "{normals:?}");
     assert!(normals.iter().any(|n| n.z.abs() > 0.999), "{normals:?}");
 }
 
@@ -218,17 +159,9 @@ fn smooth_normals_stop_at_creases() {
 fn missing_and_corrupt_textures_have_stand_ins() {
     let dir = folder();
     write(&dir, "bad.png", b"\x89PNG\r\n\x1a\nbroken");
-    write(
-        &dir,
-        "a.mtl",
-        "newmtl gone\nmap_Kd nowhere.png\nnewmtl broken\nmap_Kd bad.png\n",
-    );
-    let scene = open(write(
-        &dir,
-        "a.obj",
-        format!("mtllib a.mtl\nusemtl gone\n{QUAD}usemtl broken\nf 1 2 3\n"),
-    ))
-    .unwrap();
+    write(&dir, "a.mtl", "newmtl gone\nmap_Kd nowhere.png\nnewmtl broken\nmap_Kd bad.png\n");
+    let scene =
+        open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl gone\n{QUAD}usemtl broken\nf 1 2 3\n"))).unwrap();
     assert_warning(&scene, &["nowhere.png", "'gone'", "does not exist"]);
     assert_warning(&scene, &["bad.png", "'broken'", "damaged"]);
     for texture in &scene.textures {
@@ -245,17 +178,8 @@ fn hostile_images_are_refused() {
     png.extend([0x12, 0x34, 0x56, 0x78]);
     write(&dir, "bomb.png", png);
     write(&dir, "short.dds", b"DDS \x7c\0\0\0");
-    write(
-        &dir,
-        "a.mtl",
-        "newmtl m\nmap_Kd bomb.png\nnewmtl n\nmap_Kd short.dds\n",
-    );
-    let scene = open(write(
-        &dir,
-        "a.obj",
-        format!("mtllib a.mtl\nusemtl m\n{QUAD}"),
-    ))
-    .unwrap();
+    write(&dir, "a.mtl", "newmtl m\nmap_Kd bomb.png\nnewmtl n\nmap_Kd short.dds\n");
+    let scene = open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl m\n{QUAD}"))).unwrap();
     assert_warning(&scene, &["bomb.png", "checkerboard"]);
     assert_warning(&scene, &["short.dds", "DDS header"]);
 }
@@ -265,12 +189,7 @@ fn large_textures_are_reduced() {
     let dir = folder();
     image(&dir, "wide.png", 5000, 10, |_, _| [10, 20, 30, 255]);
     write(&dir, "a.mtl", "newmtl m\nmap_Kd wide.png\n");
-    let scene = open(write(
-        &dir,
-        "a.obj",
-        format!("mtllib a.mtl\nusemtl m\n{QUAD}"),
-    ))
-    .unwrap();
+    let scene = open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl m\n{QUAD}"))).unwrap();
     assert_warning(&scene, &["wide.png", "5000x10", "4096x8"]);
     assert_eq!(scene.textures[0].mips[0][..4], [10, 20, 30, 255]);
 }
@@ -281,59 +200,22 @@ fn bad_triangles_are_dropped_and_counted() {
     let obj = format!("{QUAD}v nan 0 0\nv 3 3 3\nf 1 2 5\nf 1 1 2\nf 1 6 6\n");
     let scene = open(write(&dir, "bad.obj", obj)).unwrap();
     assert_eq!(scene.triangle_count(), 2);
-    assert_eq!(
-        scene.bounds().1,
-        Vec3::new(2.0, 1.0, 0.0),
-        "dropped vertices do not count"
-    );
-    assert_warning(
-        &scene,
-        &[
-            "bad.obj",
-            "1 triangles with NaN",
-            "2 triangles without area",
-        ],
-    );
+    assert_eq!(scene.bounds().1, Vec3::new(2.0, 1.0, 0.0), "dropped vertices do not count");
+    assert_warning(&scene, &["bad.obj", "1 triangles with NaN", "2 triangles without area"]);
     assert_eq!(scene.warnings.len(), 1);
 }
 
 #[test]
 fn bad_models_are_errors_with_advice() {
     let dir = folder();
-    assert_error(
-        open(dir.path().join("none.obj")),
-        &["none.obj", "Check the path"],
-    );
-    assert_error(
-        open(write(&dir, "index.obj", "v 0 0 0\nf 1 2 3\n")),
-        &["index.obj", "line 2", "Export it again"],
-    );
-    assert_error(
-        open(write(&dir, "text.obj", "v a b c\n")),
-        &["text.obj", "position", "line 1"],
-    );
-    assert_error(
-        open(write(&dir, "a.fbx", "")),
-        &["a.fbx", "convert other formats to glTF"],
-    );
-    assert_error(
-        open("cornel"),
-        &["cornel", "did you mean 'cornell'?", "furnace"],
-    );
-    assert_error(
-        open(write(&dir, "cut.glb", b"glTF\x02\0\0\0\xff\0\0\0")),
-        &["cut.glb", "Export it again"],
-    );
-    assert_error(
-        open(write(&dir, "empty.gltf", "{}")),
-        &["empty.gltf", "Export it again"],
-    );
-    let scene = open(write(
-        &dir,
-        "lib.obj",
-        format!("mtllib none.mtl\nusemtl x\n{QUAD}"),
-    ))
-    .unwrap();
+    assert_error(open(dir.path().join("none.obj")), &["none.obj", "Check the path"]);
+    assert_error(open(write(&dir, "index.obj", "v 0 0 0\nf 1 2 3\n")), &["index.obj", "line 2", "Export it again"]);
+    assert_error(open(write(&dir, "text.obj", "v a b c\n")), &["text.obj", "position", "line 1"]);
+    assert_error(open(write(&dir, "a.fbx", "")), &["a.fbx", "convert other formats to glTF"]);
+    assert_error(open("cornel"), &["cornel", "did you mean 'cornell'?", "furnace"]);
+    assert_error(open(write(&dir, "cut.glb", b"glTF\x02\0\0\0\xff\0\0\0")), &["cut.glb", "Export it again"]);
+    assert_error(open(write(&dir, "empty.gltf", "{}")), &["empty.gltf", "Export it again"]);
+    let scene = open(write(&dir, "lib.obj", format!("mtllib none.mtl\nusemtl x\n{QUAD}"))).unwrap();
     assert_warning(&scene, &["none.mtl", "grey"]);
 }
 
@@ -341,10 +223,7 @@ fn bad_models_are_errors_with_advice() {
 fn empty_scenes_are_legal() {
     let dir = folder();
     let scene = open(write(&dir, "empty.obj", "# nothing\n")).unwrap();
-    assert_eq!(
-        (scene.triangle_count(), scene.bounds()),
-        (0, (Vec3::ZERO, Vec3::ZERO))
-    );
+    assert_eq!((scene.triangle_count(), scene.bounds()), (0, (Vec3::ZERO, Vec3::ZERO)));
     let scene = open(write(&dir, "empty.ron", "(sky: (1, 1, 1))")).unwrap();
     assert_eq!(scene.sky, Vec3::ONE);
     assert!(scene.cameras.contains_key("default"));
@@ -353,14 +232,7 @@ fn empty_scenes_are_legal() {
 /// A glTF triangle in a buffer of 9 floats, with replaceable parts.
 fn gltf(folder: &TempDir, change: impl Fn(&mut serde_json::Value)) -> PathBuf {
     let corners: [f32; 9] = [0., 0., 0., 1., 0., 0., 0., 1., 0.];
-    write(
-        folder,
-        "t ri.bin",
-        corners
-            .iter()
-            .flat_map(|f| f.to_le_bytes())
-            .collect::<Vec<u8>>(),
-    );
+    write(folder, "t ri.bin", corners.iter().flat_map(|f| f.to_le_bytes()).collect::<Vec<u8>>());
     let mut root = serde_json::json!({
         "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }],
         "nodes": [
@@ -390,20 +262,11 @@ fn gltf_hierarchy_lights_and_cameras() {
     let dir = folder();
     let scene = open(gltf(&dir, |_| {})).unwrap();
     assert_eq!(scene.warnings, Vec::<String>::new());
-    assert_eq!(
-        scene.bounds(),
-        (Vec3::new(10.0, 2.0, 0.0), Vec3::new(12.0, 4.0, 0.0))
-    );
+    assert_eq!(scene.bounds(), (Vec3::new(10.0, 2.0, 0.0), Vec3::new(12.0, 4.0, 0.0)));
     assert_eq!(scene.materials[0].emission, Vec3::new(4.0, 2.0, 0.0));
     assert_eq!(scene.lights.len(), 1, "a model with lights gets no sun");
     assert_eq!(scene.lights[0].color, Vec3::new(6.0, 3.0, 0.0));
-    assert_eq!(
-        scene.lights[0].kind,
-        LightKind::Spot {
-            inner: 0.1,
-            outer: 0.4
-        }
-    );
+    assert_eq!(scene.lights[0].kind, LightKind::Spot { inner: 0.1, outer: 0.4 });
     assert_near(scene.lights[0].direction, Vec3::NEG_Z, 1e-6);
     assert_near(scene.cameras["eye"].eye, Vec3::new(10.0, 0.0, 0.0), 1e-6);
     assert!(scene.cameras.contains_key("default"));
@@ -429,10 +292,7 @@ fn gltf_embedded_data_and_texture_transform() {
     assert_eq!(scene.triangle_count(), 1);
     assert_warning(&scene, &["no.png", "'m'"]);
     let uvs: Vec<[f32; 2]> = scene.meshes[0].vertices.iter().map(|v| v.uv).collect();
-    assert!(
-        uvs.contains(&[0.5, 3.0]) && uvs.contains(&[0.5, 0.0]),
-        "{uvs:?}"
-    );
+    assert!(uvs.contains(&[0.5, 3.0]) && uvs.contains(&[0.5, 0.0]), "{uvs:?}");
 }
 
 #[test]
@@ -440,39 +300,19 @@ fn damaged_gltf_is_an_error() {
     let dir = folder();
     type Change = fn(&mut serde_json::Value);
     let cases: [(Change, &str); 9] = [
-        (
-            |r| r["accessors"][0]["bufferView"] = serde_json::Value::Null,
-            "Missing data",
-        ),
+        (|r| r["accessors"][0]["bufferView"] = serde_json::Value::Null, "Missing data"),
         (|r| r["buffers"][0]["uri"] = "gone.bin".into(), "gone.bin"),
         (|r| r["buffers"][0]["byteLength"] = 99.into(), "cut short"),
-        (
-            |r| r["accessors"][0]["count"] = 4.into(),
-            "reaches past the end",
-        ),
-        (
-            |r| r["bufferViews"][0]["byteOffset"] = 30.into(),
-            "reaches past the end",
-        ),
-        (
-            |r| r["nodes"][1]["children"] = serde_json::json!([0]),
-            "own ancestor",
-        ),
-        (
-            |r| {
-                r["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"] =
-                    serde_json::Value::Null
-            },
-            "spot",
-        ),
-        (
-            |r| r["cameras"][0]["type"] = "orthographic".into(),
-            "camera 0",
-        ),
+        (|r| r["accessors"][0]["count"] = 4.into(), "reaches past the end"),
+        (|r| r["bufferViews"][0]["byteOffset"] = 30.into(), "reaches past the end"),
+        (|r| r["nodes"][1]["children"] = serde_json::json!([0]), "own ancestor"),
+        (|r| r["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"] = serde_json::Value::Null, "spot"),
+        (|r| r["cameras"][0]["type"] = "orthographic".into(), "camera 0"),
         (
             |r| {
                 r["meshes"][0]["primitives"][0]["indices"] = 1.into();
-                let indices = serde_json::json!({ "bufferView": 0, "componentType": 5125, "type": "SCALAR", "count": 6 });
+                let indices =
+                    serde_json::json!({ "bufferView": 0, "componentType": 5125, "type": "SCALAR", "count": 6 });
                 r["accessors"].as_array_mut().unwrap().push(indices);
             },
             "index",
@@ -501,10 +341,7 @@ fn dds_keeps_blocks_and_stored_mips() {
             alpha_mode: AlphaMode::Straight,
         })
         .unwrap();
-        file.data
-            .iter_mut()
-            .enumerate()
-            .for_each(|(i, byte)| *byte = i as u8);
+        file.data.iter_mut().enumerate().for_each(|(i, byte)| *byte = i as u8);
         let mut bytes = Vec::new();
         file.write(&mut bytes).unwrap();
         bytes.truncate(bytes.len() - cut);
@@ -516,40 +353,15 @@ fn dds_keeps_blocks_and_stored_mips() {
     dds("plain.dds", DxgiFormat::R8G8B8A8_UNorm, 4, 1, 0);
     dds("cut.dds", DxgiFormat::BC3_UNorm, 16, 3, 20);
     let names = ["bc1", "bc7", "plain", "cut"];
-    let mut mtl: String = names
-        .iter()
-        .map(|n| format!("newmtl {n}\nmap_Kd {n}.dds\n"))
-        .collect();
+    let mut mtl: String = names.iter().map(|n| format!("newmtl {n}\nmap_Kd {n}.dds\n")).collect();
     mtl.push_str("newmtl bc5\nnorm bc5.dds\n");
     write(&dir, "a.mtl", mtl);
-    let scene = open(write(
-        &dir,
-        "a.obj",
-        format!("mtllib a.mtl\nusemtl bc1\n{QUAD}"),
-    ))
-    .unwrap();
-    let found: Vec<_> = scene
-        .textures
-        .iter()
-        .map(|t| (t.format, t.mips.len()))
-        .collect();
+    let scene = open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl bc1\n{QUAD}"))).unwrap();
+    let found: Vec<_> = scene.textures.iter().map(|t| (t.format, t.mips.len())).collect();
     use TextureFormat::*;
-    let expected = [
-        (Bc1Srgb, 3),
-        (Bc7Srgb, 1),
-        (Rgba8Srgb, 3),
-        (Rgba8Srgb, 4),
-        (Bc5Unorm, 4),
-    ];
+    let expected = [(Bc1Srgb, 3), (Bc7Srgb, 1), (Rgba8Srgb, 3), (Rgba8Srgb, 4), (Bc5Unorm, 4)];
     assert_eq!(found, expected);
-    assert_eq!(
-        scene.textures[0]
-            .mips
-            .iter()
-            .map(Vec::len)
-            .collect::<Vec<_>>(),
-        [128, 32, 8]
-    );
+    assert_eq!(scene.textures[0].mips.iter().map(Vec::len).collect::<Vec<_>>(), [128, 32, 8]);
     assert_eq!(scene.textures[2].mips[0][..4], [0, 1, 2, 3]);
     assert_warning(&scene, &["cut.dds", "ends inside mip level"]);
 }
@@ -558,50 +370,20 @@ fn dds_keeps_blocks_and_stored_mips() {
 fn mips_are_linear_light_unit_normals_and_full_coverage() {
     let dir = folder();
     // Black and white columns: the mean light is 0.5, which is 188 in sRGB.
-    image(&dir, "stripes.png", 6, 5, |x, _| {
-        if x % 2 == 0 { [0, 0, 0, 255] } else { [255; 4] }
-    });
+    image(&dir, "stripes.png", 6, 5, |x, _| if x % 2 == 0 { [0, 0, 0, 255] } else { [255; 4] });
     // Soft grass: one texel in four passes the cutoff, half are empty and red.
     let blade = |x: u32, y: u32| {
         let mixed = x.wrapping_mul(374_761_393) ^ y.wrapping_mul(668_265_263);
         let chance = (mixed ^ (mixed >> 13)).wrapping_mul(1_274_126_177) >> 24;
-        if chance < 128 {
-            [0, 200, 0, 192 - chance as u8]
-        } else {
-            [255, 0, 0, 0]
-        }
+        if chance < 128 { [0, 200, 0, 192 - chance as u8] } else { [255, 0, 0, 0] }
     };
     image(&dir, "grass.png", 64, 64, blade);
-    image(&dir, "n.png", 4, 4, |x, _| {
-        if x % 2 == 0 {
-            [255, 128, 128, 255]
-        } else {
-            [128, 255, 128, 255]
-        }
-    });
-    write(
-        &dir,
-        "a.mtl",
-        "newmtl m\nmap_Kd stripes.png\nnorm n.png\nnewmtl g\nmap_Kd grass.png\nmap_d grass.png\n",
-    );
-    let scene = open(write(
-        &dir,
-        "a.obj",
-        format!("mtllib a.mtl\nusemtl m\n{QUAD}"),
-    ))
-    .unwrap();
-    let texture = |name: &str| {
-        scene
-            .textures
-            .iter()
-            .find(|t| t.name.ends_with(name))
-            .unwrap()
-    };
+    image(&dir, "n.png", 4, 4, |x, _| if x % 2 == 0 { [255, 128, 128, 255] } else { [128, 255, 128, 255] });
+    write(&dir, "a.mtl", "newmtl m\nmap_Kd stripes.png\nnorm n.png\nnewmtl g\nmap_Kd grass.png\nmap_d grass.png\n");
+    let scene = open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl m\n{QUAD}"))).unwrap();
+    let texture = |name: &str| scene.textures.iter().find(|t| t.name.ends_with(name)).unwrap();
     let stripes = texture("stripes.png");
-    assert_eq!(
-        stripes.mips.iter().map(Vec::len).collect::<Vec<_>>(),
-        [6 * 5 * 4, 3 * 2 * 4, 4]
-    );
+    assert_eq!(stripes.mips.iter().map(Vec::len).collect::<Vec<_>>(), [6 * 5 * 4, 3 * 2 * 4, 4]);
     assert_eq!(stripes.mips[1][0], 188);
     assert_eq!(stripes.mips[2][0], 188);
     let grass = texture("grass.png");
@@ -610,16 +392,9 @@ fn mips_are_linear_light_unit_normals_and_full_coverage() {
         texels.iter().filter(|t| t[3] >= 128).count() as f32 / texels.len() as f32
     };
     for level in &grass.mips[1..4] {
-        assert!(
-            (opaque(level) - opaque(&grass.mips[0])).abs() < 0.06,
-            "coverage {}",
-            opaque(level)
-        );
+        assert!((opaque(level) - opaque(&grass.mips[0])).abs() < 0.06, "coverage {}", opaque(level));
     }
-    assert!(
-        grass.mips[2].as_chunks::<4>().0.iter().all(|t| t[0] < 8),
-        "the hidden red does not bleed in"
-    );
+    assert!(grass.mips[2].as_chunks::<4>().0.iter().all(|t| t[0] < 8), "the hidden red does not bleed in");
     for t in texture("n.png").mips[1].as_chunks::<4>().0 {
         let n = Vec3::new(t[0].into(), t[1].into(), t[2].into()) / 127.5 - 1.0;
         assert!((n.length() - 1.0).abs() < 0.02, "{n}");
@@ -631,28 +406,15 @@ fn built_in_scenes_are_sound() {
     for (name, _) in builtin::list() {
         let scene = open(name).unwrap();
         assert_eq!(scene.warnings, Vec::<String>::new(), "{name}");
-        assert!(
-            scene.cameras.contains_key("default") && scene.triangle_count() > 0,
-            "{name}"
-        );
+        assert!(scene.cameras.contains_key("default") && scene.triangle_count() > 0, "{name}");
         for mesh in &scene.meshes {
             for v in &mesh.vertices {
-                let (n, t) = (
-                    Vec3::from(v.normal),
-                    Vec3::new(v.tangent[0], v.tangent[1], v.tangent[2]),
-                );
-                assert!(
-                    (n.length() - 1.0).abs() < 1e-3 && (t.length() - 1.0).abs() < 1e-3,
-                    "{name} {}",
-                    mesh.name
-                );
+                let (n, t) = (Vec3::from(v.normal), Vec3::new(v.tangent[0], v.tangent[1], v.tangent[2]));
+                assert!((n.length() - 1.0).abs() < 1e-3 && (t.length() - 1.0).abs() < 1e-3, "{name} {}", mesh.name);
             }
         }
         let again = open(name).unwrap();
-        assert!(
-            again.meshes == scene.meshes && again.textures == scene.textures,
-            "{name} differs when built again"
-        );
+        assert!(again.meshes == scene.meshes && again.textures == scene.textures, "{name} differs when built again");
     }
 }
 
@@ -674,30 +436,16 @@ fn atrium_is_rich_and_moves() {
     let scene = open("atrium").unwrap();
     assert!(scene.triangle_count() >= 60_000);
     let (low, high) = scene.bounds();
-    assert!(
-        (high - low).abs_diff_eq(Vec3::new(30.0, 12.0, 14.0), 1.0),
-        "{}",
-        high - low
-    );
+    assert!((high - low).abs_diff_eq(Vec3::new(30.0, 12.0, 14.0), 1.0), "{}", high - low);
     assert!(scene.cameras.len() >= 3);
     assert!(scene.materials.iter().any(|m| m.alpha_cutoff > 0.0));
     assert!(scene.materials.iter().any(|m| m.metallic > 0.5));
     assert!(scene.materials.iter().any(|m| m.emission != Vec3::ZERO));
     assert!(scene.materials.iter().any(|m| m.normal_texture.is_some()));
-    let actor = scene
-        .instances
-        .iter()
-        .position(|i| i.animation.is_some())
-        .unwrap();
-    let (start, later) = (
-        scene.instance_transform(actor, 0.0),
-        scene.instance_transform(actor, 3.0),
-    );
+    let actor = scene.instances.iter().position(|i| i.animation.is_some()).unwrap();
+    let (start, later) = (scene.instance_transform(actor, 0.0), scene.instance_transform(actor, 3.0));
     assert!(!start.abs_diff_eq(later, 1e-3));
-    assert!(
-        start.abs_diff_eq(scene.instance_transform(actor, 12.0), 1e-4),
-        "it repeats"
-    );
+    assert!(start.abs_diff_eq(scene.instance_transform(actor, 12.0), 1e-4), "it repeats");
 }
 
 #[test]
@@ -720,104 +468,42 @@ fn scene_file_composes() {
         cameras: { "wide": (eye: (0, 0, 9), target: (0, 0, 0), fov_y: 60) },
     )"#;
     let scene = open(write(&dir, "both.ron", text)).unwrap();
-    assert_eq!(
-        (
-            scene.name.as_str(),
-            scene.triangle_count(),
-            scene.lights.len()
-        ),
-        ("both", 34, 3)
-    );
-    assert_eq!(
-        scene.cameras.keys().collect::<Vec<_>>(),
-        ["wide", "default"]
-    );
+    assert_eq!((scene.name.as_str(), scene.triangle_count(), scene.lights.len()), ("both", 34, 3));
+    assert_eq!(scene.cameras.keys().collect::<Vec<_>>(), ["wide", "default"]);
     assert_near(scene.lights[1].direction, Vec3::NEG_Y, 1e-6);
     // Rotated about y: the quad's x becomes -z.
-    let at = |time: f32| {
-        scene
-            .instance_transform(0, time)
-            .transform_point3(Vec3::new(2.0, 0.0, 0.0))
-    };
+    let at = |time: f32| scene.instance_transform(0, time).transform_point3(Vec3::new(2.0, 0.0, 0.0));
     assert_near(at(0.0), Vec3::new(5.0, 0.0, -4.0), 1e-4);
     assert_near(at(2.0), Vec3::new(-5.0, 4.0, 4.0), 1e-3);
     assert_near(at(6.0), at(2.0), 1e-3);
     let (low, high) = scene.bounds();
-    assert!(
-        high.y >= 9.9 && low.x <= -5.0,
-        "bounds hold all poses: {low} {high}"
-    );
+    assert!(high.y >= 9.9 && low.x <= -5.0, "bounds hold all poses: {low} {high}");
 }
 
 #[test]
 fn scene_file_errors_have_a_place_and_a_hint() {
     let dir = folder();
-    let error =
-        |text: &str, pieces: &[&str]| assert_error(open(write(&dir, "x.ron", text)), pieces);
-    error(
-        "(\n  model: [],\n)",
-        &[
-            "x.ron:2:",
-            "unknown field 'model'",
-            "did you mean 'models'?",
-        ],
-    );
-    error(
-        "(models: [\n(builtin: \"atrum\")])",
-        &["x.ron:2:", "did you mean 'atrium'?"],
-    );
-    error(
-        "(models: [(file: \"a.obj\", builtin: \"atrium\")])",
-        &["either a file or a builtin"],
-    );
-    error(
-        "(models: [\n\n  (file: \"gone.obj\")])",
-        &["x.ron:3:10", "gone.obj", "CONELAB_SCENES"],
-    );
-    error(
-        "(lights: [Pint(color: (1,1,1))])",
-        &["x.ron:1:", "did you mean 'Point'?"],
-    );
-    error(
-        "(lights: [Point(color: (1,1,1), position: (0,0,0), shadw: true)])",
-        &["did you mean 'shadow'?"],
-    );
-    error(
-        "(lights: [Directional(color: (1,1,1), direction: (0,0,0), shadow: true)])",
-        &["not zero"],
-    );
-    error(
-        "(cameras: {\"a\": (eye: (0,0,0), target: (0,1,0), fov_y: 60)})",
-        &["up vector"],
-    );
-    error(
-        "(cameras: {\"a\": (eye: (0,0,0), target: (1,1,0), fov_y: 0)})",
-        &["between 1 and 170"],
-    );
-    error(
-        "(models: [(builtin: \"cornell\", transform: (scale: (0, 1, 1)))])",
-        &["scale above 0"],
-    );
-    error(
-        "(models: [(builtin: \"cornell\", animation: (keyframes: [(time: 1), (time: 1)]))])",
-        &["times that rise"],
-    );
+    let error = |text: &str, pieces: &[&str]| assert_error(open(write(&dir, "x.ron", text)), pieces);
+    error("(\n  model: [],\n)", &["x.ron:2:", "unknown field 'model'", "did you mean 'models'?"]);
+    error("(models: [\n(builtin: \"atrum\")])", &["x.ron:2:", "did you mean 'atrium'?"]);
+    error("(models: [(file: \"a.obj\", builtin: \"atrium\")])", &["either a file or a builtin"]);
+    error("(models: [\n\n  (file: \"gone.obj\")])", &["x.ron:3:10", "gone.obj", "CONELAB_SCENES"]);
+    error("(lights: [Pint(color: (1,1,1))])", &["x.ron:1:", "did you mean 'Point'?"]);
+    error("(lights: [Point(color: (1,1,1), position: (0,0,0), shadw: true)])", &["did you mean 'shadow'?"]);
+    error("(lights: [Directional(color: (1,1,1), direction: (0,0,0), shadow: true)])", &["not zero"]);
+    error("(cameras: {\"a\": (eye: (0,0,0), target: (0,1,0), fov_y: 60)})", &["up vector"]);
+    error("(cameras: {\"a\": (eye: (0,0,0), target: (1,1,0), fov_y: 0)})", &["between 1 and 170"]);
+    error("(models: [(builtin: \"cornell\", transform: (scale: (0, 1, 1)))])", &["scale above 0"]);
+    error("(models: [(builtin: \"cornell\", animation: (keyframes: [(time: 1), (time: 1)]))])", &["times that rise"]);
     error("(models: [", &["x.ron:1:"]);
-    assert_error(
-        open(dir.path().join("none.ron")),
-        &["none.ron", "Check the path"],
-    );
+    assert_error(open(dir.path().join("none.ron")), &["none.ron", "Check the path"]);
 }
 
 #[test]
 fn scene_folders_are_searched() {
     let dir = folder();
     write(&dir, "store/deep/quad.obj", QUAD);
-    let file = write(
-        &dir,
-        "scenes/x.ron",
-        "(models: [(file: \"deep/quad.obj\")])",
-    );
+    let file = write(&dir, "scenes/x.ron", "(models: [(file: \"deep/quad.obj\")])");
     if let Ok(file) = std::env::var("CONELAB_TEST_SCENE") {
         assert_eq!(open(file).unwrap().triangle_count(), 2);
         return;
@@ -826,17 +512,10 @@ fn scene_folders_are_searched() {
     let status = std::process::Command::new(std::env::current_exe().unwrap())
         .args(["--exact", "scene_folders_are_searched"])
         .env("CONELAB_TEST_SCENE", file)
-        .env(
-            "CONELAB_SCENES",
-            format!("/nowhere:{}", dir.path().join("store").display()),
-        )
+        .env("CONELAB_SCENES", format!("/nowhere:{}", dir.path().join("store").display()))
         .output()
         .unwrap();
-    assert!(
-        status.status.success(),
-        "{}",
-        String::from_utf8_lossy(&status.stdout)
-    );
+    assert!(status.status.success(), "{}", String::from_utf8_lossy(&status.stdout));
 }
 
 #[test]
@@ -844,20 +523,12 @@ fn shipped_scene_files_are_valid() {
     let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/scenes");
     let workshop = open(configs.join("workshop.ron")).unwrap();
     assert!(workshop.instances.iter().any(|i| i.animation.is_some()));
-    assert!(
-        workshop
-            .lights
-            .iter()
-            .any(|l| matches!(l.kind, LightKind::Spot { .. }))
-    );
+    assert!(workshop.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })));
     assert!(workshop.lights.iter().any(|l| l.kind == LightKind::Point));
     for name in ["sponza", "living-room"] {
         // Without the model, only the model may be missing.
         if let Err(error) = open(configs.join(format!("{name}.ron"))) {
-            assert!(
-                error.to_string().contains(&format!("{name}/{name}.obj")),
-                "{error}"
-            );
+            assert!(error.to_string().contains(&format!("{name}/{name}.obj")), "{error}");
         }
     }
 }
@@ -898,25 +569,13 @@ fn glb_and_gltf_keep_lights_cameras_and_motion() {
         for (name, a) in &scene.cameras {
             let b = &again.cameras[name];
             assert_near(a.eye, b.eye, 1e-5);
-            assert_near(
-                (a.target - a.eye).normalize(),
-                (b.target - b.eye).normalize(),
-                1e-4,
-            );
+            assert_near((a.target - a.eye).normalize(), (b.target - b.eye).normalize(), 1e-4);
             assert!((a.fov_y - b.fov_y).abs() < 1e-3 && a.near == b.near && a.far == b.far);
         }
-        let moving = |s: &Scene| {
-            s.instances
-                .iter()
-                .position(|i| i.animation.is_some())
-                .unwrap()
-        };
+        let moving = |s: &Scene| s.instances.iter().position(|i| i.animation.is_some()).unwrap();
         for time in [0.0, 0.7, 1.9, 3.3] {
             let a: Mat4 = scene.instance_transform(moving(&scene), time);
-            assert!(
-                a.abs_diff_eq(again.instance_transform(moving(&again), time), 1e-4),
-                "at {time} s"
-            );
+            assert!(a.abs_diff_eq(again.instance_transform(moving(&again), time), 1e-4), "at {time} s");
         }
     }
     let leftovers = std::fs::read_dir(dir.path()).unwrap().filter(|e| {
@@ -930,28 +589,15 @@ fn glb_and_gltf_keep_lights_cameras_and_motion() {
 fn export_errors_name_the_file() {
     let dir = folder();
     let scene = open("cornell").unwrap();
-    let message = scene
-        .export(&dir.path().join("a.ply"))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        message.contains("a.ply") && message.contains(".glb"),
-        "{message}"
-    );
+    let message = scene.export(&dir.path().join("a.ply")).unwrap_err().to_string();
+    assert!(message.contains("a.ply") && message.contains(".glb"), "{message}");
     write(&dir, "file", "");
-    let message = scene
-        .export(&dir.path().join("file/a.obj"))
-        .unwrap_err()
-        .to_string();
+    let message = scene.export(&dir.path().join("file/a.obj")).unwrap_err().to_string();
     assert!(message.contains("writable"), "{message}");
 }
 
 fn longest_edge(scene: &Scene) -> f32 {
-    let of = |t: [Vec3; 3]| {
-        t[0].distance(t[1])
-            .max(t[1].distance(t[2]))
-            .max(t[2].distance(t[0]))
-    };
+    let of = |t: [Vec3; 3]| t[0].distance(t[1]).max(t[1].distance(t[2])).max(t[2].distance(t[0]));
     triangles(scene).into_iter().map(of).fold(0.0, f32::max)
 }
 
@@ -992,17 +638,8 @@ fn splitting_measures_in_the_world_and_has_limits() {
     let split = scene.split_triangles(0.5);
     assert!(longest_edge(&split) <= 0.5 && longest_edge(&split) > 0.2);
     assert!((area(&split) - 20.0).abs() < 1e-3);
-    let uv_of = |s: &Scene| {
-        s.meshes[0]
-            .vertices
-            .iter()
-            .map(|v| v.position[0] - 2.0 * v.uv[0])
-            .fold(0.0, f32::max)
-    };
-    assert!(
-        uv_of(&split).abs() < 1e-5,
-        "texture coordinates are interpolated"
-    );
+    let uv_of = |s: &Scene| s.meshes[0].vertices.iter().map(|v| v.position[0] - 2.0 * v.uv[0]).fold(0.0, f32::max);
+    assert!(uv_of(&split).abs() < 1e-5, "texture coordinates are interpolated");
     for edge in [1e-6, 0.0, f32::NAN] {
         let same = scene.split_triangles(edge);
         assert_eq!(same.triangle_count(), 2);
@@ -1037,18 +674,8 @@ fn shuffling_permutes_triangles_inside_parts() {
 fn real_scenes_where_present() {
     let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/scenes");
     for (name, count, low, high) in [
-        (
-            "sponza",
-            66_445,
-            [-17.40276, -0.90669, -7.79851],
-            [17.41724, 15.65331, 7.80149],
-        ),
-        (
-            "living-room",
-            143_163,
-            [-0.51343, -0.00306, -3.63538],
-            [5.12268, 2.87914, 0.59284],
-        ),
+        ("sponza", 66_445, [-17.40276, -0.90669, -7.79851], [17.41724, 15.65331, 7.80149]),
+        ("living-room", 143_163, [-0.51343, -0.00306, -3.63538], [5.12268, 2.87914, 0.59284]),
     ] {
         let path = shared.join(name).join(format!("{name}.obj"));
         if !path.exists() {
@@ -1057,32 +684,13 @@ fn real_scenes_where_present() {
         let scene = open(&path).unwrap();
         let dropped = count - scene.triangle_count();
         assert!(dropped < 200, "{name}: {dropped} of {count} dropped");
-        assert_eq!(
-            scene.warnings.len(),
-            usize::from(dropped > 0),
-            "{:?}",
-            scene.warnings
-        );
+        assert_eq!(scene.warnings.len(), usize::from(dropped > 0), "{:?}", scene.warnings);
         assert_near(scene.bounds().0, Vec3::from(low), 1e-3);
         assert_near(scene.bounds().1, Vec3::from(high), 1e-3);
-        assert_eq!(
-            scene
-                .materials
-                .iter()
-                .filter(|m| m.name != "default")
-                .count(),
-            19
-        );
-        let masked = scene
-            .materials
-            .iter()
-            .filter(|m| m.alpha_cutoff > 0.0)
-            .count();
+        assert_eq!(scene.materials.iter().filter(|m| m.name != "default").count(), 19);
+        let masked = scene.materials.iter().filter(|m| m.alpha_cutoff > 0.0).count();
         assert_eq!(masked, usize::from(name == "living-room"));
-        let centre: DVec3 = triangles(&scene)
-            .iter()
-            .map(|t| (t[0] + t[1] + t[2]).as_dvec3())
-            .sum();
+        let centre: DVec3 = triangles(&scene).iter().map(|t| (t[0] + t[1] + t[2]).as_dvec3()).sum();
         assert!(centre.is_finite());
     }
 }

@@ -55,8 +55,9 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         None => graph.params.clone(),
     };
     for setting in &args.set {
-        let (name, value) =
-            setting.split_once('=').ok_or_else(|| LabError::Request(format!("--set {setting}: expected NAME=VALUE")))?;
+        let (name, value) = setting
+            .split_once('=')
+            .ok_or_else(|| LabError::Request(format!("--set {setting}: expected NAME=VALUE")))?;
         params.set(name, value).map_err(LabError::Request)?;
     }
     let size = match &args.size {

@@ -127,7 +127,9 @@ fn adapt(experiment: &mut Experiment, args: &RenderArgs) -> Result<(), LabError>
     if let Some(text) = &args.camera {
         experiment.camera = if text.trim_start().starts_with('(') {
             let placed: PlacedCamera = crate::graph::source::options().from_str(text).map_err(|e| {
-                LabError::Request(format!("--camera: {e}; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)"))
+                LabError::Request(format!(
+                    "--camera: {e}; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)"
+                ))
             })?;
             CameraChoice::Placed(placed)
         } else {
@@ -184,7 +186,11 @@ fn writable(path: &std::path::Path, endings: &[&str]) -> Result<String, LabError
         return Err(LabError::Request(format!("cannot write '{}': it is a folder", path.display())));
     }
     if folder.is_file() {
-        return Err(LabError::Request(format!("cannot write '{}': '{}' is no folder", path.display(), folder.display())));
+        return Err(LabError::Request(format!(
+            "cannot write '{}': '{}' is no folder",
+            path.display(),
+            folder.display()
+        )));
     }
     let try_folder = || {
         std::fs::create_dir_all(folder)?;

@@ -139,10 +139,10 @@ impl Linker<'_> {
             let names: Vec<&str> =
                 stages.iter().flat_map(|s| s.interface.bindings.iter().map(|b| b.name.as_str())).collect();
             if !names.contains(&key.value.as_str()) && !stages.is_empty() {
-                let found = self.graph.sources.error(
-                    key.at,
-                    format!("no shader of pass '{}' uses the name '{}'", pass.name.value, key.value),
-                );
+                let found = self
+                    .graph
+                    .sources
+                    .error(key.at, format!("no shader of pass '{}' uses the name '{}'", pass.name.value, key.value));
                 self.findings.push(found.nearest(&key.value, names));
             }
         }
@@ -172,7 +172,8 @@ impl Linker<'_> {
     fn outputs(&mut self, pass: &PassDecl, stages: &[Compiled]) {
         let Some(fragment) = stages.iter().find(|s| s.stage == Stage::Fragment) else {
             if let Some(target) = pass.color.0.first() {
-                let message = format!("pass '{}' has colour attachments and no .frag shader that writes them", pass.name.value);
+                let message =
+                    format!("pass '{}' has colour attachments and no .frag shader that writes them", pass.name.value);
                 self.findings.push(self.graph.sources.error(target.at, message));
             }
             return;
@@ -260,13 +261,21 @@ impl Linker<'_> {
                         ExternalKind::Storage => "a readonly buffer",
                         ExternalKind::TextureArray => "a sampler2DArray",
                     };
-                    return fail(self, format!("'{name}' is {expected} of the scene, and the shader declares {}", describe(resource)), None);
+                    return fail(
+                        self,
+                        format!("'{name}' is {expected} of the scene, and the shader declares {}", describe(resource)),
+                        None,
+                    );
                 }
                 Some((Target::External(i), None))
             }
             (_, Some(i), _) => match resource {
                 Resource::Buffer { .. } | Resource::Uniform => Some((Target::Buffer(i), bind)),
-                other => fail(self, format!("'{resource_name}' is a buffer of the graph, and the shader declares {}", describe(other)), None),
+                other => fail(
+                    self,
+                    format!("'{resource_name}' is a buffer of the graph, and the shader declares {}", describe(other)),
+                    None,
+                ),
             },
             (_, _, Some(i)) => {
                 let texture = &self.graph.textures[i].1.value;
@@ -278,12 +287,15 @@ impl Linker<'_> {
             _ => {
                 let known = self.graph.textures.iter().map(|t| t.0.as_str());
                 let known = known.chain(self.graph.buffers.iter().map(|b| b.0.as_str()));
-                let known = known.chain(EXTERNALS.iter().map(|e| e.name)).chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
+                let known =
+                    known.chain(EXTERNALS.iter().map(|e| e.name)).chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
                 let help = super::source::nearest(name, known);
                 fail(
                     self,
                     format!("'{name}' is {} that neither the graph nor the scene declares", describe(resource)),
-                    help.or(Some(format!("declare it in the graph, or rename it: bind: {{\"{name}\": (of: \"...\")}}"))),
+                    help.or(Some(format!(
+                        "declare it in the graph, or rename it: bind: {{\"{name}\": (of: \"...\")}}"
+                    ))),
                 )
             }
         }
@@ -300,18 +312,26 @@ impl Linker<'_> {
             let d = graph.sources.error(at, message);
             Diagnostic { severity: Severity::Warning, ..d }
         };
-        let resources = graph.textures.iter().map(|t| (&t.0, t.1.at)).chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
+        let resources =
+            graph.textures.iter().map(|t| (&t.0, t.1.at)).chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
         for (name, at) in resources {
             if !self.used.contains(name) && !wanted.contains(name.as_str()) {
                 self.findings.push(warn(at, format!("'{name}' is declared and never used")));
             }
         }
-        let texts: HashSet<&String> =
-            compiled.values().flat_map(|c| c.texts.iter()).filter(|(f, _)| *f != "params.glsl").map(|(_, t)| t).collect();
+        let texts: HashSet<&String> = compiled
+            .values()
+            .flat_map(|c| c.texts.iter())
+            .filter(|(f, _)| *f != "params.glsl")
+            .map(|(_, t)| t)
+            .collect();
         for (i, param) in graph.params.list.iter().enumerate() {
             let in_shader = if param.constant { param.name.to_uppercase() } else { format!("params.{}", param.name) };
             let in_graph = super::plan::all_expressions(graph).any(|e| {
-                e.value.variables().iter().any(|v| *v == param.name || v.strip_prefix(&param.name).is_some_and(|r| r.starts_with('_')))
+                e.value
+                    .variables()
+                    .iter()
+                    .any(|v| *v == param.name || v.strip_prefix(&param.name).is_some_and(|r| r.starts_with('_')))
             });
             let as_format = graph.textures.iter().any(|t| t.1.value.format.value == param.name);
             let names = |text: &str| {
@@ -398,7 +418,8 @@ fn mismatch(
                     Some(if formats.len() == 1 {
                         format!("write layout({view}), or bind it as another declared view")
                     } else {
-                        "its format is a choice: write to a `writeonly` image without a format, and read by sampler".into()
+                        "its format is a choice: write to a `writeonly` image without a format, and read by sampler"
+                            .into()
                     }),
                 )),
                 None if *read => Some((
@@ -412,7 +433,10 @@ fn mismatch(
             let wants = formats.iter().any(|f| matches!(f.channels, Channels::Uint | Channels::Int));
             if wants != *integer {
                 let better = if wants { "a usampler" } else { "a sampler" };
-                return Some((format!("'{name}' has format {view}, and the shader declares {}", describe(resource)), Some(format!("declare {better}"))));
+                return Some((
+                    format!("'{name}' has format {view}, and the shader declares {}", describe(resource)),
+                    Some(format!("declare {better}")),
+                ));
             }
             let sampler = decl.and_then(|d| d.sampler).or(texture.sampler);
             let compares = sampler.is_some_and(|s| s.compare.is_some());
@@ -422,7 +446,10 @@ fn mismatch(
                 } else {
                     "declare a Shadow sampler, or bind it with a sampler that does not compare"
                 };
-                return Some((format!("the sampler of '{name}' does not fit: the shader declares {}", describe(resource)), Some(help.into())));
+                return Some((
+                    format!("the sampler of '{name}' does not fit: the shader declares {}", describe(resource)),
+                    Some(help.into()),
+                ));
             }
             None
         }

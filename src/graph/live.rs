@@ -75,7 +75,6 @@ pub(super) fn prune(graph: &Graph, plan: &mut Plan, wanted: &[String]) {
 
 /// For each step from the last: `None` when it can go, else which colour attachments are needed; and what must be there
 /// at the start, and as history.
-#[expect(clippy::type_complexity, reason = "used once, right above")]
 fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Vec<bool>>>, BTreeSet<Part>, BTreeSet<Part>) {
     let mut live = at_end.clone();
     let mut history = BTreeSet::new();
@@ -90,9 +89,7 @@ fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Vec<bool>>>,
             .iter()
             .map(|slot| slot.as_ref().is_some_and(|t| live.contains(&(false, t.texture, t.mip))))
             .collect();
-        let unneeded_color = |u: &Use| {
-            u.kind == super::usage::UseKind::Color && parts(u).all(|p| !live.contains(&p))
-        };
+        let unneeded_color = |u: &Use| u.kind == super::usage::UseKind::Color && parts(u).all(|p| !live.contains(&p));
         let uses: Vec<&Use> = step.uses.iter().filter(|u| !unneeded_color(u)).collect();
         for u in uses.iter().filter(|u| u.overwrite) {
             for part in parts(u) {

@@ -1,7 +1,7 @@
 //! Reading a graph with its includes, and checking everything that needs no shader.
 
 use super::expr::Expr;
-use super::file::{Dispatch, Draw, Ex, GraphFile, PassDecl, SceneNeeds, CheckDecl, BufferDecl, TextureDecl};
+use super::file::{BufferDecl, CheckDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, SceneNeeds, TextureDecl};
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
 use crate::vulkan::{Format, Stage};
@@ -48,8 +48,22 @@ pub struct Graph {
 
 /// Variables that every expression may use beside parameters.
 pub const BUILTIN_VARIABLES: &[&str] = &[
-    "width", "height", "mip", "index", "shadow_views", "light_count", "triangle_count", "scene_size", "scene_min_x",
-    "scene_min_y", "scene_min_z", "scene_max_x", "scene_max_y", "scene_max_z", "time", "frame",
+    "width",
+    "height",
+    "mip",
+    "index",
+    "shadow_views",
+    "light_count",
+    "triangle_count",
+    "scene_size",
+    "scene_min_x",
+    "scene_min_y",
+    "scene_min_z",
+    "scene_max_x",
+    "scene_max_y",
+    "scene_max_z",
+    "time",
+    "frame",
 ];
 
 /// Reads `path` and what it includes.
@@ -180,9 +194,11 @@ fn check_params(
     for decl in decls {
         let name = decl.value.name();
         if !is_identifier(&name.value) {
-            errors.push(sources.error(name.at, format!("'{}' cannot be a parameter's name", name.value)).help(Some(
-                "letters, digits and underscores, starting with a lower-case letter".into(),
-            )));
+            errors.push(
+                sources
+                    .error(name.at, format!("'{}' cannot be a parameter's name", name.value))
+                    .help(Some("letters, digits and underscores, starting with a lower-case letter".into())),
+            );
             continue;
         }
         if list.iter().any(|p| p.name == name.value) {
@@ -211,9 +227,11 @@ fn check_params(
                 if fields.options[..i].iter().any(|o| o.value == option.value) {
                     errors.push(sources.error(option.at, format!("option '{}' stands twice", option.value)));
                 } else if !is_identifier(&option.value) {
-                    errors.push(sources.error(option.at, format!("'{}' cannot be an option's name", option.value)).help(
-                        Some("letters, digits and underscores, starting with a lower-case letter".into()),
-                    ));
+                    errors.push(
+                        sources
+                            .error(option.at, format!("'{}' cannot be an option's name", option.value))
+                            .help(Some("letters, digits and underscores, starting with a lower-case letter".into())),
+                    );
                 } else if names.contains(option.value.as_str()) || BUILTIN_VARIABLES.contains(&option.value.as_str()) {
                     errors.push(sources.error(
                         option.at,
@@ -269,7 +287,8 @@ impl Check<'_> {
         }
         self.variables.extend(graph.params.option_names().map(String::from));
         let mut seen: HashMap<&str, ()> = HashMap::new();
-        let resources = graph.textures.iter().map(|(n, t)| (n, t.at)).chain(graph.buffers.iter().map(|(n, b)| (n, b.at)));
+        let resources =
+            graph.textures.iter().map(|(n, t)| (n, t.at)).chain(graph.buffers.iter().map(|(n, b)| (n, b.at)));
         for (name, at) in resources {
             if !name.starts_with(|c: char| c.is_ascii_alphabetic())
                 || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
@@ -287,7 +306,10 @@ impl Check<'_> {
         for pass in &graph.passes {
             let name = &pass.value.name;
             if !passes.insert(&name.value) {
-                self.error(name.at, format!("two passes are named '{}'; timings could not tell them apart", name.value));
+                self.error(
+                    name.at,
+                    format!("two passes are named '{}'; timings could not tell them apart", name.value),
+                );
             }
         }
     }
@@ -312,15 +334,21 @@ impl Check<'_> {
     }
 
     fn texture_name(&mut self, name: &Loc<String>) -> bool {
-        self.resource(name, "texture", |g, n| g.textures.iter().any(|t| t.0 == n), |g| {
-            g.textures.iter().map(|t| t.0.as_str()).collect()
-        })
+        self.resource(
+            name,
+            "texture",
+            |g, n| g.textures.iter().any(|t| t.0 == n),
+            |g| g.textures.iter().map(|t| t.0.as_str()).collect(),
+        )
     }
 
     fn buffer_name(&mut self, name: &Loc<String>) -> bool {
-        self.resource(name, "buffer", |g, n| g.buffers.iter().any(|t| t.0 == n), |g| {
-            g.buffers.iter().map(|t| t.0.as_str()).collect()
-        })
+        self.resource(
+            name,
+            "buffer",
+            |g, n| g.buffers.iter().any(|t| t.0 == n),
+            |g| g.buffers.iter().map(|t| t.0.as_str()).collect(),
+        )
     }
 
     fn resource(
@@ -355,7 +383,8 @@ impl Check<'_> {
                 if let [Some(a), Some(b)] = sizes
                     && a != b
                 {
-                    let message = format!("'{name}' has texels of {a} bytes and cannot be viewed as '{}' of {b}", view.value);
+                    let message =
+                        format!("'{name}' has texels of {a} bytes and cannot be viewed as '{}' of {b}", view.value);
                     self.error(view.at, message);
                 }
             }
@@ -391,7 +420,10 @@ impl Check<'_> {
         match kinds.iter().filter(|k| **k).count() {
             0 => self.error(at, format!("pass '{name}' does nothing: give it dispatch, draw, clear or copy")),
             1 => {}
-            _ => self.error(at, format!("pass '{name}' does several things: dispatch, draw, clear and copy exclude each other")),
+            _ => self.error(
+                at,
+                format!("pass '{name}' does several things: dispatch, draw, clear and copy exclude each other"),
+            ),
         }
         self.exprs(pass.when.iter().chain(&pass.repeat).chain(&pass.mip));
         if pass.repeat.is_some() && pass.each_mip.is_some() {
@@ -402,11 +434,8 @@ impl Check<'_> {
         }
         self.stages(pass, at);
         match pass.dispatch.as_ref().map(|d| &d.value) {
-            Some(Dispatch::Cover(target)) => {
-                if !pass.bind.0.iter().any(|(key, _)| key.value == target.value) {
-                    self.texture_name(target);
-                }
-            }
+            Some(Dispatch::Cover(target)) if pass.bind.0.iter().any(|(key, _)| key.value == target.value) => {}
+            Some(Dispatch::Cover(target)) => drop(self.texture_name(target)),
             Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) => self.exprs([x, y, z]),
             Some(Dispatch::Indirect(buffer, _)) => self.indirect(buffer),
             None => {}
@@ -423,7 +452,10 @@ impl Check<'_> {
         if let Some(target) = &pass.clear {
             let buffer = self.graph.buffers.iter().any(|b| b.0 == target.value);
             if !buffer && self.texture_name(target) && self.is_depth(&target.value) {
-                let message = format!("'{}' is a depth texture: clear it where it is attached, depth: (clear: 1.0)", target.value);
+                let message = format!(
+                    "'{}' is a depth texture: clear it where it is attached, depth: (clear: 1.0)",
+                    target.value
+                );
                 self.error(target.at, message);
             }
         }
@@ -458,7 +490,10 @@ impl Check<'_> {
         let mut stages = Vec::new();
         for shader in &pass.shaders.0 {
             let Some(stage) = Stage::of_file(&shader.value) else {
-                self.error(shader.at, format!("'{}' is no shader: expected .vert, .tesc, .tese, .geom, .frag or .comp", shader.value));
+                self.error(
+                    shader.at,
+                    format!("'{}' is no shader: expected .vert, .tesc, .tese, .geom, .frag or .comp", shader.value),
+                );
                 continue;
             };
             if stages.contains(&stage) {
@@ -468,7 +503,10 @@ impl Check<'_> {
             let path = self.folders.shaders.join(&shader.value);
             // The compiler's own words for this are pages of built-in functions.
             if std::fs::read_to_string(&path).is_ok_and(|text| !text.contains("#version")) {
-                self.error(shader.at, format!("shader '{}' has no line `#version 460`, which must be its first", shader.value));
+                self.error(
+                    shader.at,
+                    format!("shader '{}' has no line `#version 460`, which must be its first", shader.value),
+                );
             }
             if !path.is_file() {
                 let known = files_of(&self.folders.shaders);
@@ -484,7 +522,10 @@ impl Check<'_> {
         }
         let tessellated = stages.contains(&Stage::TessControl) && stages.contains(&Stage::TessEvaluation);
         if pass.draw.is_some() && (pass.topology == super::file::Topology::Patches) != tessellated {
-            self.error(at, format!("pass '{name}': patches need both a .tesc and a .tese shader, and they need patches"));
+            self.error(
+                at,
+                format!("pass '{name}': patches need both a .tesc and a .tese shader, and they need patches"),
+            );
         }
         if (pass.clear.is_some() || pass.copy.is_some()) && !pass.shaders.0.is_empty() {
             self.error(at, format!("pass '{name}' clears or copies: it takes no shaders"));
@@ -503,8 +544,16 @@ impl Check<'_> {
     fn bind(&mut self, bind: &super::file::Bind) {
         let buffer = self.graph.buffers.iter().any(|b| b.0 == bind.of.value);
         if buffer {
-            if bind.mip.is_some() || bind.layer.is_some() || bind.format.is_some() || bind.history || bind.sampler.is_some() {
-                self.error(bind.of.at, format!("'{}' is a buffer: it has no mip, layer, format, history or sampler", bind.of.value));
+            if bind.mip.is_some()
+                || bind.layer.is_some()
+                || bind.format.is_some()
+                || bind.history
+                || bind.sampler.is_some()
+            {
+                self.error(
+                    bind.of.at,
+                    format!("'{}' is a buffer: it has no mip, layer, format, history or sampler", bind.of.value),
+                );
             }
             return;
         }
@@ -549,7 +598,10 @@ impl Check<'_> {
                 self.error(t.to.at, format!("'{}' is a depth texture and cannot be a colour attachment", t.to.value));
             }
             if volume(self.graph, &t.to.value) {
-                self.error(t.to.at, format!("'{}' is 3D and cannot be an attachment; write to it as an image", t.to.value));
+                self.error(
+                    t.to.at,
+                    format!("'{}' is 3D and cannot be an attachment; write to it as an image", t.to.value),
+                );
             }
         }
         if let Some(depth) = &pass.depth {
@@ -587,4 +639,3 @@ fn files_of(folder: &Path) -> Vec<String> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     entries.flatten().filter(|e| e.path().is_file()).map(|e| e.file_name().to_string_lossy().into_owned()).collect()
 }
-

@@ -23,12 +23,19 @@ pub(super) fn check(graph: &Graph, linked: &[Linked], plan: &Plan, input: &PlanI
             link.bound.iter().any(|b| {
                 b.stage != Stage::Compute
                     && (b.stage == Stage::Fragment) == fragment
-                    && matches!(b.resource, Resource::Buffer { write: true, .. } | Resource::Storage { write: true, .. })
+                    && matches!(
+                        b.resource,
+                        Resource::Buffer { write: true, .. } | Resource::Storage { write: true, .. }
+                    )
             })
         };
         let unformatted = link.bound.iter().any(|b| matches!(b.resource, Resource::Storage { format: None, .. }));
         let needs = [
-            (pass.raster.conservative.is_some(), have.conservative_rasterization, "conservative rasterisation (VK_EXT_conservative_rasterization)"),
+            (
+                pass.raster.conservative.is_some(),
+                have.conservative_rasterization,
+                "conservative rasterisation (VK_EXT_conservative_rasterization)",
+            ),
             (has(Stage::Geometry), have.geometry, "geometry shaders"),
             (has(Stage::TessControl), have.tessellation, "tessellation"),
             (stores(true), have.fragment_stores, "stores from fragment shaders"),

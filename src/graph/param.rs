@@ -255,14 +255,16 @@ impl Param {
             Kind::Bool => Value::Bool(ron.from_str(text).map_err(|_| wrong())?),
             Kind::Int => Value::Int(ron.from_str(text).map_err(|_| wrong())?),
             Kind::Float => Value::Float(ron.from_str(text).map_err(|_| wrong())?),
-            Kind::Vector(2) => ron.from_str::<[f64; 2]>(text).map(|v| Value::Vector(v.to_vec())).map_err(|_| wrong())?,
-            Kind::Vector(4) => ron.from_str::<[f64; 4]>(text).map(|v| Value::Vector(v.to_vec())).map_err(|_| wrong())?,
+            Kind::Vector(2) => {
+                ron.from_str::<[f64; 2]>(text).map(|v| Value::Vector(v.to_vec())).map_err(|_| wrong())?
+            }
+            Kind::Vector(4) => {
+                ron.from_str::<[f64; 4]>(text).map(|v| Value::Vector(v.to_vec())).map_err(|_| wrong())?
+            }
             Kind::Vector(_) | Kind::Colour => {
                 ron.from_str::<[f64; 3]>(text).map(|v| Value::Vector(v.to_vec())).map_err(|_| wrong())?
             }
-            Kind::Choice(_) => {
-                Value::Choice(ron.from_str::<String>(text).unwrap_or_else(|_| text.to_string()))
-            }
+            Kind::Choice(_) => Value::Choice(ron.from_str::<String>(text).unwrap_or_else(|_| text.to_string())),
         };
         self.check(&value)?;
         Ok(value)
@@ -296,7 +298,8 @@ impl Params {
     /// Unknown name (with the nearest), wrong kind, out of range.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
         let Some(i) = self.index(name) else {
-            let hint = nearest(name, self.list.iter().map(|p| p.name.as_str())).map_or(String::new(), |h| format!(" ({h})"));
+            let hint =
+                nearest(name, self.list.iter().map(|p| p.name.as_str())).map_or(String::new(), |h| format!(" ({h})"));
             return Err(format!("no parameter '{name}'{hint}"));
         };
         self.values[i] = self.list[i].parse(text)?;
@@ -335,10 +338,13 @@ impl Params {
 
     /// Names of all options of all choices.
     pub fn option_names(&self) -> impl Iterator<Item = &str> {
-        self.list.iter().flat_map(|p| match &p.kind {
-            Kind::Choice(options) => options.as_slice(),
-            _ => &[],
-        }).map(String::as_str)
+        self.list
+            .iter()
+            .flat_map(|p| match &p.kind {
+                Kind::Choice(options) => options.as_slice(),
+                _ => &[],
+            })
+            .map(String::as_str)
     }
 
     /// The generated include `params.glsl`: a uniform block, specialisation constants, names of options.

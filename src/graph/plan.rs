@@ -426,7 +426,10 @@ impl Planner<'_> {
                     let name = &self.graph.textures[t].0;
                     self.error(
                         at,
-                        format!("mip {} or layer {} of '{name}' does not exist: it has {} mips and {} layers", mips.0, layers.0, all.0, all.1),
+                        format!(
+                            "mip {} or layer {} of '{name}' does not exist: it has {} mips and {} layers",
+                            mips.0, layers.0, all.0, all.1
+                        ),
                     );
                     return;
                 }
@@ -457,13 +460,8 @@ impl Planner<'_> {
             let Some(texture) = self.texture(&t.to.value) else { continue };
             let mip = t.mip.as_ref().map_or(0, |ex| self.count(ex, 0, "mip"));
             let layer = t.layer.as_ref().map_or(0, |ex| self.count(ex, 0, "layer"));
-            let plan = AttachmentPlan {
-                texture,
-                mip,
-                layer,
-                clear: t.clear.map(|c| [c.0, c.1, c.2, c.3]),
-                write: true,
-            };
+            let plan =
+                AttachmentPlan { texture, mip, layer, clear: t.clear.map(|c| [c.0, c.1, c.2, c.3]), write: true };
             let read = t.clear.is_none();
             step.uses.push(Use::attachment(texture, mip, UseKind::Color, read, true, t.clear.is_some()));
             self.attachment_size(t.to.at, &plan, &mut size);
@@ -490,7 +488,10 @@ impl Planner<'_> {
             let most = limits.max_viewport_dimensions[0].min(limits.max_framebuffer_width);
             if step.viewport.iter().any(|v| *v > most) {
                 let [w, h] = step.viewport;
-                self.error(extent.at, format!("viewport {w}x{h} is larger than the {most} that {} allows", self.input.device.name));
+                self.error(
+                    extent.at,
+                    format!("viewport {w}x{h} is larger than the {most} that {} allows", self.input.device.name),
+                );
             }
         }
         if let Some(samples) = &pass.raster.samples {
@@ -521,7 +522,8 @@ impl Planner<'_> {
         match size {
             None => *size = Some(this),
             Some(other) if *other != this => {
-                let message = format!("attachments differ in size: {}x{} and {}x{}", other[0], other[1], this[0], this[1]);
+                let message =
+                    format!("attachments differ in size: {}x{} and {}x{}", other[0], other[1], this[0], this[1]);
                 self.error(at, message);
             }
             Some(_) => {}
@@ -550,9 +552,7 @@ impl Planner<'_> {
         }
         if let Some(draw) = &pass.draw {
             return Some(match &draw.value {
-                Draw::Scene { what } => {
-                    Work::Scene(*what)
-                }
+                Draw::Scene { what } => Work::Scene(*what),
                 Draw::Fullscreen => Work::Vertices(3),
                 Draw::Vertices(n) => Work::Vertices(self.count(n, 0, "vertex count")),
                 Draw::Indirect(name, offset) => {
@@ -600,10 +600,13 @@ impl Planner<'_> {
         let (name, decl) = &self.graph.buffers[buffer];
         // A wrong size was told where it stands.
         let Some(size) = decl.value.size.value.eval(&self.env).ok().filter(|s| *s >= 4.0) else { return };
-        if offset % 4 != 0 {
+        if !offset.is_multiple_of(4) {
             self.error(at, format!("a command begins at a multiple of 4 bytes, which {offset} is not"));
         } else if (offset + bytes) as f64 > size {
-            self.error(at, format!("a command of {bytes} bytes at byte {offset} ends outside '{name}', which has {size} bytes"));
+            self.error(
+                at,
+                format!("a command of {bytes} bytes at byte {offset} ends outside '{name}', which has {size} bytes"),
+            );
         }
     }
 
@@ -624,7 +627,10 @@ impl Planner<'_> {
     fn grid(&mut self, at: At, groups: [u32; 3]) -> Option<[u32; 3]> {
         let most = self.input.device.limits.max_compute_work_group_count;
         if groups.iter().zip(&most).any(|(g, m)| g > m) {
-            self.error(at, format!("{groups:?} groups are more than the {most:?} that {} allows", self.input.device.name));
+            self.error(
+                at,
+                format!("{groups:?} groups are more than the {most:?} that {} allows", self.input.device.name),
+            );
             return None;
         }
         Some(groups)
@@ -633,7 +639,8 @@ impl Planner<'_> {
 
 /// Names of resources that a plan makes.
 pub fn made<'g>(graph: &'g Graph, plan: &Plan) -> HashSet<&'g str> {
-    let textures = graph.textures.iter().zip(&plan.textures).filter(|(_, p)| !p.usage.is_empty()).map(|(t, _)| t.0.as_str());
+    let textures =
+        graph.textures.iter().zip(&plan.textures).filter(|(_, p)| !p.usage.is_empty()).map(|(t, _)| t.0.as_str());
     let buffers = graph.buffers.iter().zip(&plan.buffers).filter(|(_, p)| p.used).map(|(b, _)| b.0.as_str());
     textures.chain(buffers).collect()
 }

@@ -40,7 +40,11 @@ pub fn text(graph: &Graph, plan: &Plan) -> String {
                 (false, true) => "writes",
                 _ => "reads",
             };
-            let mips = if u.mips.1 == 1 { format!("mip {}", u.mips.0) } else { format!("mips {}-{}", u.mips.0, u.mips.0 + u.mips.1 - 1) };
+            let mips = if u.mips.1 == 1 {
+                format!("mip {}", u.mips.0)
+            } else {
+                format!("mips {}-{}", u.mips.0, u.mips.0 + u.mips.1 - 1)
+            };
             let mips = if matches!(u.res, Res::Texture(..)) { mips } else { String::new() };
             let _ = writeln!(out, "         {how} {} {mips}", resource_name(graph, u.res));
         }
@@ -109,7 +113,8 @@ fn repeat_text(plan: &Plan, i: usize) -> String {
 fn work_text(graph: &Graph, step: &Step) -> String {
     let buffer = |b: &usize| graph.buffers[*b].0.as_str();
     let texture = |t: &usize| graph.textures[*t].0.as_str();
-    let view = if step.viewport == [0, 0] { String::new() } else { format!(" at {}x{}", step.viewport[0], step.viewport[1]) };
+    let view =
+        if step.viewport == [0, 0] { String::new() } else { format!(" at {}x{}", step.viewport[0], step.viewport[1]) };
     let samples = if step.samples > 1 { format!(", {} samples", step.samples) } else { String::new() };
     match &step.work {
         Work::Dispatch([x, y, z]) => format!("dispatch {x}x{y}x{z} groups"),
@@ -125,11 +130,8 @@ fn work_text(graph: &Graph, step: &Step) -> String {
 }
 
 fn barrier_text(graph: &Graph, b: &Barrier) -> String {
-    let layouts = if b.layouts.0 == b.layouts.1 {
-        String::new()
-    } else {
-        format!(", {:?} to {:?}", b.layouts.0, b.layouts.1)
-    };
+    let layouts =
+        if b.layouts.0 == b.layouts.1 { String::new() } else { format!(", {:?} to {:?}", b.layouts.0, b.layouts.1) };
     let mips = if matches!(b.res, Res::Buffer(_)) { String::new() } else { format!(" mips {}+{}", b.mips.0, b.mips.1) };
     format!("{}{mips}: {:?} to {:?}{layouts}", resource_name(graph, b.res), b.src.0, b.dst.0)
 }

@@ -1,9 +1,7 @@
 //! A plan on a device: resources, pipelines, descriptor sets, and the recording of frames.
 
 use super::externals::EXTERNALS;
-use super::file::{
-    AddressMode, BlendMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology, Which,
-};
+use super::file::{AddressMode, BlendMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology, Which};
 use super::link::{Linked, Target, bound_shape};
 use super::load::Graph;
 use super::param::Params;
@@ -118,7 +116,9 @@ impl Program {
             views: Vec::new(),
             names: graph.passes.iter().map(|p| p.value.name.value.clone()).collect(),
             steps: Vec::new(),
-            starts: (0..plan.steps.len()).filter(|i| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass).collect(),
+            starts: (0..plan.steps.len())
+                .filter(|i| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass)
+                .collect(),
             plan,
             schedule,
             scene: scene.clone(),
@@ -300,12 +300,12 @@ impl Program {
             return Ok(DescriptorWrite::Buffer(buffer));
         }
         match self.scene.textures.get(name) {
-            Some(view) => Ok(DescriptorWrite::Sampled(
-                view,
-                &self.scene.sampler,
-                vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
-            )),
-            None => Err(VulkanError::Code { what: format!("find the scene's '{name}'"), code: vk::Result::ERROR_UNKNOWN }),
+            Some(view) => {
+                Ok(DescriptorWrite::Sampled(view, &self.scene.sampler, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL))
+            }
+            None => {
+                Err(VulkanError::Code { what: format!("find the scene's '{name}'"), code: vk::Result::ERROR_UNKNOWN })
+            }
         }
     }
 
@@ -562,20 +562,18 @@ impl Program {
 
     /// (name, bytes on the device) of every resource made.
     pub fn memory(&self, graph: &Graph) -> Vec<(String, u64)> {
-        let textures = graph.textures.iter().zip(&self.images).map(|(t, copies)| {
-            (t.0.clone(), copies.iter().flatten().map(|i| i.bytes).sum::<u64>())
-        });
-        let buffers = graph.buffers.iter().zip(&self.buffers).map(|(b, made)| (b.0.clone(), made.as_ref().map_or(0, |m| m.size)));
+        let textures = graph
+            .textures
+            .iter()
+            .zip(&self.images)
+            .map(|(t, copies)| (t.0.clone(), copies.iter().flatten().map(|i| i.bytes).sum::<u64>()));
+        let buffers =
+            graph.buffers.iter().zip(&self.buffers).map(|(b, made)| (b.0.clone(), made.as_ref().map_or(0, |m| m.size)));
         textures.chain(buffers).filter(|(_, bytes)| *bytes > 0).collect()
     }
 }
 
-fn relayout(
-    image: &Image,
-    from: vk::ImageLayout,
-    to: vk::ImageLayout,
-    mip: u32,
-) -> vk::ImageMemoryBarrier2<'static> {
+fn relayout(image: &Image, from: vk::ImageLayout, to: vk::ImageLayout, mip: u32) -> vk::ImageMemoryBarrier2<'static> {
     let all = vk::PipelineStageFlags2::ALL_COMMANDS;
     let access = vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE;
     let depth = matches!(image.desc.format, vk::Format::D32_SFLOAT | vk::Format::D16_UNORM);
@@ -631,9 +629,7 @@ fn make_buffers(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<Option
         .iter()
         .zip(&plan.buffers)
         .map(|((name, _), b)| {
-            b.used
-                .then(|| Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly).map(Arc::new))
-                .transpose()
+            b.used.then(|| Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly).map(Arc::new)).transpose()
         })
         .collect()
 }

@@ -167,11 +167,7 @@ impl Sources {
         let before = text.get(..at.offset as usize).unwrap_or(text);
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().unwrap_or("").chars().count() + 1;
-        Place {
-            file: file.clone(),
-            line: u32::try_from(line).unwrap_or(0),
-            column: u32::try_from(column).unwrap_or(0),
-        }
+        Place { file: file.clone(), line: u32::try_from(line).unwrap_or(0), column: u32::try_from(column).unwrap_or(0) }
     }
 
     /// An error at an offset, with the line it stands in.
@@ -194,7 +190,13 @@ impl Sources {
         broken: &mut Vec<String>,
     ) -> Option<T> {
         let text = self.files.get(file as usize).map_or("", |(_, t)| t.as_str());
-        CONTEXT.set(Some(Context { file, base: text.as_ptr() as usize, len: text.len(), findings: Vec::new(), broken: Vec::new() }));
+        CONTEXT.set(Some(Context {
+            file,
+            base: text.as_ptr() as usize,
+            len: text.len(),
+            findings: Vec::new(),
+            broken: Vec::new(),
+        }));
         let parsed = options().from_str::<T>(text);
         if let Some(context) = CONTEXT.take() {
             for (offset, message, help) in context.findings {
@@ -245,9 +247,10 @@ fn explain(error: &ron::Error) -> (String, Option<String>) {
             (format!("unknown name '{found}'"), nearest(found, expected.iter().copied()))
         }
         ron::Error::MissingStructField { field, .. } => (format!("field '{field}' is missing"), None),
-        ron::Error::ExpectedComma => {
-            (String::from("expected a comma"), Some(String::from("one is missing before this, or a whole number has a point")))
-        }
+        ron::Error::ExpectedComma => (
+            String::from("expected a comma"),
+            Some(String::from("one is missing before this, or a whole number has a point")),
+        ),
         ron::Error::Message(text) => (text.clone(), None),
         other => (other.to_string(), None),
     }
@@ -255,8 +258,7 @@ fn explain(error: &ron::Error) -> (String, Option<String>) {
 
 fn offset_of(text: &str, line: usize, column: usize) -> u32 {
     let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-    let inside: usize =
-        text[start.min(text.len())..].chars().take(column.saturating_sub(1)).map(char::len_utf8).sum();
+    let inside: usize = text[start.min(text.len())..].chars().take(column.saturating_sub(1)).map(char::len_utf8).sum();
     u32::try_from((start + inside).min(text.len())).unwrap_or(0)
 }
 
@@ -378,7 +380,9 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for TwoOrThree<T> {
             Ok((a, b, c)) => vec![a, b, c],
             Err(_) => match options().from_str::<(Raw<'de>, Raw<'de>)>(text) {
                 Ok((a, b)) => vec![a, b],
-                Err(_) => return Err(D::Error::custom("expected two sizes (width, height) or three (width, height, depth)")),
+                Err(_) => {
+                    return Err(D::Error::custom("expected two sizes (width, height) or three (width, height, depth)"));
+                }
             },
         };
         let values: Vec<Loc<T>> = parts.iter().copied().filter_map(parse_raw).collect();

@@ -64,17 +64,7 @@ const DEPTH_STAGES: Stages =
 
 impl Use {
     fn new(res: Res, mips: (u32, u32), kind: UseKind, stages: Stages, access: Access) -> Use {
-        Use {
-            res,
-            mips,
-            kind,
-            stages,
-            access,
-            layout: Layout::UNDEFINED,
-            read: true,
-            write: false,
-            overwrite: false,
-        }
+        Use { res, mips, kind, stages, access, layout: Layout::UNDEFINED, read: true, write: false, overwrite: false }
     }
 
     /// A buffer in a shader.
@@ -118,12 +108,12 @@ impl Use {
         let (stages, access) = match kind {
             UseKind::Color => (
                 Stages::COLOR_ATTACHMENT_OUTPUT,
-                Access::COLOR_ATTACHMENT_WRITE | if overwrite { Access::empty() } else { Access::COLOR_ATTACHMENT_READ },
+                Access::COLOR_ATTACHMENT_WRITE
+                    | if overwrite { Access::empty() } else { Access::COLOR_ATTACHMENT_READ },
             ),
-            UseKind::Depth => (
-                DEPTH_STAGES,
-                Access::DEPTH_STENCIL_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_WRITE,
-            ),
+            UseKind::Depth => {
+                (DEPTH_STAGES, Access::DEPTH_STENCIL_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_WRITE)
+            }
             _ => (DEPTH_STAGES, Access::DEPTH_STENCIL_ATTACHMENT_READ),
         };
         Use { read, write, overwrite, ..Use::new(Res::Texture(texture, false), (mip, 1), kind, stages, access) }
@@ -188,13 +178,11 @@ pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
             };
             u.layout = layout;
             // Every texture can be cleared at creation and read back.
-            plan.textures[t].usage |=
-                usage | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
+            plan.textures[t].usage |= usage | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
         }
         conflicts(graph, step, errors);
         for binding in &mut step.bindings {
-            binding.layout =
-                if stored[binding.texture] { Layout::GENERAL } else { Layout::SHADER_READ_ONLY_OPTIMAL };
+            binding.layout = if stored[binding.texture] { Layout::GENERAL } else { Layout::SHADER_READ_ONLY_OPTIMAL };
         }
         for u in &step.uses {
             if let Res::Buffer(b) = u.res {
@@ -295,7 +283,13 @@ fn before(
         match u.res {
             Res::Buffer(b) => {
                 if let Some((src, _)) = advance(&mut buffers[b], u) {
-                    list.push(Barrier { res: u.res, mips: (0, 1), src, dst: (u.stages, u.access), layouts: (Layout::UNDEFINED, Layout::UNDEFINED) });
+                    list.push(Barrier {
+                        res: u.res,
+                        mips: (0, 1),
+                        src,
+                        dst: (u.stages, u.access),
+                        layouts: (Layout::UNDEFINED, Layout::UNDEFINED),
+                    });
                 }
             }
             Res::Texture(t, history) => {

@@ -87,7 +87,9 @@ fn fit(scene: &Scene, bc: bool) -> Vec<Cow<'_, Texture>> {
     let mut list: Vec<Cow<'_, Texture>> = scene
         .textures
         .iter()
-        .map(|t| if t.format.is_compressed() && !bc { Cow::Owned(t.resampled(t.width, t.height)) } else { Cow::Borrowed(t) })
+        .map(|t| {
+            if t.format.is_compressed() && !bc { Cow::Owned(t.resampled(t.width, t.height)) } else { Cow::Borrowed(t) }
+        })
         .collect();
     let mut texels: BTreeMap<Class, u64> = BTreeMap::new();
     for texture in &list {

@@ -67,7 +67,9 @@ impl Home {
             None => upwards.into_iter().find(|p| fits(p)).map(Path::to_path_buf),
         };
         let root = root.ok_or_else(|| {
-            LabError::Request("cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into())
+            LabError::Request(
+                "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
+            )
         })?;
         let cache = std::env::var_os("CONELAB_CACHE")
             .map(PathBuf::from)
@@ -296,7 +298,10 @@ impl Session {
             )));
         }
         if mip >= plan.mips || layer >= plan.layers {
-            let message = format!("'{name}' has {} mips and {} layers; there is no mip {mip}, layer {layer}", plan.mips, plan.layers);
+            let message = format!(
+                "'{name}' has {} mips and {} layers; there is no mip {mip}, layer {layer}",
+                plan.mips, plan.layers
+            );
             return Err(LabError::Request(message));
         }
         let extent = plan.extent.map(|n| (n >> mip).max(1));

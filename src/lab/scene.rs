@@ -103,7 +103,8 @@ impl SceneGpu {
             instance_count: count(scene.instances.len()),
             pad: 0,
         };
-        let material_blocks: Vec<MaterialBlock> = scene.materials.iter().map(|m| material(m, &textures.handles)).collect();
+        let material_blocks: Vec<MaterialBlock> =
+            scene.materials.iter().map(|m| material(m, &textures.handles)).collect();
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let index = vk::BufferUsageFlags::INDEX_BUFFER | storage;
         let index_buffer = upload.buffer("indices", bytemuck::cast_slice(&indices), index)?;
@@ -136,7 +137,8 @@ impl SceneGpu {
                 anisotropic: true,
             },
         )?);
-        let names = crate::graph::externals::EXTERNALS.iter().map(|e| e.name).filter(|n| n.starts_with("materialTexture"));
+        let names =
+            crate::graph::externals::EXTERNALS.iter().map(|e| e.name).filter(|n| n.starts_with("materialTexture"));
         Ok(SceneGpu {
             resources: SceneResources {
                 buffers,
@@ -173,7 +175,6 @@ fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {
 }
 
 /// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another, and each mesh's first index.
-#[expect(clippy::type_complexity, reason = "used once, right above")]
 fn vertices(scene: &Scene) -> (Vec<f32>, Vec<[f32; 12]>, Vec<u32>, Vec<u32>) {
     let (mut positions, mut attributes, mut indices, mut first) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for mesh in &scene.meshes {

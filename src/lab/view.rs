@@ -38,7 +38,7 @@ pub struct Viewpoint {
 impl Viewpoint {
     /// A camera of a scene.
     pub fn new(camera: &Camera) -> Viewpoint {
-        Viewpoint { camera: camera.clone(), previous: None }
+        Viewpoint { camera: *camera, previous: None }
     }
 
     /// A camera written out in an experiment; near and far from the scene's size.
@@ -68,7 +68,8 @@ impl Viewpoint {
         let c = &self.camera;
         let direction = (c.target - c.eye).try_normalize().unwrap_or(Vec3::NEG_Z);
         let side = direction.cross(c.up);
-        let up = if side.length() < 1e-4 { direction.any_orthonormal_vector() } else { side.cross(direction).normalize() };
+        let up =
+            if side.length() < 1e-4 { direction.any_orthonormal_vector() } else { side.cross(direction).normalize() };
         let view = glam::camera::rh::view::look_to_mat4(c.eye, direction, up);
         let aspect = size.0 as f32 / size.1 as f32;
         let fov_y = c.fov_y.clamp(1.0, 170.0).to_radians();
@@ -188,7 +189,8 @@ fn shadow_views(light: &crate::scene::Light, (low, high): (Vec3, Vec3), number: 
             }
             let margin = 0.005 * (most - least).max_element().max(0.01);
             let (least, most) = (least - margin, most + margin);
-            let projection = glam::camera::rh::proj::vulkan::orthographic(least.x, most.x, least.y, most.y, -most.z, -least.z);
+            let projection =
+                glam::camera::rh::proj::vulkan::orthographic(least.x, most.x, least.y, most.y, -most.z, -least.z);
             let size = most - least;
             vec![block(projection * view, [size.x.max(size.y), size.z, 0.0])]
         }
@@ -211,10 +213,5 @@ fn shadow_views(light: &crate::scene::Light, (low, high): (Vec3, Vec3), number: 
 
 /// How many shadow maps a scene needs: one a directional or spot light, six a point light.
 pub fn shadow_view_count(scene: &Scene) -> u32 {
-    scene
-        .lights
-        .iter()
-        .filter(|l| l.shadow)
-        .map(|l| if matches!(l.kind, LightKind::Point) { 6 } else { 1 })
-        .sum()
+    scene.lights.iter().filter(|l| l.shadow).map(|l| if matches!(l.kind, LightKind::Point) { 6 } else { 1 }).sum()
 }

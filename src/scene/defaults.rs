@@ -23,22 +23,11 @@ pub(super) fn sun() -> Light {
 pub(super) fn camera(scene: &Scene) -> Camera {
     let (low, high) = scene.bounds();
     let (centre, extent) = ((low + high) * 0.5, high - low);
-    let axis = if extent.x >= extent.z {
-        Vec3::X
-    } else {
-        Vec3::Z
-    };
+    let axis = if extent.x >= extent.z { Vec3::X } else { Vec3::Z };
     let mut eye = centre + axis * (0.32 * extent.dot(axis));
     eye.y = low.y + 0.2 * extent.y;
     let (near, far) = clip_planes(extent.length());
-    Camera {
-        eye,
-        target: eye - axis * extent.dot(axis).max(1.0),
-        up: Vec3::Y,
-        fov_y: 58.3,
-        near,
-        far,
-    }
+    Camera { eye, target: eye - axis * extent.dot(axis).max(1.0), up: Vec3::Y, fov_y: 58.3, near, far }
 }
 
 /// Near and far distances that suit a scene with the given diagonal.

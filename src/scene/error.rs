@@ -10,22 +10,13 @@ pub enum SceneError {
     NotFound { spec: String, hint: String },
     /// A file could not be read.
     #[error("cannot read {}: {source}. {hint}", path.display())]
-    Read {
-        path: PathBuf,
-        hint: String,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, hint: String, source: std::io::Error },
     /// A model file is not what its name says, or is damaged.
     #[error("cannot load the model {}: {message}", path.display())]
     Model { path: PathBuf, message: String },
     /// A scene file has an error at a known place.
     #[error("{}:{line}:{column}: {message}", path.display())]
-    SceneFile {
-        path: PathBuf,
-        line: usize,
-        column: usize,
-        message: String,
-    },
+    SceneFile { path: PathBuf, line: usize, column: usize, message: String },
     /// A file could not be written.
     #[error("cannot write {}: {message}. Check that the folder exists, is writable and has space", path.display())]
     Write { path: PathBuf, message: String },

@@ -12,47 +12,25 @@ use super::{Instance, Material, Mesh, Part, Scene, SceneError, Vertex};
 
 /// Geometry, materials and textures of an OBJ file; no lights, cameras or sky.
 pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model {
-        path: path.into(),
-        message,
-    };
+    let fail = |message: String| SceneError::Model { path: path.into(), message };
     progress("reading", 0.0);
     let text = read_text(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let warnings = RefCell::new(Vec::new());
     let lines_read = Cell::new(0);
-    let mut reader = CountLines {
-        inner: Cursor::new(text.as_bytes()),
-        lines: &lines_read,
-    };
-    let options = tobj::LoadOptions {
-        single_index: true,
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-    };
+    let mut reader = CountLines { inner: Cursor::new(text.as_bytes()), lines: &lines_read };
+    let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let load_mtl = |name: &Path| Ok(load_mtl(folder, name, &warnings));
-    let (models, materials) =
-        tobj::load_obj_buf(&mut reader, &options, load_mtl).map_err(|error| {
-            fail(format!(
-                "{error} at or before line {}. Export it again",
-                lines_read.get()
-            ))
-        })?;
+    let (models, materials) = tobj::load_obj_buf(&mut reader, &options, load_mtl)
+        .map_err(|error| fail(format!("{error} at or before line {}. Export it again", lines_read.get())))?;
     let mut warnings = warnings.into_inner();
 
     progress("materials", 0.4);
     let mut requests = Requests::default();
-    let mut materials: Vec<Material> = materials
-        .unwrap_or_default()
-        .iter()
-        .map(|m| material(m, folder, &mut requests))
-        .collect();
+    let mut materials: Vec<Material> =
+        materials.unwrap_or_default().iter().map(|m| material(m, folder, &mut requests)).collect();
     if models.iter().any(|model| model.mesh.material_id.is_none()) {
-        materials.push(Material {
-            two_sided: true,
-            ..Material::default()
-        });
+        materials.push(Material { two_sided: true, ..Material::default() });
     }
     progress("meshes", 0.5);
     let raw = merge_objects(models, materials.len().saturating_sub(1) as u32).map_err(fail)?;
@@ -63,24 +41,14 @@ pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, S
     warnings.extend(texture_warnings);
     progress("done", 1.0);
 
-    let meshes: Vec<Mesh> = meshes
-        .into_iter()
-        .filter(|mesh| !mesh.parts.is_empty())
-        .collect();
+    let meshes: Vec<Mesh> = meshes.into_iter().filter(|mesh| !mesh.parts.is_empty()).collect();
     let instances = meshes.iter().enumerate().map(|(i, mesh)| Instance {
         name: mesh.name.clone(),
         mesh: i as u32,
         transform: Mat4::IDENTITY,
         animation: None,
     });
-    Ok(Scene {
-        instances: instances.collect(),
-        meshes,
-        materials,
-        textures,
-        warnings,
-        ..Scene::default()
-    })
+    Ok(Scene { instances: instances.collect(), meshes, materials, textures, warnings, ..Scene::default() })
 }
 
 /// Text with anything that is not UTF-8 replaced: comments and names of old files often are not.
@@ -103,10 +71,7 @@ fn load_mtl(
 ) -> (Vec<tobj::Material>, <MtlIndex as Parts>::Map) {
     let path = folder.join(name.to_string_lossy().replace('\\', "/"));
     let warn = |problem: String| {
-        let message = format!(
-            "material library {}: {problem}; grey materials stand in for its own",
-            path.display()
-        );
+        let message = format!("material library {}: {problem}; grey materials stand in for its own", path.display());
         warnings.borrow_mut().push(message);
     };
     match std::fs::read(&path) {
@@ -138,53 +103,24 @@ fn merge_objects(models: Vec<tobj::Model>, default_material: u32) -> Result<Vec<
         let has_normals = !piece.normals.is_empty();
         let fits = |raw: &RawMesh| raw.mesh.name == name && raw.has_normals == has_normals;
         if !meshes.last().is_some_and(fits) {
-            let mesh = Mesh {
-                name,
-                ..Mesh::default()
-            };
-            meshes.push(RawMesh {
-                mesh,
-                has_normals,
-                has_tangents: false,
-            });
+            let mesh = Mesh { name, ..Mesh::default() };
+            meshes.push(RawMesh { mesh, has_normals, has_tangents: false });
         }
         let Some(RawMesh { mesh, .. }) = meshes.last_mut() else {
             continue;
         };
-        let base = u32::try_from(mesh.vertices.len())
-            .map_err(|_| "it has more than 2^32 vertices".to_string())?;
+        let base = u32::try_from(mesh.vertices.len()).map_err(|_| "it has more than 2^32 vertices".to_string())?;
         let first_index = mesh.indices.len() as u32;
-        mesh.indices
-            .extend(piece.indices.iter().map(|i| i.saturating_add(base)));
+        mesh.indices.extend(piece.indices.iter().map(|i| i.saturating_add(base)));
         for (i, position) in piece.positions.as_chunks::<3>().0.iter().enumerate() {
-            let normal = piece
-                .normals
-                .as_chunks::<3>()
-                .0
-                .get(i)
-                .copied()
-                .unwrap_or_default();
+            let normal = piece.normals.as_chunks::<3>().0.get(i).copied().unwrap_or_default();
             // The origin of OBJ texture coordinates is the lower left, ours the upper left.
-            let uv = piece
-                .texcoords
-                .as_chunks::<2>()
-                .0
-                .get(i)
-                .map_or([0.0; 2], |&[u, v]| [u, 1.0 - v]);
-            mesh.vertices.push(Vertex {
-                position: *position,
-                normal,
-                tangent: [0.0; 4],
-                uv,
-            });
+            let uv = piece.texcoords.as_chunks::<2>().0.get(i).map_or([0.0; 2], |&[u, v]| [u, 1.0 - v]);
+            mesh.vertices.push(Vertex { position: *position, normal, tangent: [0.0; 4], uv });
         }
         let material = piece.material_id.map_or(default_material, |id| id as u32);
         let index_count = (piece.indices.len() / 3 * 3) as u32;
-        mesh.parts.push(Part {
-            first_index,
-            index_count,
-            material,
-        });
+        mesh.parts.push(Part { first_index, index_count, material });
     }
     Ok(meshes)
 }
@@ -193,11 +129,7 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Mat
     let file = |value: &str| Source::File(folder.join(texture_file(value)));
     let unknown = |key: &str| mtl.unknown_param.get(key).map(String::as_str);
     let map = |key: &str| unknown(key).filter(|value| !value.is_empty()).map(file);
-    let number = |key: &str| {
-        unknown(key)
-            .and_then(|v| v.parse::<f32>().ok())
-            .filter(|v| v.is_finite())
-    };
+    let number = |key: &str| unknown(key).and_then(|v| v.parse::<f32>().ok()).filter(|v| v.is_finite());
     let name = &mtl.name;
 
     let cutoff = number("alpha_cutoff").unwrap_or(0.5).clamp(0.0, 1.0);
@@ -207,10 +139,7 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Mat
     let mask = (cutoff * 255.0).round() as u8;
     let base_color_texture = match (color, alpha) {
         (Some(image), None) => Some(Recipe::Color { image, mask: None }),
-        (Some(image), Some(alpha)) if image == alpha => Some(Recipe::Color {
-            image,
-            mask: Some(mask),
-        }),
+        (Some(image), Some(alpha)) if image == alpha => Some(Recipe::Color { image, mask: Some(mask) }),
         (color, Some(alpha)) => Some(Recipe::ColorAndMask { color, alpha, mask }),
         (None, None) => None,
     };
@@ -219,30 +148,17 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Mat
     // A factor that is not given must not switch its map off.
     let metallic = number("Pm").unwrap_or(if metal_map.is_some() { 1.0 } else { 0.0 });
     let from_exponent = |ns: f32| {
-        if rough_metal {
-            1.0
-        } else {
-            (2.0 / (ns.max(0.0) + 2.0)).sqrt()
-        }
+        if rough_metal { 1.0 } else { (2.0 / (ns.max(0.0) + 2.0)).sqrt() }
     };
     let roughness = number("Pr").unwrap_or_else(|| mtl.shininess.map_or(1.0, from_exponent));
     let emission_map = map("map_Ke");
-    let bump = mtl
-        .normal_texture
-        .as_deref()
-        .filter(|value| is_normal_map(value))
-        .map(file);
+    let bump = mtl.normal_texture.as_deref().filter(|value| is_normal_map(value)).map(file);
     let normal_map = map("norm").or_else(|| map("map_Kn")).or(bump);
-    let dark = if emission_map.is_some() {
-        [1.0; 3]
-    } else {
-        [0.0; 3]
-    };
+    let dark = if emission_map.is_some() { [1.0; 3] } else { [0.0; 3] };
     let mut ask = |recipe: Recipe| requests.ask(recipe, name);
     Material {
         name: name.clone(),
-        base_color: color_or(mtl.diffuse, [0.8; 3])
-            .extend(mtl.dissolve.unwrap_or(1.0).clamp(0.0, 1.0)),
+        base_color: color_or(mtl.diffuse, [0.8; 3]).extend(mtl.dissolve.unwrap_or(1.0).clamp(0.0, 1.0)),
         metallic: metallic.clamp(0.0, 1.0),
         roughness: roughness.clamp(0.0, 1.0),
         emission: color_or(mtl.emissive, dark),
@@ -251,12 +167,8 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Mat
         two_sided: number("two_sided").is_none_or(|v| v != 0.0),
         normal_scale: number("normal_scale").unwrap_or(1.0),
         base_color_texture: base_color_texture.map(&mut ask),
-        metallic_roughness_texture: rough_metal.then(|| {
-            ask(Recipe::RoughnessAndMetallic {
-                roughness: rough_map,
-                metallic: metal_map,
-            })
-        }),
+        metallic_roughness_texture: rough_metal
+            .then(|| ask(Recipe::RoughnessAndMetallic { roughness: rough_map, metallic: metal_map })),
         normal_texture: normal_map.map(|image| ask(Recipe::Normal { image })),
         emission_texture: emission_map.map(|image| ask(Recipe::Color { image, mask: None })),
     }
@@ -264,23 +176,14 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Mat
 
 fn color_or(value: Option<[f32; 3]>, default: [f32; 3]) -> Vec3 {
     let color = Vec3::from_array(value.unwrap_or(default));
-    if color.is_finite() {
-        color.max(Vec3::ZERO)
-    } else {
-        Vec3::from_array(default)
-    }
+    if color.is_finite() { color.max(Vec3::ZERO) } else { Vec3::from_array(default) }
 }
 
 /// A bump entry is a height map by the letter of the format, but a normal map by the name of many files.
 fn is_normal_map(value: &str) -> bool {
     let file = texture_file(value).to_string_lossy().to_lowercase();
-    let stem = file
-        .rsplit_once('.')
-        .map_or(file.as_str(), |(stem, _)| stem);
-    ["normal", "norm", "nrm", "ddn"]
-        .iter()
-        .any(|word| stem.contains(word))
-        || stem.ends_with("_n")
+    let stem = file.rsplit_once('.').map_or(file.as_str(), |(stem, _)| stem);
+    ["normal", "norm", "nrm", "ddn"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
 }
 
 /// The file of a texture entry: options and their arguments skipped, backslashes turned.

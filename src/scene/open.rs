@@ -17,17 +17,11 @@ impl Scene {
             return Ok(scene);
         }
         let path = Path::new(spec);
-        if path
-            .extension()
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
-        {
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
             return file::load(path, progress);
         }
         if path.extension().is_none() && !path.exists() {
-            return Err(SceneError::NotFound {
-                spec: spec.into(),
-                hint: builtin::hint(spec),
-            });
+            return Err(SceneError::NotFound { spec: spec.into(), hint: builtin::hint(spec) });
         }
         let mut scene = load_model(path, progress)?;
         if scene.lights.is_empty() {
@@ -44,26 +38,15 @@ impl Scene {
 
 /// A model with what its file says and no more.
 pub(super) fn load_model(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
-    let extension = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_lowercase();
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let mut scene = match extension.as_str() {
         "obj" => obj::load(path, progress)?,
         "gltf" | "glb" => gltf::load(path, progress)?,
         _ => {
             let hint = "the file's extension must be .ron, .obj, .gltf or .glb; convert other formats to glTF";
-            return Err(SceneError::NotFound {
-                spec: path.display().to_string(),
-                hint: hint.into(),
-            });
+            return Err(SceneError::NotFound { spec: path.display().to_string(), hint: hint.into() });
         }
     };
-    scene.name = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
+    scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(scene)
 }

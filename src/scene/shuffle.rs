@@ -9,8 +9,7 @@ impl Scene {
         let mut state = seed;
         for mesh in &mut scene.meshes {
             for part in &mesh.parts {
-                let range =
-                    part.first_index as usize..(part.first_index + part.index_count) as usize;
+                let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
                 let triangles = mesh.indices[range].as_chunks_mut::<3>().0;
                 // Fisher and Yates, from the end.
                 for i in (1..triangles.len()).rev() {

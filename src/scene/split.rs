@@ -20,20 +20,12 @@ impl Scene {
     pub fn split_triangles(&self, max_edge: f32) -> Scene {
         let mut scene = self.clone();
         if max_edge.is_nan() || max_edge <= 0.0 {
-            scene.warnings.push(format!(
-                "{}: triangles not split, {max_edge} m is no edge length",
-                self.name
-            ));
+            scene.warnings.push(format!("{}: triangles not split, {max_edge} m is no edge length", self.name));
             return scene;
         }
         let placements = |mesh: usize| -> Vec<Mat3> {
-            let of_mesh = self
-                .instances
-                .iter()
-                .filter(|instance| instance.mesh as usize == mesh);
-            of_mesh
-                .map(|instance| Mat3::from_mat4(instance.transform))
-                .collect()
+            let of_mesh = self.instances.iter().filter(|instance| instance.mesh as usize == mesh);
+            of_mesh.map(|instance| Mat3::from_mat4(instance.transform)).collect()
         };
         let mut budget = MAX_TRIANGLES.saturating_sub(self.triangle_count());
         for i in 0..scene.meshes.len() {
@@ -41,8 +33,7 @@ impl Scene {
             let too_long = |a: Vec3, b: Vec3| {
                 // In f64 and from the difference, so that both directions of an edge agree.
                 let edge = b - a;
-                axes.iter()
-                    .any(|axes| (*axes * edge).as_dvec3().length() > f64::from(max_edge))
+                axes.iter().any(|axes| (*axes * edge).as_dvec3().length() > f64::from(max_edge))
             };
             let before = scene.meshes[i].triangle_count();
             let limit = before + budget / axes.len().max(1);
@@ -63,20 +54,11 @@ impl Scene {
 }
 
 /// The mesh split round by round, or none when it would have more triangles than the limit.
-fn split_mesh(
-    mesh: &Mesh,
-    too_long: &(impl Fn(Vec3, Vec3) -> bool + Sync),
-    limit: usize,
-) -> Option<Mesh> {
+fn split_mesh(mesh: &Mesh, too_long: &(impl Fn(Vec3, Vec3) -> bool + Sync), limit: usize) -> Option<Mesh> {
     let mut mesh = mesh.clone();
     loop {
-        let marks: Vec<[bool; 3]> = mesh
-            .indices
-            .as_chunks::<3>()
-            .0
-            .par_iter()
-            .map(|t| long_edges(&mesh, t, too_long))
-            .collect();
+        let marks: Vec<[bool; 3]> =
+            mesh.indices.as_chunks::<3>().0.par_iter().map(|t| long_edges(&mesh, t, too_long)).collect();
         let added: usize = marks.iter().flatten().filter(|&&m| m).count();
         if added == 0 {
             return Some(mesh);
@@ -89,50 +71,28 @@ fn split_mesh(
 }
 
 /// Which of the edges 0-1, 1-2 and 2-0 are too long.
-fn long_edges(
-    mesh: &Mesh,
-    triangle: &[u32; 3],
-    too_long: impl Fn(Vec3, Vec3) -> bool,
-) -> [bool; 3] {
+fn long_edges(mesh: &Mesh, triangle: &[u32; 3], too_long: impl Fn(Vec3, Vec3) -> bool) -> [bool; 3] {
     let p = triangle.map(|i| Vec3::from_array(mesh.vertices[i as usize].position));
-    [
-        too_long(p[0], p[1]),
-        too_long(p[1], p[2]),
-        too_long(p[2], p[0]),
-    ]
+    [too_long(p[0], p[1]), too_long(p[1], p[2]), too_long(p[2], p[0])]
 }
 
 fn split_once(mesh: &Mesh, marks: &[[bool; 3]]) -> Mesh {
-    let mut split = Mesh {
-        name: mesh.name.clone(),
-        vertices: mesh.vertices.clone(),
-        ..Mesh::default()
-    };
+    let mut split = Mesh { name: mesh.name.clone(), vertices: mesh.vertices.clone(), ..Mesh::default() };
     let mut midpoints: HashMap<(u32, u32), u32> = HashMap::new();
     for part in &mesh.parts {
         let first_index = split.indices.len() as u32;
-        let triangles =
-            part.first_index as usize / 3..(part.first_index + part.index_count) as usize / 3;
+        let triangles = part.first_index as usize / 3..(part.first_index + part.index_count) as usize / 3;
         for i in triangles {
             let triangle = [0, 1, 2].map(|k| mesh.indices[3 * i + k]);
             split_triangle(&mut split, &mut midpoints, triangle, marks[i]);
         }
-        split.parts.push(Part {
-            first_index,
-            index_count: split.indices.len() as u32 - first_index,
-            ..*part
-        });
+        split.parts.push(Part { first_index, index_count: split.indices.len() as u32 - first_index, ..*part });
     }
     split
 }
 
 /// Replaces a triangle by 1 to 4 with the same winding, by which of its edges are marked.
-fn split_triangle(
-    mesh: &mut Mesh,
-    midpoints: &mut HashMap<(u32, u32), u32>,
-    t: [u32; 3],
-    marks: [bool; 3],
-) {
+fn split_triangle(mesh: &mut Mesh, midpoints: &mut HashMap<(u32, u32), u32>, t: [u32; 3], marks: [bool; 3]) {
     let count = marks.iter().filter(|&&m| m).count();
     // Turned so that one marked edge is 0-1, or two marked ones are 0-1 and 1-2.
     let turn = match count {
@@ -166,8 +126,7 @@ fn split_triangle(
         }
         _ => {
             let (ab, bc, ca) = (middle(mesh, a, b), middle(mesh, b, c), middle(mesh, c, a));
-            mesh.indices
-                .extend([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca]);
+            mesh.indices.extend([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca]);
         }
     }
 }
@@ -180,8 +139,7 @@ fn length(mesh: &Mesh, a: u32, b: u32) -> f32 {
 fn halfway(a: &Vertex, b: &Vertex) -> Vertex {
     let middle = |a: [f32; 3], b: [f32; 3]| (Vec3::from_array(a) + Vec3::from_array(b)) * 0.5;
     let normal = middle(a.normal, b.normal).normalize_or(Vec3::from_array(a.normal));
-    let tangent =
-        middle(xyz(a.tangent), xyz(b.tangent)).normalize_or(Vec3::from_array(xyz(a.tangent)));
+    let tangent = middle(xyz(a.tangent), xyz(b.tangent)).normalize_or(Vec3::from_array(xyz(a.tangent)));
     Vertex {
         position: middle(a.position, b.position).to_array(),
         normal: normal.to_array(),

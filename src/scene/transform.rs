@@ -32,11 +32,7 @@ impl Scene {
                 }
             }
         }
-        if low.x <= high.x {
-            (low, high)
-        } else {
-            (Vec3::ZERO, Vec3::ZERO)
-        }
+        if low.x <= high.x { (low, high) } else { (Vec3::ZERO, Vec3::ZERO) }
     }
 
     /// Model to world at a time in seconds. Panics when there is no such instance.
@@ -51,20 +47,14 @@ impl Scene {
     /// Triangles over all instances (a mesh placed twice counts twice).
     pub fn triangle_count(&self) -> usize {
         let of_mesh = |i: u32| self.meshes.get(i as usize).map_or(0, Mesh::triangle_count);
-        self.instances
-            .iter()
-            .map(|instance| of_mesh(instance.mesh))
-            .sum()
+        self.instances.iter().map(|instance| of_mesh(instance.mesh)).sum()
     }
 }
 
 impl Mesh {
     /// Triangles of the mesh itself.
     pub fn triangle_count(&self) -> usize {
-        self.parts
-            .iter()
-            .map(|part| part.index_count as usize / 3)
-            .sum()
+        self.parts.iter().map(|part| part.index_count as usize / 3).sum()
     }
 }
 
@@ -75,20 +65,12 @@ impl Animation {
             return Mat4::IDENTITY;
         };
         let wraps = self.repeat && last.time > 0.0 && time.is_finite();
-        let time = if wraps {
-            time.rem_euclid(last.time)
-        } else {
-            time
-        };
+        let time = if wraps { time.rem_euclid(last.time) } else { time };
         let next = self.keyframes.partition_point(|key| key.time <= time);
         let a = &self.keyframes[next.saturating_sub(1)];
         let b = &self.keyframes[next.min(self.keyframes.len() - 1)];
         let span = b.time - a.time;
-        let s = if span > 0.0 {
-            ((time - a.time) / span).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+        let s = if span > 0.0 { ((time - a.time) / span).clamp(0.0, 1.0) } else { 0.0 };
         let rotation: Quat = a.rotation.slerp(b.rotation, s);
         Mat4::from_rotation_translation(rotation, a.translation.lerp(b.translation, s))
     }
@@ -110,13 +92,7 @@ impl Animation {
             translation: origin + turn * (key.translation * size),
             rotation: turn * key.rotation,
         });
-        Some((
-            Animation {
-                keyframes: keyframes.collect(),
-                repeat: self.repeat,
-            },
-            size,
-        ))
+        Some((Animation { keyframes: keyframes.collect(), repeat: self.repeat }, size))
     }
 
     fn poses(&self) -> Vec<Mat4> {
@@ -130,9 +106,7 @@ impl Animation {
             }
         }
         let last = self.keyframes.last();
-        poses.push(last.map_or(Mat4::IDENTITY, |key| {
-            Mat4::from_rotation_translation(key.rotation, key.translation)
-        }));
+        poses.push(last.map_or(Mat4::IDENTITY, |key| Mat4::from_rotation_translation(key.rotation, key.translation)));
         poses
     }
 }
@@ -142,11 +116,7 @@ fn representative_points(mesh: &Mesh, poses: usize) -> Vec<Vec3> {
     if mesh.vertices.len().saturating_mul(poses) <= EXACT_BOUNDS_WORK {
         return positions.collect();
     }
-    let (low, high) = positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| {
-        (l.min(p), h.max(p))
-    });
+    let (low, high) = positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
     let pick = |i: u32, axis: u32| if i & axis != 0 { high } else { low };
-    (0..8)
-        .map(|i| Vec3::new(pick(i, 1).x, pick(i, 2).y, pick(i, 4).z))
-        .collect()
+    (0..8).map(|i| Vec3::new(pick(i, 1).x, pick(i, 2).y, pick(i, 4).z)).collect()
 }

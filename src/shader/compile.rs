@@ -168,7 +168,9 @@ impl ShaderCompiler {
                 return Err(String::from("includes are nested more than 32 deep"));
             }
             match texts.get(name) {
-                Some(content) => Ok(shaderc::ResolvedInclude { resolved_name: name.to_string(), content: content.clone() }),
+                Some(content) => {
+                    Ok(shaderc::ResolvedInclude { resolved_name: name.to_string(), content: content.clone() })
+                }
                 None => {
                     let hint = nearest(name, self.includes().iter().map(String::as_str));
                     Err(format!("no such include; {}", hint.unwrap_or_default()))
@@ -236,7 +238,7 @@ fn included(line: &str) -> Option<&str> {
 
 fn to_words(bytes: &[u8]) -> Option<Vec<u32>> {
     const MAGIC: u32 = 0x0723_0203;
-    if bytes.len() % 4 != 0 {
+    if !bytes.len().is_multiple_of(4) {
         return None;
     }
     let words: Vec<u32> = bytes.chunks_exact(4).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();

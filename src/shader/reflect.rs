@@ -93,7 +93,12 @@ pub struct Interface {
 /// # Errors
 /// What the module has that conelab cannot bind.
 pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, String> {
-    let entries = ReflectConfig::new().spv(without_constant_operations(words)).reflect().map_err(|e| format!("reflection failed: {e}"))?;
+    let entries = ReflectConfig::new()
+        .spv(without_constant_operations(words))
+        // All variables: the optimiser has removed unused ones, and the reflector overlooks lengths of arrays.
+        .ref_all_rscs(true)
+        .reflect()
+        .map_err(|e| format!("reflection failed: {e}"))?;
     let entry = entries.first().ok_or("the shader has no entry point")?;
     let mut interface =
         Interface { bindings: vec![], constants: vec![], push: false, local_size: [1; 3], outputs: vec![] };
@@ -102,7 +107,9 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
             Variable::Descriptor { name, desc_bind, desc_ty, ty, nbind } => {
                 let name = name.clone().filter(|n| !n.is_empty()).or_else(|| block_name(ty)).unwrap_or_default();
                 if *nbind != 1 {
-                    return Err(format!("'{name}' is an array of resources; bind them one by one, with names of their own"));
+                    return Err(format!(
+                        "'{name}' is an array of resources; bind them one by one, with names of their own"
+                    ));
                 }
                 let resource = resource(desc_ty, ty).ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
                 interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource });
@@ -138,7 +145,9 @@ fn without_constant_operations(words: &[u32]) -> Vec<u32> {
     let mut out = words[..words.len().min(5)].to_vec();
     for instruction in instructions(words) {
         match instruction {
-            [first, ty, id, ..] if first & 0xffff == OP_SPEC_CONSTANT_OP => out.extend([3 << 16 | OP_CONSTANT_NULL, *ty, *id]),
+            [first, ty, id, ..] if first & 0xffff == OP_SPEC_CONSTANT_OP => {
+                out.extend([3 << 16 | OP_CONSTANT_NULL, *ty, *id])
+            }
             other => out.extend(other),
         }
     }
@@ -175,7 +184,12 @@ fn resource(kind: &DescriptorType, ty: &Type) -> Option<Resource> {
         DescriptorType::StorageImage(a) => {
             let image = ty.as_storage_image()?;
             let (read, write) = access(a);
-            Some(Resource::Storage { shape: shape(image.dim, image.is_array)?, format: format(image.fmt)?, read, write })
+            Some(Resource::Storage {
+                shape: shape(image.dim, image.is_array)?,
+                format: format(image.fmt)?,
+                read,
+                write,
+            })
         }
         _ => None,
     }

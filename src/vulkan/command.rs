@@ -11,6 +11,9 @@ pub struct Commands<'a> {
     queries: Option<(vk::QueryPool, u32)>,
 }
 
+/// A view with its clear value; `None` where a location is not written.
+pub type ColorAttachment<'a> = Option<(&'a View, Option<[f32; 4]>)>;
+
 /// One frame in flight: its command buffer, fence and timestamps.
 pub struct FrameSlot {
     gpu: Arc<Gpu>,
@@ -150,12 +153,7 @@ impl Commands<'_> {
     pub fn timestamp(&mut self) {
         if let Some((pool, next)) = &mut self.queries {
             unsafe {
-                self.gpu.device.cmd_write_timestamp2(
-                    self.handle,
-                    vk::PipelineStageFlags2::ALL_COMMANDS,
-                    *pool,
-                    *next,
-                );
+                self.gpu.device.cmd_write_timestamp2(self.handle, vk::PipelineStageFlags2::ALL_COMMANDS, *pool, *next);
             }
             *next += 1;
         }
@@ -247,7 +245,7 @@ impl Commands<'_> {
     pub fn begin_rendering(
         &mut self,
         size: [u32; 2],
-        color: &[Option<(&View, Option<[f32; 4]>)>],
+        color: &[ColorAttachment<'_>],
         depth: Option<(&View, Option<f32>, bool)>,
     ) {
         let load = |clear: bool| if clear { vk::AttachmentLoadOp::CLEAR } else { vk::AttachmentLoadOp::LOAD };
@@ -260,9 +258,7 @@ impl Commands<'_> {
                     .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
                     .load_op(load(clear.is_some()))
                     .store_op(vk::AttachmentStoreOp::STORE)
-                    .clear_value(vk::ClearValue {
-                        color: vk::ClearColorValue { float32: clear.unwrap_or_default() },
-                    }),
+                    .clear_value(vk::ClearValue { color: vk::ClearColorValue { float32: clear.unwrap_or_default() } }),
             })
             .collect();
         let depth_info = depth.map(|(view, clear, write)| {
@@ -284,12 +280,8 @@ impl Commands<'_> {
         if let Some(depth) = &depth_info {
             info = info.depth_attachment(depth);
         }
-        let viewport = vk::Viewport {
-            width: size[0] as f32,
-            height: size[1] as f32,
-            max_depth: 1.0,
-            ..Default::default()
-        };
+        let viewport =
+            vk::Viewport { width: size[0] as f32, height: size[1] as f32, max_depth: 1.0, ..Default::default() };
         unsafe {
             self.gpu.device.cmd_begin_rendering(self.handle, &info);
             self.gpu.device.cmd_set_viewport(self.handle, 0, &[viewport]);
@@ -364,21 +356,15 @@ impl Commands<'_> {
             .map(|mip| {
                 let part = layers(from, mip);
                 let [width, height, depth] = from.mip_extent(mip);
-                vk::ImageCopy::default()
-                    .src_subresource(part)
-                    .dst_subresource(part)
-                    .extent(vk::Extent3D { width, height, depth })
+                vk::ImageCopy::default().src_subresource(part).dst_subresource(part).extent(vk::Extent3D {
+                    width,
+                    height,
+                    depth,
+                })
             })
             .collect();
         unsafe {
-            self.gpu.device.cmd_copy_image(
-                self.handle,
-                from.handle,
-                from_layout,
-                to.handle,
-                to_layout,
-                &regions,
-            );
+            self.gpu.device.cmd_copy_image(self.handle, from.handle, from_layout, to.handle, to_layout, &regions);
         }
     }
 
@@ -386,7 +372,11 @@ impl Commands<'_> {
     pub fn read_image(&mut self, image: &Image, layout: vk::ImageLayout, mip: u32, layer: u32, to: &Buffer) {
         let [width, height, depth] = image.mip_extent(mip);
         let region = [vk::BufferImageCopy::default()
-            .image_subresource(vk::ImageSubresourceLayers { base_array_layer: layer, layer_count: 1, ..layers(image, mip) })
+            .image_subresource(vk::ImageSubresourceLayers {
+                base_array_layer: layer,
+                layer_count: 1,
+                ..layers(image, mip)
+            })
             .image_extent(vk::Extent3D { width, height, depth })];
         unsafe { self.gpu.device.cmd_copy_image_to_buffer(self.handle, image.handle, layout, to.handle, &region) };
     }

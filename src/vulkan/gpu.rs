@@ -204,8 +204,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 depth_clamp: have.depth_clamp == vk::TRUE,
                 bc: have.texture_compression_bc == vk::TRUE,
                 // Software devices filter anisotropically at a cost of seconds a frame.
-                anisotropy: have.sampler_anisotropy == vk::TRUE
-                    && core.device_type != vk::PhysicalDeviceType::CPU,
+                anisotropy: have.sampler_anisotropy == vk::TRUE && core.device_type != vk::PhysicalDeviceType::CPU,
                 write_without_format: have.shader_storage_image_write_without_format == vk::TRUE,
                 multi_draw_indirect: have.multi_draw_indirect == vk::TRUE
                     && have.draw_indirect_first_instance == vk::TRUE,
@@ -408,14 +407,12 @@ fn create_device(
         .synchronization2(true)
         .maintenance4(true)
         .robust_image_access(true);
-    let mut v12 = vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true).uniform_buffer_standard_layout(true);
+    let mut v12 =
+        vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true).uniform_buffer_standard_layout(true);
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
-    let extensions: Vec<_> = have
-        .conservative_rasterization
-        .then(|| ext::conservative_rasterization::NAME.as_ptr())
-        .into_iter()
-        .collect();
+    let extensions: Vec<_> =
+        have.conservative_rasterization.then(|| ext::conservative_rasterization::NAME.as_ptr()).into_iter().collect();
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)

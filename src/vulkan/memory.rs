@@ -74,10 +74,8 @@ fn allocate(
     location: MemoryLocation,
     scheme: AllocationScheme,
 ) -> Result<Allocation> {
-    let out_of_memory = || VulkanError::OutOfMemory {
-        what: format!("'{name}'"),
-        mib: requirements.size as f64 / (1 << 20) as f64,
-    };
+    let out_of_memory =
+        || VulkanError::OutOfMemory { what: format!("'{name}'"), mib: requirements.size as f64 / (1 << 20) as f64 };
     if requirements.size > gpu.info.heap && location == MemoryLocation::GpuOnly {
         return Err(out_of_memory());
     }

@@ -17,8 +17,8 @@ pub use format::Format;
 pub use gpu::{DeviceInfo, Features, Gpu, GpuOptions, list_devices};
 pub use memory::{Buffer, Image, ImageDesc, Upload, View, ViewDesc};
 pub use pipeline::{
-    Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState, Pipeline, PipelineDesc, SpecValue,
-    Stage, StageDesc,
+    Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState, Pipeline, PipelineDesc,
+    SpecValue, Stage, StageDesc,
 };
 pub use sampler::{Sampler, SamplerDesc};
 
@@ -42,7 +42,9 @@ pub enum VulkanError {
     #[error("the Vulkan validation layer is not installed (Debian, Ubuntu: vulkan-validationlayers)")]
     NoValidation,
     /// Device memory ran out.
-    #[error("out of device memory: {what} needs {mib:.0} MiB. Use fewer voxels, a smaller shadow map or a smaller picture")]
+    #[error(
+        "out of device memory: {what} needs {mib:.0} MiB. Use fewer voxels, a smaller shadow map or a smaller picture"
+    )]
     OutOfMemory {
         /// The resource that did not fit.
         what: String,

@@ -217,7 +217,8 @@ impl Pipeline {
             pipeline.layout = gpu.device.create_pipeline_layout(&info, None).map_err(at("create the layout"))?;
         }
         let modules = Modules::new(gpu, desc)?;
-        let constants: Vec<(Vec<vk::SpecializationMapEntry>, Vec<u8>)> = desc.stages.iter().map(pack_constants).collect();
+        let constants: Vec<(Vec<vk::SpecializationMapEntry>, Vec<u8>)> =
+            desc.stages.iter().map(pack_constants).collect();
         let specials: Vec<_> = constants
             .iter()
             .map(|(entries, data)| vk::SpecializationInfo::default().map_entries(entries).data(data))
@@ -328,7 +329,16 @@ fn graphics(
         .depth_test_enable(state.depth_test.is_some())
         .depth_write_enable(state.depth_write)
         .depth_compare_op(state.depth_test.unwrap_or(vk::CompareOp::ALWAYS));
-    let blends: Vec<_> = state.blend.iter().map(|b| b.state()).collect();
+    // What has no attachment is not written.
+    let blends: Vec<_> = state
+        .blend
+        .iter()
+        .zip(&attachments.color)
+        .map(|(blend, format)| match *format {
+            vk::Format::UNDEFINED => vk::PipelineColorBlendAttachmentState::default(),
+            _ => blend.state(),
+        })
+        .collect();
     let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
     let dynamic_states = [vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
     let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&dynamic_states);
@@ -437,9 +447,9 @@ impl DescriptorPool {
                     .image_view(view.handle)
                     .sampler(sampler.handle)
                     .image_layout(*layout)],
-                DescriptorWrite::Storage(view) => [vk::DescriptorImageInfo::default()
-                    .image_view(view.handle)
-                    .image_layout(vk::ImageLayout::GENERAL)],
+                DescriptorWrite::Storage(view) => {
+                    [vk::DescriptorImageInfo::default().image_view(view.handle).image_layout(vk::ImageLayout::GENERAL)]
+                }
                 DescriptorWrite::Buffer(_) => [vk::DescriptorImageInfo::default()],
             })
             .collect();
@@ -466,4 +476,3 @@ impl Drop for DescriptorPool {
         unsafe { self.gpu.device.destroy_descriptor_pool(self.handle, None) };
     }
 }
-

@@ -47,8 +47,7 @@ impl Sampler {
             .compare_op(desc.compare.unwrap_or(vk::CompareOp::ALWAYS))
             .max_lod(vk::LOD_CLAMP_NONE);
         // SAFETY: a plain creation; destroyed in `drop`.
-        let handle =
-            unsafe { gpu.device.create_sampler(&info, None) }.map_err(VulkanError::at("create a sampler"))?;
+        let handle = unsafe { gpu.device.create_sampler(&info, None) }.map_err(VulkanError::at("create a sampler"))?;
         Ok(Sampler { gpu: gpu.clone(), handle })
     }
 }

@@ -18,36 +18,12 @@ use super::{Camera, Instance, Material, Mesh, Scene, defaults};
 type Build = fn() -> Scene;
 
 const ALL: &[(&str, &str, Build)] = &[
-    (
-        "atrium",
-        "two-storey courtyard with arcades, coloured cloth, plants and a moving ornament",
-        atrium::build,
-    ),
-    (
-        "cornell",
-        "the Cornell box, lit by its emitting quad alone",
-        cornell::build,
-    ),
-    (
-        "furnace",
-        "closed box with albedo 0.5 and emission 1 seen from inside: radiance 2 everywhere",
-        furnace::build,
-    ),
-    (
-        "white-sky",
-        "white sphere under a white sky: it must vanish",
-        white_sky::build,
-    ),
-    (
-        "thin-walls",
-        "slabs of 2, 4 and 8 cm before a bright wall: light must not leak",
-        thin_walls::build,
-    ),
-    (
-        "triangles",
-        "needles, obtuse, huge, sub-voxel and diagonal triangles in a 4 m cube",
-        triangles::build,
-    ),
+    ("atrium", "two-storey courtyard with arcades, coloured cloth, plants and a moving ornament", atrium::build),
+    ("cornell", "the Cornell box, lit by its emitting quad alone", cornell::build),
+    ("furnace", "closed box with albedo 0.5 and emission 1 seen from inside: radiance 2 everywhere", furnace::build),
+    ("white-sky", "white sphere under a white sky: it must vanish", white_sky::build),
+    ("thin-walls", "slabs of 2, 4 and 8 cm before a bright wall: light must not leak", thin_walls::build),
+    ("triangles", "needles, obtuse, huge, sub-voxel and diagonal triangles in a 4 m cube", triangles::build),
 ];
 
 /// Names and one-line descriptions of all built-in scenes.
@@ -57,23 +33,17 @@ pub fn list() -> impl Iterator<Item = (&'static str, &'static str)> {
 
 /// The function that builds a scene.
 pub(super) fn find(name: &str) -> Option<Build> {
-    ALL.iter()
-        .find(|entry| entry.0 == name)
-        .map(|entry| entry.2)
+    ALL.iter().find(|entry| entry.0 == name).map(|entry| entry.2)
 }
 
 /// What to say about a name that is none of them.
 pub(super) fn hint(name: &str) -> String {
     let names: Vec<&str> = list().map(|(name, _)| name).collect();
-    let nearest = names
-        .iter()
-        .max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
+    let nearest = names.iter().max_by(|a, b| strsim::jaro_winkler(a, name).total_cmp(&strsim::jaro_winkler(b, name)));
     let all = names.join(", ");
     match nearest {
         Some(near) if strsim::jaro_winkler(near, name) > 0.7 => {
-            format!(
-                "did you mean '{near}'? Built-in scenes: {all}; otherwise give a .ron, .obj, .gltf or .glb file"
-            )
+            format!("did you mean '{near}'? Built-in scenes: {all}; otherwise give a .ron, .obj, .gltf or .glb file")
         }
         _ => format!("built-in scenes: {all}; otherwise give a .ron, .obj, .gltf or .glb file"),
     }
@@ -81,14 +51,7 @@ pub(super) fn hint(name: &str) -> String {
 
 /// A scene of meshes at rest, one instance each. Panics on a mistake in a built-in's code.
 fn assemble(name: &str, materials: Vec<Material>, meshes: Vec<Mesh>) -> Scene {
-    let raw = meshes
-        .into_iter()
-        .map(|mesh| RawMesh {
-            mesh,
-            has_normals: true,
-            has_tangents: false,
-        })
-        .collect();
+    let raw = meshes.into_iter().map(|mesh| RawMesh { mesh, has_normals: true, has_tangents: false }).collect();
     let (meshes, _) = prepare_all(raw, &materials).expect("built-in meshes are valid");
     let instances = meshes.iter().enumerate().map(|(i, mesh)| Instance {
         name: mesh.name.clone(),
@@ -96,33 +59,16 @@ fn assemble(name: &str, materials: Vec<Material>, meshes: Vec<Mesh>) -> Scene {
         transform: Mat4::IDENTITY,
         animation: None,
     });
-    Scene {
-        name: name.into(),
-        instances: instances.collect(),
-        meshes,
-        materials,
-        ..Scene::default()
-    }
+    Scene { name: name.into(), instances: instances.collect(), meshes, materials, ..Scene::default() }
 }
 
 /// A view with clip planes for a scene of the given diagonal.
 fn view(eye: Vec3, target: Vec3, fov_y: f32, diagonal: f32) -> Camera {
     let (near, far) = defaults::clip_planes(diagonal);
-    Camera {
-        eye,
-        target,
-        up: Vec3::Y,
-        fov_y,
-        near,
-        far,
-    }
+    Camera { eye, target, up: Vec3::Y, fov_y, near, far }
 }
 
 /// A plain dielectric material.
 fn matte(name: &str, color: Vec3) -> Material {
-    Material {
-        name: name.into(),
-        base_color: color.extend(1.0),
-        ..Material::default()
-    }
+    Material { name: name.into(), base_color: color.extend(1.0), ..Material::default() }
 }

@@ -9,49 +9,23 @@ use crate::scene::{Texture, TextureFormat};
 /// A colour texture from a function of u and v (v down).
 pub(super) fn color(name: &str, size: u32, texel: impl Fn(f32, f32) -> Vec3) -> Texture {
     let rgba = texels(size, |u, v| texel(u, v).extend(1.0));
-    texture_from_rgba(
-        name,
-        size,
-        size,
-        rgba,
-        TextureFormat::Rgba8Srgb,
-        Filter::Plain,
-    )
+    texture_from_rgba(name, size, size, rgba, TextureFormat::Rgba8Srgb, Filter::Plain)
 }
 
 /// A colour texture with alpha, for masking at 0.5.
 pub(super) fn masked(name: &str, size: u32, texel: impl Fn(f32, f32) -> Vec4) -> Texture {
     let rgba = texels(size, texel);
-    texture_from_rgba(
-        name,
-        size,
-        size,
-        rgba,
-        TextureFormat::Rgba8Srgb,
-        Filter::Masked(0.5),
-    )
+    texture_from_rgba(name, size, size, rgba, TextureFormat::Rgba8Srgb, Filter::Masked(0.5))
 }
 
 /// A metallic-roughness texture of a dielectric from its roughness.
 pub(super) fn roughness(name: &str, size: u32, texel: impl Fn(f32, f32) -> f32) -> Texture {
     let rgba = texels(size, |u, v| Vec4::new(1.0, texel(u, v), 0.0, 1.0));
-    texture_from_rgba(
-        name,
-        size,
-        size,
-        rgba,
-        TextureFormat::Rgba8Unorm,
-        Filter::Plain,
-    )
+    texture_from_rgba(name, size, size, rgba, TextureFormat::Rgba8Unorm, Filter::Plain)
 }
 
 /// A normal map from heights in metres over a square of `extent` metres.
-pub(super) fn normals(
-    name: &str,
-    size: u32,
-    extent: f32,
-    height: impl Fn(f32, f32) -> f32,
-) -> Texture {
+pub(super) fn normals(name: &str, size: u32, extent: f32, height: impl Fn(f32, f32) -> f32) -> Texture {
     let step = 1.0 / size as f32;
     let rgba = texels(size, |u, v| {
         let du = height((u + step).fract(), v) - height((u - step + 1.0).fract(), v);
@@ -60,14 +34,7 @@ pub(super) fn normals(
         let slope = Vec2::new(-du, dv) / (2.0 * step * extent);
         (slope.extend(1.0).normalize() * 0.5 + 0.5).extend(1.0)
     });
-    texture_from_rgba(
-        name,
-        size,
-        size,
-        rgba,
-        TextureFormat::Rgba8Unorm,
-        Filter::Normal,
-    )
+    texture_from_rgba(name, size, size, rgba, TextureFormat::Rgba8Unorm, Filter::Normal)
 }
 
 fn texels(size: u32, texel: impl Fn(f32, f32) -> Vec4) -> Vec<u8> {
@@ -98,10 +65,7 @@ pub(super) fn masonry(u: f32, v: f32, rows: i32, columns: i32, joint: f32) -> Bl
     let edge_x = fx.min(1.0 - fx) / columns as f32;
     let edge_y = fy.min(1.0 - fy) / rows as f32;
     let depth = ((edge_x.min(edge_y) - joint) / joint).clamp(0.0, 1.0);
-    Block {
-        random: hash(column, row, 7),
-        depth,
-    }
+    Block { random: hash(column, row, 7), depth }
 }
 
 /// Warm limestone blocks.
@@ -161,11 +125,7 @@ fn tile(u: f32, v: f32) -> (i32, i32, f32) {
     let (x, y) = (u * 4.0, v * 4.0);
     let (fx, fy) = (x - x.floor(), y - y.floor());
     let edge = fx.min(1.0 - fx).min(fy).min(1.0 - fy);
-    (
-        x.floor() as i32,
-        y.floor() as i32,
-        ((edge - 0.012) / 0.012).clamp(0.0, 1.0),
-    )
+    (x.floor() as i32, y.floor() as i32, ((edge - 0.012) / 0.012).clamp(0.0, 1.0))
 }
 
 /// Thin dark lines where noise crosses its middle.
@@ -194,12 +154,7 @@ pub(super) fn wood(u: f32, v: f32) -> Vec3 {
     let edge = (u * 6.0).fract();
     let grain = value(u, v * 0.12, 96, 70 + plank as u32) * 0.6 + fractal(u, v, 8, 71) * 0.4;
     let tone = Vec3::new(0.34, 0.21, 0.12).lerp(Vec3::new(0.52, 0.35, 0.21), grain);
-    tone * (0.85 + 0.3 * hash(plank, 0, 72))
-        * if !(0.03..=0.97).contains(&edge) {
-            0.45
-        } else {
-            1.0
-        }
+    tone * (0.85 + 0.3 * hash(plank, 0, 72)) * if !(0.03..=0.97).contains(&edge) { 0.45 } else { 1.0 }
 }
 
 /// Woven cloth with a pattern of lozenges; over the whole cloth, so it has hems and does not tile.
@@ -220,11 +175,7 @@ pub(super) fn leaves(u: f32, v: f32) -> Vec4 {
     let p = Vec2::new(u - 0.5, 1.0 - v);
     let stem_x = 0.03 * (p.y * 7.0).sin();
     let mut color = Vec3::new(0.20, 0.32, 0.10);
-    let mut alpha: f32 = if (p.x - stem_x).abs() < 0.012 && p.y < 0.85 {
-        1.0
-    } else {
-        0.0
-    };
+    let mut alpha: f32 = if (p.x - stem_x).abs() < 0.012 && p.y < 0.85 { 1.0 } else { 0.0 };
     for i in 0..7 {
         let height = 0.10 + 0.115 * i as f32;
         let side = if i == 6 { 0.0 } else { [1.0, -1.0][i % 2] };

@@ -15,27 +15,14 @@ pub(super) struct MeshBuilder {
 
 impl MeshBuilder {
     pub fn new(name: &str) -> Self {
-        MeshBuilder {
-            name: name.into(),
-            vertices: Vec::new(),
-            triangles: IndexMap::new(),
-            transform: Mat4::IDENTITY,
-        }
+        MeshBuilder { name: name.into(), vertices: Vec::new(), triangles: IndexMap::new(), transform: Mat4::IDENTITY }
     }
 
     pub fn finish(self) -> Mesh {
-        let mut mesh = Mesh {
-            name: self.name,
-            vertices: self.vertices,
-            ..Mesh::default()
-        };
+        let mut mesh = Mesh { name: self.name, vertices: self.vertices, ..Mesh::default() };
         for (material, indices) in self.triangles {
             let first_index = mesh.indices.len() as u32;
-            mesh.parts.push(Part {
-                first_index,
-                index_count: indices.len() as u32,
-                material,
-            });
+            mesh.parts.push(Part { first_index, index_count: indices.len() as u32, material });
             mesh.indices.extend(indices);
         }
         mesh
@@ -44,11 +31,7 @@ impl MeshBuilder {
     pub fn vertex(&mut self, position: Vec3, normal: Vec3, uv: Vec2) -> u32 {
         let position = self.transform.transform_point3(position);
         // Normals go by the inverse transpose, for placements that scale unevenly.
-        let normal = self
-            .transform
-            .inverse()
-            .transpose()
-            .transform_vector3(normal);
+        let normal = self.transform.inverse().transpose().transform_vector3(normal);
         self.vertices.push(Vertex {
             position: position.to_array(),
             normal: normal.normalize_or(Vec3::Y).to_array(),
@@ -75,13 +58,7 @@ impl MeshBuilder {
 
     /// Grid over u and v in 0..1 of given positions, normals and texture coordinates.
     /// The front is where u goes right and v goes up.
-    pub fn grid(
-        &mut self,
-        material: u32,
-        nu: u32,
-        nv: u32,
-        point: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2),
-    ) {
+    pub fn grid(&mut self, material: u32, nu: u32, nv: u32, point: impl Fn(f32, f32) -> (Vec3, Vec3, Vec2)) {
         let first = self.vertices.len() as u32;
         for j in 0..=nv {
             for i in 0..=nu {
@@ -100,14 +77,7 @@ impl MeshBuilder {
     }
 
     /// Smooth parametric surface over u and v in 0..1; normals come from its derivatives.
-    pub fn surface(
-        &mut self,
-        material: u32,
-        nu: u32,
-        nv: u32,
-        uv_scale: Vec2,
-        point: impl Fn(f32, f32) -> Vec3,
-    ) {
+    pub fn surface(&mut self, material: u32, nu: u32, nv: u32, uv_scale: Vec2, point: impl Fn(f32, f32) -> Vec3) {
         const STEP: f32 = 1e-3;
         let normal_at = |u: f32, v: f32| {
             let du = point(u + STEP, v) - point(u - STEP, v);
@@ -118,16 +88,8 @@ impl MeshBuilder {
             // At a pole the derivative vanishes; a point beside it has nearly the same normal.
             let inner = v.clamp(5e-3, 1.0 - 5e-3);
             let normal = normal_at(u, v);
-            let normal = if normal.length_squared() > 1e-14 {
-                normal
-            } else {
-                normal_at(u, inner)
-            };
-            (
-                point(u, v),
-                normal.normalize_or(Vec3::Y),
-                Vec2::new(u, 1.0 - v) * uv_scale,
-            )
+            let normal = if normal.length_squared() > 1e-14 { normal } else { normal_at(u, inner) };
+            (point(u, v), normal.normalize_or(Vec3::Y), Vec2::new(u, 1.0 - v) * uv_scale)
         });
     }
 
@@ -148,43 +110,23 @@ impl MeshBuilder {
     }
 
     /// Ring around `axis`: a circle of radius `tube` swept along an ellipse spanned by `major` and `minor`.
-    pub fn ring(
-        &mut self,
-        material: u32,
-        centre: Vec3,
-        major: Vec3,
-        minor: Vec3,
-        tube: f32,
-        segments: [u32; 2],
-    ) {
+    pub fn ring(&mut self, material: u32, centre: Vec3, major: Vec3, minor: Vec3, tube: f32, segments: [u32; 2]) {
         let axis = major.cross(minor).normalize_or(Vec3::Y);
         let turn = std::f32::consts::TAU;
-        self.surface(
-            material,
-            segments[0],
-            segments[1],
-            Vec2::new(4.0, 1.0),
-            |u, v| {
-                let (s, c) = (u * turn).sin_cos();
-                // The ellipse's own normal, so that thin links do not fold into themselves.
-                let out = (major * (c / major.length_squared())
-                    + minor * (s / minor.length_squared()))
-                .normalize();
-                let (height, width) = (v * turn).sin_cos();
-                centre + major * c + minor * s + out * (tube * width) + axis * (tube * height)
-            },
-        );
+        self.surface(material, segments[0], segments[1], Vec2::new(4.0, 1.0), |u, v| {
+            let (s, c) = (u * turn).sin_cos();
+            // The ellipse's own normal, so that thin links do not fold into themselves.
+            let out = (major * (c / major.length_squared()) + minor * (s / minor.length_squared())).normalize();
+            let (height, width) = (v * turn).sin_cos();
+            centre + major * c + minor * s + out * (tube * width) + axis * (tube * height)
+        });
     }
 
     /// Box with uv in metres over `tile`; `faces` says which of -x, +x, -y, +y, -z, +z to build.
     pub fn cuboid(&mut self, material: u32, low: Vec3, high: Vec3, tile: f32, faces: [bool; 6]) {
         let p = |x: u8, y: u8, z: u8| {
             let pick = |i: u8, l: f32, h: f32| if i == 0 { l } else { h };
-            Vec3::new(
-                pick(x, low.x, high.x),
-                pick(y, low.y, high.y),
-                pick(z, low.z, high.z),
-            )
+            Vec3::new(pick(x, low.x, high.x), pick(y, low.y, high.y), pick(z, low.z, high.z))
         };
         let quads = [
             [p(0, 0, 0), p(0, 0, 1), p(0, 1, 1), p(0, 1, 0)],
@@ -201,21 +143,11 @@ impl MeshBuilder {
 
     /// The four upright faces of a box, seen from inside.
     pub fn cuboid_inside(&mut self, material: u32, low: Vec3, high: Vec3, tile: f32) {
-        let ring = [
-            (low.x, low.z),
-            (high.x, low.z),
-            (high.x, high.z),
-            (low.x, high.z),
-        ];
+        let ring = [(low.x, low.z), (high.x, low.z), (high.x, high.z), (low.x, high.z)];
         for i in 0..4 {
             let ((ax, az), (bx, bz)) = (ring[i], ring[(i + 1) % 4]);
-            let corners = [
-                (ax, low.y, az),
-                (bx, low.y, bz),
-                (bx, high.y, bz),
-                (ax, high.y, az),
-            ]
-            .map(|(x, y, z)| Vec3::new(x, y, z));
+            let corners = [(ax, low.y, az), (bx, low.y, bz), (bx, high.y, bz), (ax, high.y, az)]
+                .map(|(x, y, z)| Vec3::new(x, y, z));
             self.quad(material, corners, 8, tile);
         }
     }
@@ -227,24 +159,13 @@ impl MeshBuilder {
         }
     }
 
-    fn sphere_face(
-        &mut self,
-        material: u32,
-        centre: Vec3,
-        radius: f32,
-        face: [Vec3; 3],
-        level: u32,
-    ) {
+    fn sphere_face(&mut self, material: u32, centre: Vec3, radius: f32, face: [Vec3; 3], level: u32) {
         let [a, b, c] = face;
         if level == 0 {
             let corners = face.map(|n| self.vertex(centre + n * radius, n, sphere_uv(n)));
             return self.triangle(material, corners);
         }
-        let (ab, bc, ca) = (
-            (a + b).normalize(),
-            (b + c).normalize(),
-            (c + a).normalize(),
-        );
+        let (ab, bc, ca) = ((a + b).normalize(), (b + c).normalize(), (c + a).normalize());
         for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
             self.sphere_face(material, centre, radius, part, level - 1);
         }
@@ -253,10 +174,7 @@ impl MeshBuilder {
 
 fn sphere_uv(n: Vec3) -> Vec2 {
     let turn = std::f32::consts::TAU;
-    Vec2::new(
-        n.z.atan2(n.x) / turn + 0.5,
-        n.y.clamp(-1.0, 1.0).acos() / (0.5 * turn),
-    )
+    Vec2::new(n.z.atan2(n.x) / turn + 0.5, n.y.clamp(-1.0, 1.0).acos() / (0.5 * turn))
 }
 
 fn icosahedron() -> Vec<[Vec3; 3]> {

@@ -17,41 +17,21 @@ pub(super) fn build() -> Scene {
         matte("slab", Vec3::splat(0.6)),
     ];
     let mut ground = MeshBuilder::new("floor");
-    let level = [
-        Vec3::new(-4.5, 0.0, 4.0),
-        Vec3::new(4.5, 0.0, 4.0),
-        Vec3::new(4.5, 0.0, -3.0),
-        Vec3::new(-4.5, 0.0, -3.0),
-    ];
+    let level =
+        [Vec3::new(-4.5, 0.0, 4.0), Vec3::new(4.5, 0.0, 4.0), Vec3::new(4.5, 0.0, -3.0), Vec3::new(-4.5, 0.0, -3.0)];
     ground.quad(FLOOR, level, 8, 1.0);
     let mut wall = MeshBuilder::new("bright wall");
     let faces = [true, true, false, true, true, true];
-    wall.cuboid(
-        BRIGHT,
-        Vec3::new(-4.4, -0.1, -2.9),
-        Vec3::new(4.4, 2.6, -2.5),
-        1.0,
-        faces,
-    );
+    wall.cuboid(BRIGHT, Vec3::new(-4.4, -0.1, -2.9), Vec3::new(4.4, 2.6, -2.5), 1.0, faces);
     let mut meshes = vec![ground.finish(), wall.finish()];
     // One row per thickness, from thin and near the wall to thick and far from it.
     for (row, thickness) in [0.02f32, 0.04, 0.08].into_iter().enumerate() {
         for (column, degrees) in [0.0f32, 15.0, 30.0, 45.0].into_iter().enumerate() {
-            let mut slab = MeshBuilder::new(&format!(
-                "slab {} mm at {degrees} deg",
-                (thickness * 1000.0).round()
-            ));
+            let mut slab = MeshBuilder::new(&format!("slab {} mm at {degrees} deg", (thickness * 1000.0).round()));
             let place = Vec3::new(-3.0 + 2.0 * column as f32, 0.0, -1.2 + 1.7 * row as f32);
-            slab.transform =
-                Mat4::from_translation(place) * Mat4::from_rotation_y(degrees.to_radians());
+            slab.transform = Mat4::from_translation(place) * Mat4::from_rotation_y(degrees.to_radians());
             let half = Vec3::new(0.7, 0.0, thickness * 0.5);
-            slab.cuboid(
-                SLAB,
-                Vec3::new(0.0, -0.1, 0.0) - half,
-                Vec3::new(0.0, 1.2, 0.0) + half,
-                1.0,
-                faces,
-            );
+            slab.cuboid(SLAB, Vec3::new(0.0, -0.1, 0.0) - half, Vec3::new(0.0, 1.2, 0.0) + half, 1.0, faces);
             meshes.push(slab.finish());
         }
     }
@@ -65,23 +45,7 @@ pub(super) fn build() -> Scene {
         direction: Vec3::new(0.1, -0.45, -1.0).normalize(),
         shadow: true,
     });
-    scene.cameras.insert(
-        "default".into(),
-        view(
-            Vec3::new(0.0, 3.4, 7.0),
-            Vec3::new(0.0, 0.6, -0.5),
-            50.0,
-            12.0,
-        ),
-    );
-    scene.cameras.insert(
-        "behind".into(),
-        view(
-            Vec3::new(0.0, 2.2, -2.3),
-            Vec3::new(0.0, 0.3, 1.5),
-            80.0,
-            12.0,
-        ),
-    );
+    scene.cameras.insert("default".into(), view(Vec3::new(0.0, 3.4, 7.0), Vec3::new(0.0, 0.6, -0.5), 50.0, 12.0));
+    scene.cameras.insert("behind".into(), view(Vec3::new(0.0, 2.2, -2.3), Vec3::new(0.0, 0.3, 1.5), 80.0, 12.0));
     scene
 }

@@ -15,11 +15,7 @@ pub(super) fn build() -> Scene {
         matte("sub-voxel", Vec3::new(0.12, 0.25, 0.80)),
         matte("diagonal", Vec3::new(0.85, 0.65, 0.10)),
     ];
-    let mut scene = assemble(
-        "triangles",
-        materials,
-        vec![needle(), obtuse(), huge(), sub_voxel(), diagonal()],
-    );
+    let mut scene = assemble("triangles", materials, vec![needle(), obtuse(), huge(), sub_voxel(), diagonal()]);
     for material in &mut scene.materials {
         material.two_sided = true;
     }
@@ -32,23 +28,13 @@ pub(super) fn build() -> Scene {
         shadow: true,
     });
     scene.sky = Vec3::splat(0.4);
-    scene.cameras.insert(
-        "default".into(),
-        view(
-            Vec3::new(4.2, 3.4, 5.6),
-            Vec3::new(0.0, -0.2, 0.0),
-            45.0,
-            7.0,
-        ),
-    );
+    scene.cameras.insert("default".into(), view(Vec3::new(4.2, 3.4, 5.6), Vec3::new(0.0, -0.2, 0.0), 45.0, 7.0));
     scene
 }
 
 /// A flat triangle, counter-clockwise from its front.
 fn add(mesh: &mut MeshBuilder, material: u32, corners: [Vec3; 3]) {
-    let normal = (corners[1] - corners[0])
-        .cross(corners[2] - corners[0])
-        .normalize_or(Vec3::Y);
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(Vec3::Y);
     let corners = corners.map(|corner| mesh.vertex(corner, normal, Vec2::ZERO));
     mesh.triangle(material, corners);
 }
@@ -73,15 +59,7 @@ fn obtuse() -> Mesh {
         let t = i as f32 / 11.0;
         let height = 0.1 * 0.01f32.powf(t);
         let a = Vec3::new(-1.6, -0.9 + 0.11 * i as f32, -1.7 + 0.1 * i as f32);
-        add(
-            &mut mesh,
-            1,
-            [
-                a,
-                a + Vec3::new(2.0, 0.0, 0.3),
-                a + Vec3::new(0.9, height, 0.15),
-            ],
-        );
+        add(&mut mesh, 1, [a, a + Vec3::new(2.0, 0.0, 0.3), a + Vec3::new(0.9, height, 0.15)]);
     }
     mesh.finish()
 }
@@ -92,15 +70,7 @@ fn huge() -> Mesh {
     let p = |x: f32, z: f32| Vec3::new(x, -1.97, z);
     add(&mut mesh, 2, [p(-2.0, 2.0), p(2.0, 2.0), p(2.0, -2.0)]);
     add(&mut mesh, 2, [p(-2.0, 2.0), p(2.0, -2.0), p(-2.0, -2.0)]);
-    add(
-        &mut mesh,
-        2,
-        [
-            Vec3::new(-2.0, -1.9, -1.95),
-            Vec3::new(2.0, -1.9, -1.95),
-            Vec3::new(-1.9, 2.0, -1.8),
-        ],
-    );
+    add(&mut mesh, 2, [Vec3::new(-2.0, -1.9, -1.95), Vec3::new(2.0, -1.9, -1.95), Vec3::new(-1.9, 2.0, -1.8)]);
     mesh.finish()
 }
 
@@ -124,23 +94,13 @@ fn sub_voxel() -> Mesh {
 /// Squares whose planes lie at 45 degrees to two axes or evenly to all three.
 fn diagonal() -> Mesh {
     let mut mesh = MeshBuilder::new("diagonal");
-    let directions = [
-        (1.0, 1.0, 0.0),
-        (0.0, 1.0, 1.0),
-        (1.0, 0.0, 1.0),
-        (1.0, 1.0, 1.0),
-    ];
+    let directions = [(1.0, 1.0, 0.0), (0.0, 1.0, 1.0), (1.0, 0.0, 1.0), (1.0, 1.0, 1.0)];
     for (i, (x, y, z)) in directions.into_iter().enumerate() {
         let normal = Vec3::new(x, y, z).normalize();
         let side = normal.any_orthonormal_vector() * 0.42;
         let up = normal.cross(side);
         let centre = Vec3::new(-1.3 + 0.9 * i as f32, -1.2, 1.1);
-        let corners = [
-            centre - side - up,
-            centre + side - up,
-            centre + side + up,
-            centre - side + up,
-        ];
+        let corners = [centre - side - up, centre + side - up, centre + side + up, centre - side + up];
         add(&mut mesh, 4, [corners[0], corners[1], corners[2]]);
         add(&mut mesh, 4, [corners[0], corners[2], corners[3]]);
     }

@@ -6,9 +6,7 @@ use glam::{Mat3, Quat, Vec3};
 use serde_json::{Value, json};
 
 use super::{images, start, write_file};
-use crate::scene::{
-    Animation, Camera, Light, LightKind, Material, Mesh, Scene, SceneError, Vertex,
-};
+use crate::scene::{Animation, Camera, Light, LightKind, Material, Mesh, Scene, SceneError, Vertex};
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
@@ -35,12 +33,7 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
     // A mesh without triangles has no legal form and nothing to show.
     let mut written = vec![None; scene.meshes.len()];
     let mut meshes = Vec::new();
-    for (i, mesh) in scene
-        .meshes
-        .iter()
-        .enumerate()
-        .filter(|(_, mesh)| mesh.triangle_count() > 0)
-    {
+    for (i, mesh) in scene.meshes.iter().enumerate().filter(|(_, mesh)| mesh.triangle_count() > 0) {
         written[i] = Some(meshes.len());
         meshes.push(writer.mesh(mesh));
     }
@@ -102,12 +95,7 @@ fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<()
     })?;
     if !binary {
         let side = path.with_extension("bin");
-        let name = side
-            .file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .replace('%', "%25")
-            .replace(' ', "%20");
+        let name = side.file_name().unwrap_or_default().to_string_lossy().replace('%', "%25").replace(' ', "%20");
         if length > 0 {
             root["buffers"] = json!([{ "byteLength": length, "uri": name }]);
             write_file(&side, &bytes)?;
@@ -138,8 +126,7 @@ fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<()
 impl Writer {
     /// Adds bytes on a boundary of 4 and returns the index of their view.
     fn view(&mut self, bytes: &[u8], more: Value) -> usize {
-        let mut view =
-            json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         if let (Some(view), Some(more)) = (view.as_object_mut(), more.as_object()) {
             view.extend(more.clone());
         }
@@ -156,19 +143,13 @@ impl Writer {
 
     fn mesh(&mut self, mesh: &Mesh) -> Value {
         let stride = size_of::<Vertex>();
-        let vertices = self.view(
-            bytemuck::cast_slice(&mesh.vertices),
-            json!({ "byteStride": stride, "target": 34962 }),
-        );
+        let vertices =
+            self.view(bytemuck::cast_slice(&mesh.vertices), json!({ "byteStride": stride, "target": 34962 }));
         let positions = mesh.vertices.iter().map(|v| Vec3::from_array(v.position));
-        let (low, high) = positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| {
-            (l.min(p), h.max(p))
-        });
+        let (low, high) = positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
         let mut attribute = |offset: usize, kind: &str| {
-            self.accessors.push(
-                json!({ "bufferView": vertices, "byteOffset": offset, "componentType": FLOAT,
-                "type": kind, "count": mesh.vertices.len() }),
-            );
+            self.accessors.push(json!({ "bufferView": vertices, "byteOffset": offset, "componentType": FLOAT,
+                "type": kind, "count": mesh.vertices.len() }));
             self.accessors.len() - 1
         };
         let attributes = json!({
@@ -181,15 +162,10 @@ impl Writer {
             self.accessors[position as usize]["min"] = json!(low.to_array());
             self.accessors[position as usize]["max"] = json!(high.to_array());
         }
-        let indices = self.view(
-            bytemuck::cast_slice(&mesh.indices),
-            json!({ "target": 34963 }),
-        );
+        let indices = self.view(bytemuck::cast_slice(&mesh.indices), json!({ "target": 34963 }));
         let primitives = mesh.parts.iter().map(|part| {
-            let accessor = self.accessor(
-                json!({ "bufferView": indices, "byteOffset": part.first_index * 4,
-                "componentType": UNSIGNED_INT, "type": "SCALAR", "count": part.index_count }),
-            );
+            let accessor = self.accessor(json!({ "bufferView": indices, "byteOffset": part.first_index * 4,
+                "componentType": UNSIGNED_INT, "type": "SCALAR", "count": part.index_count }));
             json!({ "attributes": attributes, "indices": accessor, "material": part.material })
         });
         let primitives: Vec<Value> = primitives.collect();
@@ -216,8 +192,7 @@ impl Writer {
             return;
         }
         let times: Vec<f32> = keys.iter().map(|key| key.time).collect();
-        let translations: Vec<[f32; 3]> =
-            keys.iter().map(|key| key.translation.to_array()).collect();
+        let translations: Vec<[f32; 3]> = keys.iter().map(|key| key.translation.to_array()).collect();
         let rotations: Vec<[f32; 4]> = keys.iter().map(|key| key.rotation.to_array()).collect();
         let (first, last) = (times[0], times[times.len() - 1]);
         let input = self.floats(bytemuck::cast_slice(&times), "SCALAR", keys.len());
@@ -229,16 +204,13 @@ impl Writer {
         ] {
             let output = self.floats(values, kind, keys.len());
             self.channels.push(json!({ "sampler": self.samplers.len(), "target": { "node": parent, "path": path } }));
-            self.samplers
-                .push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+            self.samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
         }
     }
 
     fn floats(&mut self, values: &[u8], kind: &str, count: usize) -> usize {
         let view = self.view(values, json!({}));
-        self.accessor(
-            json!({ "bufferView": view, "componentType": FLOAT, "type": kind, "count": count }),
-        )
+        self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "type": kind, "count": count }))
     }
 }
 
@@ -293,10 +265,7 @@ fn light(light: &Light) -> Value {
 
 fn camera_node(name: &str, index: usize, camera: &Camera) -> Value {
     let back = (camera.eye - camera.target).normalize_or(Vec3::Z);
-    let right = camera
-        .up
-        .cross(back)
-        .normalize_or(back.any_orthonormal_vector());
+    let right = camera.up.cross(back).normalize_or(back.any_orthonormal_vector());
     let turn = Quat::from_mat3(&Mat3::from_cols(right, back.cross(right), back));
     json!({ "name": name, "camera": index, "translation": camera.eye.to_array(), "rotation": turn.to_array() })
 }

@@ -10,26 +10,12 @@ use crate::scene::{SceneError, Texture, TextureFormat};
 
 /// Level 0 as an RGBA PNG.
 pub(super) fn rgba_png(texture: &Texture, target: &Path) -> Result<Vec<u8>, SceneError> {
-    encode(
-        &texels(texture, target)?,
-        texture,
-        ExtendedColorType::Rgba8,
-        target,
-    )
+    encode(&texels(texture, target)?, texture, ExtendedColorType::Rgba8, target)
 }
 
 /// One channel of level 0 as a grey PNG.
-pub(super) fn grey_png(
-    texture: &Texture,
-    channel: usize,
-    target: &Path,
-) -> Result<Vec<u8>, SceneError> {
-    let grey: Vec<u8> = texels(texture, target)?
-        .iter()
-        .skip(channel)
-        .step_by(4)
-        .copied()
-        .collect();
+pub(super) fn grey_png(texture: &Texture, channel: usize, target: &Path) -> Result<Vec<u8>, SceneError> {
+    let grey: Vec<u8> = texels(texture, target)?.iter().skip(channel).step_by(4).copied().collect();
     encode(&grey, texture, ExtendedColorType::L8, target)
 }
 
@@ -50,18 +36,10 @@ fn texels(texture: &Texture, target: &Path) -> Result<Vec<u8>, SceneError> {
     Ok(rgba)
 }
 
-fn encode(
-    bytes: &[u8],
-    texture: &Texture,
-    color: ExtendedColorType,
-    target: &Path,
-) -> Result<Vec<u8>, SceneError> {
+fn encode(bytes: &[u8], texture: &Texture, color: ExtendedColorType, target: &Path) -> Result<Vec<u8>, SceneError> {
     let mut png = Vec::new();
     PngEncoder::new_with_quality(&mut png, CompressionType::Fast, FilterType::Adaptive)
         .write_image(bytes, texture.width, texture.height, color)
-        .map_err(|error| SceneError::Write {
-            path: target.into(),
-            message: error.to_string(),
-        })?;
+        .map_err(|error| SceneError::Write { path: target.into(), message: error.to_string() })?;
     Ok(png)
 }

@@ -17,11 +17,7 @@ impl Scene {
     /// OBJ holds the pose at time 0 and no lights or cameras. glTF holds everything but the sky and whether a
     /// light casts shadows. Each file appears whole or not at all.
     pub fn export(&self, path: &Path) -> Result<(), SceneError> {
-        let extension = path
-            .extension()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .to_lowercase();
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match extension.as_str() {
             "obj" => obj::write(self, path),
             "glb" | "gltf" => gltf::write(self, path, extension == "glb"),
@@ -31,10 +27,7 @@ impl Scene {
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
-    files::write_whole(path, bytes).map_err(|error| SceneError::Write {
-        path: path.into(),
-        message: error.to_string(),
-    })
+    files::write_whole(path, bytes).map_err(|error| SceneError::Write { path: path.into(), message: error.to_string() })
 }
 
 /// The pose that a motion starts with.
@@ -47,16 +40,8 @@ fn unique_names<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = std::collections::HashSet::new();
     let mut unique = Vec::new();
     for name in names {
-        let name: String = name
-            .trim()
-            .chars()
-            .map(|c| if c.is_control() { ' ' } else { c })
-            .collect();
-        let base = if name.is_empty() {
-            "unnamed".to_owned()
-        } else {
-            name
-        };
+        let name: String = name.trim().chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let base = if name.is_empty() { "unnamed".to_owned() } else { name };
         let mut candidate = base.clone();
         let mut number = 2;
         while !taken.insert(candidate.clone()) {

@@ -10,17 +10,8 @@ use crate::scene::{Instance, Material, Mesh, Scene, SceneError};
 
 /// Writes `path`, the .mtl beside it and PNG files into a folder `<stem>_textures`.
 pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
-    let materials = unique_names(
-        scene
-            .materials
-            .iter()
-            .map(|material| material.name.as_str()),
-    );
-    let stem = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
+    let materials = unique_names(scene.materials.iter().map(|material| material.name.as_str()));
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut mtl = String::new();
     for (material, name) in scene.materials.iter().zip(&materials) {
         write_material(&mut mtl, scene, material, name, path, &stem)?;
@@ -28,12 +19,7 @@ pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     write_file(&path.with_extension("mtl"), mtl.as_bytes())?;
 
     let mut obj = format!("mtllib {stem}.mtl\n");
-    let names = unique_names(
-        scene
-            .instances
-            .iter()
-            .map(|instance| instance.name.as_str()),
-    );
+    let names = unique_names(scene.instances.iter().map(|instance| instance.name.as_str()));
     let mut first_vertex = 1;
     for (instance, name) in scene.instances.iter().zip(&names) {
         let mesh = &scene.meshes[instance.mesh as usize];
@@ -68,11 +54,7 @@ fn write_instance(
         writeln!(out, "vn {} {} {}", n.x, n.y, n.z)?;
     }
     // A mirroring transform turns faces inside out; the file has no transform, so its corners turn instead.
-    let order = if axes.determinant() < 0.0 {
-        [0, 2, 1]
-    } else {
-        [0, 1, 2]
-    };
+    let order = if axes.determinant() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
     for part in &mesh.parts {
         writeln!(out, "usemtl {}", materials[part.material as usize])?;
         let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
@@ -108,22 +90,13 @@ fn write_material(
         maps.push(format!("map_Kd {entry}"));
     }
     if let Some((i, image)) = texture(material.metallic_roughness_texture) {
-        let roughness = save(
-            format!("{i}_roughness.png"),
-            images::grey_png(image, 1, path)?,
-        )?;
-        let metallic = save(
-            format!("{i}_metallic.png"),
-            images::grey_png(image, 2, path)?,
-        )?;
+        let roughness = save(format!("{i}_roughness.png"), images::grey_png(image, 1, path)?)?;
+        let metallic = save(format!("{i}_metallic.png"), images::grey_png(image, 2, path)?)?;
         maps.push(format!("map_Pr {roughness}\nmap_Pm {metallic}"));
     }
     if let Some((i, image)) = texture(material.normal_texture) {
         let entry = save(format!("{i}_normal.png"), images::rgba_png(image, path)?)?;
-        maps.push(format!(
-            "norm {entry}\nnormal_scale {}",
-            material.normal_scale
-        ));
+        maps.push(format!("norm {entry}\nnormal_scale {}", material.normal_scale));
     }
     if let Some((i, image)) = texture(material.emission_texture) {
         let entry = save(format!("{i}_emission.png"), images::rgba_png(image, path)?)?;

@@ -25,9 +25,7 @@ pub(super) fn add(scene: &mut Scene, model: Scene, entry: &ModelEntry) {
         scene.materials.push(material);
     }
     for mut mesh in model.meshes {
-        mesh.parts
-            .iter_mut()
-            .for_each(|part| part.material += first_material);
+        mesh.parts.iter_mut().for_each(|part| part.material += first_material);
         scene.meshes.push(mesh);
     }
     for mut instance in model.instances {
@@ -37,9 +35,7 @@ pub(super) fn add(scene: &mut Scene, model: Scene, entry: &ModelEntry) {
     }
     for mut light in model.lights.into_iter().filter(|_| entry.lights) {
         light.position = frame.transform_point3(light.position);
-        light.direction = frame
-            .transform_vector3(light.direction)
-            .normalize_or(light.direction);
+        light.direction = frame.transform_vector3(light.direction).normalize_or(light.direction);
         scene.lights.push(light);
     }
     for (name, mut camera) in model.cameras.into_iter().filter(|_| entry.cameras) {
@@ -48,14 +44,7 @@ pub(super) fn add(scene: &mut Scene, model: Scene, entry: &ModelEntry) {
         camera.up = frame.transform_vector3(camera.up).normalize_or(camera.up);
         // The first of a name keeps it; later ones say which model they are of.
         let taken = scene.cameras.contains_key(&name);
-        scene.cameras.insert(
-            if taken {
-                format!("{} {name}", model.name)
-            } else {
-                name
-            },
-            camera,
-        );
+        scene.cameras.insert(if taken { format!("{} {name}", model.name) } else { name }, camera);
     }
 }
 
@@ -66,11 +55,7 @@ fn place(instance: &mut Instance, entry: &ModelEntry, model: &str, warnings: &mu
         instance.animation = entry.animation.clone();
         return;
     };
-    let placed = if entry.animation.is_none() {
-        own.seen_from(frame)
-    } else {
-        None
-    };
+    let placed = if entry.animation.is_none() { own.seen_from(frame) } else { None };
     match placed {
         Some((animation, size)) => {
             instance.animation = Some(animation);
@@ -78,10 +63,7 @@ fn place(instance: &mut Instance, entry: &ModelEntry, model: &str, warnings: &mu
         }
         None => {
             let why = "inside a moving or unevenly scaled model cannot be kept";
-            warnings.push(format!(
-                "{model}: the motion of '{}' {why}; it stays at its first pose",
-                instance.name
-            ));
+            warnings.push(format!("{model}: the motion of '{}' {why}; it stays at its first pose", instance.name));
             instance.transform = frame * own.at(0.0) * instance.transform;
             instance.animation = entry.animation.clone();
         }

@@ -64,11 +64,7 @@ struct TransformFields {
 
 impl Default for TransformFields {
     fn default() -> Self {
-        TransformFields {
-            translate: Vec3::ZERO,
-            rotate_deg: Vec3::ZERO,
-            scale: Vec3::ONE,
-        }
+        TransformFields { translate: Vec3::ZERO, rotate_deg: Vec3::ZERO, scale: Vec3::ONE }
     }
 }
 
@@ -104,24 +100,12 @@ impl TryFrom<ModelFields> for ModelEntry {
             }
             _ => return Err("a model needs either a file or a builtin".into()),
         }
-        let TransformFields {
-            translate,
-            rotate_deg,
-            scale,
-        } = fields.transform;
-        if !translate.is_finite()
-            || !rotate_deg.is_finite()
-            || !scale.is_finite()
-            || scale.min_element() <= 0.0
-        {
+        let TransformFields { translate, rotate_deg, scale } = fields.transform;
+        if !translate.is_finite() || !rotate_deg.is_finite() || !scale.is_finite() || scale.min_element() <= 0.0 {
             return Err("a transform's numbers must be finite and its scale above 0".into());
         }
         Ok(ModelEntry {
-            transform: Mat4::from_scale_rotation_translation(
-                scale,
-                rotation(rotate_deg),
-                translate,
-            ),
+            transform: Mat4::from_scale_rotation_translation(scale, rotation(rotate_deg), translate),
             animation: fields.animation.map(animation).transpose()?,
             file: fields.file,
             builtin: fields.builtin,
@@ -139,19 +123,10 @@ fn rotation(degrees: Vec3) -> Quat {
 fn animation(fields: AnimationFields) -> Result<Animation, String> {
     let keys = &fields.keyframes;
     let finite = |key: &KeyframeFields| {
-        key.time.is_finite()
-            && key.translate.is_finite()
-            && key.rotate_deg.abs().max_element() < 36_000.0
+        key.time.is_finite() && key.translate.is_finite() && key.rotate_deg.abs().max_element() < 36_000.0
     };
-    if keys.is_empty()
-        || !keys.iter().all(finite)
-        || !keys.is_sorted_by(|a, b| a.time < b.time)
-        || keys[0].time < 0.0
-    {
-        return Err(
-            "an animation needs keyframes with finite numbers and times that rise from 0 or more"
-                .into(),
-        );
+    if keys.is_empty() || !keys.iter().all(finite) || !keys.is_sorted_by(|a, b| a.time < b.time) || keys[0].time < 0.0 {
+        return Err("an animation needs keyframes with finite numbers and times that rise from 0 or more".into());
     }
     let mut keyframes = Vec::new();
     for (i, key) in keys.iter().enumerate() {
@@ -168,10 +143,7 @@ fn animation(fields: AnimationFields) -> Result<Animation, String> {
             });
         }
     }
-    Ok(Animation {
-        keyframes,
-        repeat: fields.repeat,
-    })
+    Ok(Animation { keyframes, repeat: fields.repeat })
 }
 
 /// A light.
@@ -213,62 +185,25 @@ impl TryFrom<LightFields> for LightEntry {
 
     fn try_from(fields: LightFields) -> Result<Self, String> {
         let (name, kind, color, position, direction, shadow) = match fields {
-            LightFields::Directional {
-                name,
-                color,
-                direction,
-                shadow,
-            } => (
-                name,
-                LightKind::Directional,
-                color,
-                Vec3::ZERO,
-                direction,
-                shadow,
-            ),
-            LightFields::Point {
-                name,
-                color,
-                position,
-                shadow,
-            } => (name, LightKind::Point, color, position, Vec3::NEG_Y, shadow),
-            LightFields::Spot {
-                name,
-                color,
-                position,
-                direction,
-                inner_deg,
-                outer_deg,
-                shadow,
-            } => {
+            LightFields::Directional { name, color, direction, shadow } => {
+                (name, LightKind::Directional, color, Vec3::ZERO, direction, shadow)
+            }
+            LightFields::Point { name, color, position, shadow } => {
+                (name, LightKind::Point, color, position, Vec3::NEG_Y, shadow)
+            }
+            LightFields::Spot { name, color, position, direction, inner_deg, outer_deg, shadow } => {
                 if !(inner_deg >= 0.0 && inner_deg < outer_deg && outer_deg <= 89.0) {
-                    return Err(
-                        "a spot's half-angles must obey 0 <= inner_deg < outer_deg <= 89".into(),
-                    );
+                    return Err("a spot's half-angles must obey 0 <= inner_deg < outer_deg <= 89".into());
                 }
-                let kind = LightKind::Spot {
-                    inner: inner_deg.to_radians(),
-                    outer: outer_deg.to_radians(),
-                };
+                let kind = LightKind::Spot { inner: inner_deg.to_radians(), outer: outer_deg.to_radians() };
                 (name, kind, color, position, direction, shadow)
             }
         };
         if !color.is_finite() || color.min_element() < 0.0 || !position.is_finite() {
-            return Err(
-                "a light's color must be finite and not negative, its position finite".into(),
-            );
+            return Err("a light's color must be finite and not negative, its position finite".into());
         }
-        let direction = direction
-            .try_normalize()
-            .ok_or("a light's direction must be finite and not zero")?;
-        Ok(LightEntry(Light {
-            name,
-            kind,
-            color,
-            position,
-            direction,
-            shadow,
-        }))
+        let direction = direction.try_normalize().ok_or("a light's direction must be finite and not zero")?;
+        Ok(LightEntry(Light { name, kind, color, position, direction, shadow }))
     }
 }
 
@@ -312,8 +247,7 @@ impl TryFrom<CameraFields> for CameraEntry {
 
     fn try_from(camera: CameraFields) -> Result<Self, String> {
         let forward = camera.target - camera.eye;
-        if !forward.cross(camera.up).is_finite() || forward.cross(camera.up).length_squared() == 0.0
-        {
+        if !forward.cross(camera.up).is_finite() || forward.cross(camera.up).length_squared() == 0.0 {
             return Err("a camera must look somewhere other than along its up vector".into());
         }
         if !(camera.fov_y >= 1.0 && camera.fov_y <= 170.0) {
@@ -330,17 +264,8 @@ impl TryFrom<CameraFields> for CameraEntry {
 impl CameraEntry {
     /// The camera, with given clip planes where it has none of its own.
     pub fn to_camera(&self, (near, far): (f32, f32)) -> Camera {
-        let CameraFields {
-            eye,
-            target,
-            up,
-            fov_y,
-            ..
-        } = self.0;
-        let near = self
-            .0
-            .near
-            .unwrap_or(near.min(self.0.far.unwrap_or(far) * 0.5));
+        let CameraFields { eye, target, up, fov_y, .. } = self.0;
+        let near = self.0.near.unwrap_or(near.min(self.0.far.unwrap_or(far) * 0.5));
         Camera {
             eye,
             target,

@@ -16,15 +16,8 @@ pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, S
         source,
     })?;
     let file = parse(&text, path)?;
-    let name = path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .into_owned();
-    let mut scene = Scene {
-        name: file.name.clone().unwrap_or(name),
-        ..Scene::default()
-    };
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let mut scene = Scene { name: file.name.clone().unwrap_or(name), ..Scene::default() };
     let mut sky = None;
     for (i, entry) in file.models.iter().enumerate() {
         let model = load_model(entry, path, &text, &|what, done| {
@@ -40,9 +33,7 @@ pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, S
     let (low, high) = scene.bounds();
     let clip_planes = defaults::clip_planes((high - low).length());
     for (name, camera) in file.cameras.into_iter().rev() {
-        scene
-            .cameras
-            .shift_insert(0, name, camera.to_camera(clip_planes));
+        scene.cameras.shift_insert(0, name, camera.to_camera(clip_planes));
     }
     if scene.cameras.is_empty() {
         let camera = defaults::camera(&scene);
@@ -69,12 +60,7 @@ fn load_model(
             "model file '{file}' is in none of: {}. Correct the path, or set CONELAB_SCENES to the folder that holds it",
             tried.join(", ")
         );
-        return Err(SceneError::SceneFile {
-            path: scene_file.into(),
-            line,
-            column,
-            message,
-        });
+        return Err(SceneError::SceneFile { path: scene_file.into(), line, column, message });
     };
     let mut model = open::load_model(found, progress)?;
     model.sky = defaults::SKY;
@@ -85,12 +71,7 @@ fn load_model(
 fn places(file: &str, scene_file: &Path) -> Vec<PathBuf> {
     let mut places = vec![scene_file.parent().unwrap_or(Path::new("")).join(file)];
     let folders = std::env::var("CONELAB_SCENES").unwrap_or_default();
-    places.extend(
-        folders
-            .split(':')
-            .filter(|folder| !folder.is_empty())
-            .map(|folder| Path::new(folder).join(file)),
-    );
+    places.extend(folders.split(':').filter(|folder| !folder.is_empty()).map(|folder| Path::new(folder).join(file)));
     places
 }
 
@@ -100,48 +81,31 @@ fn position_of(text: &str, string: &str) -> (usize, usize) {
         return (1, 1);
     };
     let before = &text[..offset];
-    let column = before
-        .rsplit('\n')
-        .next()
-        .unwrap_or_default()
-        .chars()
-        .count()
-        + 1;
+    let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
     (before.matches('\n').count() + 1, column)
 }
 
 fn parse(text: &str, path: &Path) -> Result<SceneFile, SceneError> {
-    let options =
-        ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-    options
-        .from_str(text)
-        .map_err(|error| SceneError::SceneFile {
-            path: path.into(),
-            line: error.span.start.line,
-            column: error.span.start.col,
-            message: describe(&error.code),
-        })
+    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    options.from_str(text).map_err(|error| SceneError::SceneFile {
+        path: path.into(),
+        line: error.span.start.line,
+        column: error.span.start.col,
+        message: describe(&error.code),
+    })
 }
 
 /// The parser's message, with the nearest known name for an unknown one.
 fn describe(error: &ron::Error) -> String {
     let (kind, found, expected) = match error {
-        ron::Error::NoSuchStructField {
-            found, expected, ..
-        } => ("field", found, *expected),
-        ron::Error::NoSuchEnumVariant {
-            found, expected, ..
-        } => ("kind", found, *expected),
+        ron::Error::NoSuchStructField { found, expected, .. } => ("field", found, *expected),
+        ron::Error::NoSuchEnumVariant { found, expected, .. } => ("kind", found, *expected),
         other => return other.to_string(),
     };
-    let score =
-        |known: &&&str| strsim::damerau_levenshtein(&known.to_lowercase(), &found.to_lowercase());
+    let score = |known: &&&str| strsim::damerau_levenshtein(&known.to_lowercase(), &found.to_lowercase());
     let hint = match expected.iter().min_by_key(score) {
         Some(nearest) if score(&nearest) <= 3 => format!("did you mean '{nearest}'? "),
         _ => String::new(),
     };
-    format!(
-        "unknown {kind} '{found}': {hint}Known here: {}",
-        expected.join(", ")
-    )
+    format!("unknown {kind} '{found}': {hint}Known here: {}", expected.join(", "))
 }

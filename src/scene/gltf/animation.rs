@@ -27,11 +27,7 @@ impl<T: Copy> Curve<T> {
         let next = self.times.partition_point(|&t| t <= time);
         let (a, b) = (next.saturating_sub(1), next.min(self.times.len() - 1));
         let span = self.times[b] - self.times[a];
-        let s = if span > 0.0 {
-            ((time - self.times[a]) / span).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+        let s = if span > 0.0 { ((time - self.times[a]) / span).clamp(0.0, 1.0) } else { 0.0 };
         mix(self.values[a], self.values[b], s)
     }
 }
@@ -39,11 +35,7 @@ impl<T: Copy> Curve<T> {
 impl Track {
     /// All times at which either curve has a key.
     pub fn times(&self) -> Vec<f32> {
-        let mut times: Vec<f32> = self
-            .translation
-            .iter()
-            .flat_map(|c| c.times.iter().copied())
-            .collect();
+        let mut times: Vec<f32> = self.translation.iter().flat_map(|c| c.times.iter().copied()).collect();
         times.extend(self.rotation.iter().flat_map(|c| c.times.iter().copied()));
         times.sort_by(f32::total_cmp);
         times.dedup();
@@ -52,14 +44,8 @@ impl Track {
 
     /// Translation and rotation at a time, with the rest pose where there is no curve.
     pub fn at(&self, time: f32, rest: (Vec3, Quat)) -> (Vec3, Quat) {
-        let translation = self
-            .translation
-            .as_ref()
-            .map_or(rest.0, |c| c.at(time, |a, b, s| a.lerp(b, s)));
-        let rotation = self
-            .rotation
-            .as_ref()
-            .map_or(rest.1, |c| c.at(time, |a, b, s| a.slerp(b, s)));
+        let translation = self.translation.as_ref().map_or(rest.0, |c| c.at(time, |a, b, s| a.lerp(b, s)));
+        let rotation = self.rotation.as_ref().map_or(rest.1, |c| c.at(time, |a, b, s| a.slerp(b, s)));
         (translation, rotation)
     }
 }
@@ -74,35 +60,22 @@ pub(super) fn tracks(
     for animation in document.animations() {
         for channel in animation.channels() {
             let node = channel.target().node();
-            let called = node
-                .name()
-                .map_or_else(|| format!("node {}", node.index()), str::to_owned);
+            let called = node.name().map_or_else(|| format!("node {}", node.index()), str::to_owned);
             let sampler = channel.sampler();
             let name = format!("the animation of '{called}'");
-            let times: Vec<f32> = accessors::floats::<1>(&sampler.input(), buffers)?
-                .into_iter()
-                .map(|[t]| t)
-                .collect();
+            let times: Vec<f32> = accessors::floats::<1>(&sampler.input(), buffers)?.into_iter().map(|[t]| t).collect();
             if times.is_empty() || !times.is_sorted() || times.iter().any(|t| !t.is_finite()) {
                 return Err(format!("{name} has no times or times out of order"));
             }
             let interpolation = sampler.interpolation();
             if interpolation == Interpolation::CubicSpline {
-                warnings.push(format!(
-                    "{name} is a cubic spline, which is played as straight lines"
-                ));
+                warnings.push(format!("{name} is a cubic spline, which is played as straight lines"));
             }
             let track = tracks.entry(node.index()).or_default();
             match channel.target().property() {
                 Property::Translation if track.translation.is_none() => {
                     let values = accessors::floats::<3>(&sampler.output(), buffers)?;
-                    track.translation = Some(curve(
-                        &name,
-                        times,
-                        values,
-                        interpolation,
-                        Vec3::from_array,
-                    )?);
+                    track.translation = Some(curve(&name, times, values, interpolation, Vec3::from_array)?);
                 }
                 Property::Rotation if track.rotation.is_none() => {
                     let values = accessors::floats::<4>(&sampler.output(), buffers)?;
@@ -110,16 +83,10 @@ pub(super) fn tracks(
                     track.rotation = Some(curve(&name, times, values, interpolation, unit)?);
                 }
                 Property::Translation | Property::Rotation => {
-                    warnings.push(format!(
-                        "{name}: a second animation of the same node is left out"
-                    ));
+                    warnings.push(format!("{name}: a second animation of the same node is left out"));
                 }
-                Property::Scale => {
-                    warnings.push(format!("{name} scales, which is left out: motion is rigid"))
-                }
-                Property::MorphTargetWeights => {
-                    warnings.push(format!("{name} morphs, which is left out"))
-                }
+                Property::Scale => warnings.push(format!("{name} scales, which is left out: motion is rigid")),
+                Property::MorphTargetWeights => warnings.push(format!("{name} morphs, which is left out")),
             }
         }
     }
@@ -134,26 +101,12 @@ fn curve<const N: usize, T: Copy>(
     interpolation: Interpolation,
     convert: impl Fn([f32; N]) -> T,
 ) -> Result<Curve<T>, String> {
-    let per_key = if interpolation == Interpolation::CubicSpline {
-        3
-    } else {
-        1
-    };
+    let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
     if values.len() != times.len() * per_key || values.iter().flatten().any(|v| !v.is_finite()) {
-        return Err(format!(
-            "{name} has {} values for {} times, or some are not finite",
-            values.len(),
-            times.len()
-        ));
+        return Err(format!("{name} has {} values for {} times, or some are not finite", values.len(), times.len()));
     }
     // A cubic key is an in-tangent, the value and an out-tangent.
-    let mut curve = Curve {
-        values: values
-            .chunks(per_key)
-            .map(|k| convert(k[per_key / 2]))
-            .collect(),
-        times,
-    };
+    let mut curve = Curve { values: values.chunks(per_key).map(|k| convert(k[per_key / 2])).collect(), times };
     if interpolation == Interpolation::Step {
         hold(&mut curve);
     }

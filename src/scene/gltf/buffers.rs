@@ -8,26 +8,16 @@ use ::gltf::{Document, buffer};
 use crate::scene::texture::Source;
 
 /// The bytes of each buffer, at least as long as the file says.
-pub(super) fn load(
-    document: &Document,
-    mut blob: Option<Vec<u8>>,
-    folder: &Path,
-) -> Result<Vec<Vec<u8>>, String> {
+pub(super) fn load(document: &Document, mut blob: Option<Vec<u8>>, folder: &Path) -> Result<Vec<Vec<u8>>, String> {
     let mut buffers = Vec::new();
     for buffer in document.buffers() {
         let i = buffer.index();
         let bytes = match buffer.source() {
-            buffer::Source::Bin => blob
-                .take()
-                .ok_or(format!("buffer {i} has neither a uri nor a binary chunk"))?,
+            buffer::Source::Bin => blob.take().ok_or(format!("buffer {i} has neither a uri nor a binary chunk"))?,
             buffer::Source::Uri(uri) => match resolve(uri, folder)? {
                 Target::Data(bytes) => bytes,
-                Target::File(path) => std::fs::read(&path).map_err(|error| {
-                    format!(
-                        "buffer {}: {error}. Copy it beside the model",
-                        path.display()
-                    )
-                })?,
+                Target::File(path) => std::fs::read(&path)
+                    .map_err(|error| format!("buffer {}: {error}. Copy it beside the model", path.display()))?,
             },
         };
         if bytes.len() < buffer.length() {
@@ -44,38 +34,19 @@ pub(super) fn load(
 
 /// The bytes of a view, or what is wrong with it.
 pub(super) fn view<'a>(buffers: &'a [Vec<u8>], view: &buffer::View) -> Result<&'a [u8], String> {
-    let bytes = buffers
-        .get(view.buffer().index())
-        .map(Vec::as_slice)
-        .unwrap_or_default();
+    let bytes = buffers.get(view.buffer().index()).map(Vec::as_slice).unwrap_or_default();
     let end = view.offset().checked_add(view.length());
     end.and_then(|end| bytes.get(view.offset()..end))
-        .ok_or_else(|| {
-            format!(
-                "buffer view {} reaches past the end of its buffer",
-                view.index()
-            )
-        })
+        .ok_or_else(|| format!("buffer view {} reaches past the end of its buffer", view.index()))
 }
 
 /// Where an image's bytes are.
-pub(super) fn image(
-    image: &::gltf::Image,
-    document: &Document,
-    buffers: &[Vec<u8>],
-    folder: &Path,
-) -> Source {
+pub(super) fn image(image: &::gltf::Image, document: &Document, buffers: &[Vec<u8>], folder: &Path) -> Source {
     // By its JSON: the crate's own accessor requires a media type that files leave out.
     let json = &document.as_json().images[image.index()];
-    let name = image
-        .name()
-        .map_or_else(|| format!("image {}", image.index()), str::to_owned);
+    let name = image.name().map_or_else(|| format!("image {}", image.index()), str::to_owned);
     if let Some(index) = &json.buffer_view {
-        return match document
-            .views()
-            .nth(index.value())
-            .map(|v| view(buffers, &v))
-        {
+        return match document.views().nth(index.value()).map(|v| view(buffers, &v)) {
             Some(Ok(bytes)) => Source::Bytes(name, Arc::new(bytes.to_vec())),
             Some(Err(problem)) => Source::Missing(name, problem),
             None => Source::Missing(name, "its buffer view does not exist".into()),
@@ -104,9 +75,7 @@ fn resolve(uri: &str, folder: &Path) -> Result<Target, String> {
     }
     let path = uri.strip_prefix("file://").unwrap_or(uri);
     if path.contains("://") {
-        return Err(format!(
-            "'{uri}' is not a local file; download it and export the model again"
-        ));
+        return Err(format!("'{uri}' is not a local file; download it and export the model again"));
     }
     let decoded = String::from_utf8(percent(path)).map_err(|_| format!("'{uri}' is not UTF-8"))?;
     Ok(Target::File(folder.join(decoded)))
@@ -118,9 +87,7 @@ fn percent(text: &str) -> Vec<u8> {
     let mut rest = text.as_bytes();
     while let Some((&first, after)) = rest.split_first() {
         let digits = after.get(..2).and_then(|d| std::str::from_utf8(d).ok());
-        let value = digits
-            .filter(|_| first == b'%')
-            .and_then(|d| u8::from_str_radix(d, 16).ok());
+        let value = digits.filter(|_| first == b'%').and_then(|d| u8::from_str_radix(d, 16).ok());
         bytes.push(value.unwrap_or(first));
         rest = if value.is_some() { &after[2..] } else { after };
     }
@@ -131,10 +98,7 @@ fn percent(text: &str) -> Vec<u8> {
 fn base64(text: &str) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
     let (mut bits, mut count) = (0u32, 0);
-    for c in text
-        .bytes()
-        .filter(|c| !c.is_ascii_whitespace() && *c != b'=')
-    {
+    for c in text.bytes().filter(|c| !c.is_ascii_whitespace() && *c != b'=') {
         let value = match c {
             b'A'..=b'Z' => c - b'A',
             b'a'..=b'z' => c - b'a' + 26,
@@ -142,10 +106,7 @@ fn base64(text: &str) -> Result<Vec<u8>, String> {
             b'+' | b'-' => 62,
             b'/' | b'_' => 63,
             _ => {
-                return Err(format!(
-                    "a data URI holds '{}', which is not base64",
-                    char::from(c)
-                ));
+                return Err(format!("a data URI holds '{}', which is not base64", char::from(c)));
             }
         };
         bits = bits << 6 | u32::from(value);

@@ -19,10 +19,7 @@ pub(super) struct UvSource {
 
 impl Default for UvSource {
     fn default() -> Self {
-        UvSource {
-            set: 0,
-            transform: Affine2::IDENTITY,
-        }
+        UvSource { set: 0, transform: Affine2::IDENTITY }
     }
 }
 
@@ -34,10 +31,7 @@ pub(super) fn read(
     warnings: &mut Vec<String>,
 ) -> (Vec<Material>, Vec<UvSource>, Requests) {
     let mut requests = Requests::default();
-    let images: Vec<Source> = document
-        .images()
-        .map(|image| buffers::image(&image, document, data, folder))
-        .collect();
+    let images: Vec<Source> = document.images().map(|image| buffers::image(&image, document, data, folder)).collect();
     let mut materials = Vec::new();
     let mut uv_sources = Vec::new();
     for material in document.materials() {
@@ -45,15 +39,8 @@ pub(super) fn read(
         materials.push(material);
         uv_sources.push(uv);
     }
-    if document
-        .meshes()
-        .flat_map(|mesh| mesh.primitives())
-        .any(|p| p.material().index().is_none())
-    {
-        materials.push(Material {
-            base_color: Vec4::ONE,
-            ..Material::default()
-        });
+    if document.meshes().flat_map(|mesh| mesh.primitives()).any(|p| p.material().index().is_none()) {
+        materials.push(Material { base_color: Vec4::ONE, ..Material::default() });
         uv_sources.push(UvSource::default());
     }
     (materials, uv_sources, requests)
@@ -66,9 +53,7 @@ fn convert(
     warnings: &mut Vec<String>,
 ) -> (Material, UvSource) {
     let index = from.index().unwrap_or_default();
-    let name = from
-        .name()
-        .map_or_else(|| format!("material {index}"), str::to_owned);
+    let name = from.name().map_or_else(|| format!("material {index}"), str::to_owned);
     let pbr = from.pbr_metallic_roughness();
     let image = |texture: ::gltf::Texture| images[texture.source().index()].clone();
 
@@ -76,9 +61,7 @@ fn convert(
         AlphaMode::Opaque => 0.0,
         AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).clamp(0.0, 1.0),
         AlphaMode::Blend => {
-            warnings.push(format!(
-                "material '{name}' blends, which is shown as a mask at alpha 0.5"
-            ));
+            warnings.push(format!("material '{name}' blends, which is shown as a mask at alpha 0.5"));
             0.5
         }
     };
@@ -90,21 +73,12 @@ fn convert(
 
     // Vertices carry one set of coordinates; the most visible texture decides which. The transform of a normal map
     // cannot be read; exporters give all maps of a material the same.
-    let placed: Vec<UvSource> = [&color, &rough, &emission]
-        .into_iter()
-        .flatten()
-        .map(uv_source)
-        .collect();
+    let placed: Vec<UvSource> = [&color, &rough, &emission].into_iter().flatten().map(uv_source).collect();
     let normal_set = normal.as_ref().map(|n| n.tex_coord());
-    let only_normal = UvSource {
-        set: normal_set.unwrap_or(0),
-        ..UvSource::default()
-    };
+    let only_normal = UvSource { set: normal_set.unwrap_or(0), ..UvSource::default() };
     let uv = placed.first().copied().unwrap_or(only_normal);
     if placed.iter().any(|other| *other != uv) || normal_set.is_some_and(|set| set != uv.set) {
-        warnings.push(format!(
-            "material '{name}' places its textures differently; all are placed like the first"
-        ));
+        warnings.push(format!("material '{name}' places its textures differently; all are placed like the first"));
     }
 
     let emission_strength = from.emissive_strength().unwrap_or(1.0);
@@ -117,28 +91,10 @@ fn convert(
         alpha_cutoff,
         two_sided: from.double_sided(),
         normal_scale: normal.as_ref().map_or(1.0, |n| n.scale()),
-        base_color_texture: color.map(|t| {
-            ask(Recipe::Color {
-                image: image(t.texture()),
-                mask,
-            })
-        }),
-        metallic_roughness_texture: rough.map(|t| {
-            ask(Recipe::MetallicRoughness {
-                image: image(t.texture()),
-            })
-        }),
-        normal_texture: normal.map(|t| {
-            ask(Recipe::Normal {
-                image: image(t.texture()),
-            })
-        }),
-        emission_texture: emission.map(|t| {
-            ask(Recipe::Color {
-                image: image(t.texture()),
-                mask: None,
-            })
-        }),
+        base_color_texture: color.map(|t| ask(Recipe::Color { image: image(t.texture()), mask })),
+        metallic_roughness_texture: rough.map(|t| ask(Recipe::MetallicRoughness { image: image(t.texture()) })),
+        normal_texture: normal.map(|t| ask(Recipe::Normal { image: image(t.texture()) })),
+        emission_texture: emission.map(|t| ask(Recipe::Color { image: image(t.texture()), mask: None })),
         name: name.clone(),
     };
     (material, uv)
@@ -146,10 +102,7 @@ fn convert(
 
 fn uv_source(info: &texture::Info) -> UvSource {
     let Some(transform) = info.texture_transform() else {
-        return UvSource {
-            set: info.tex_coord(),
-            ..UvSource::default()
-        };
+        return UvSource { set: info.tex_coord(), ..UvSource::default() };
     };
     // KHR_texture_transform turns counter-clockwise in a frame whose v points down.
     let placed = Affine2::from_scale_angle_translation(
@@ -157,26 +110,15 @@ fn uv_source(info: &texture::Info) -> UvSource {
         -transform.rotation(),
         Vec2::from_array(transform.offset()),
     );
-    UvSource {
-        set: transform.tex_coord().unwrap_or(info.tex_coord()),
-        transform: placed,
-    }
+    UvSource { set: transform.tex_coord().unwrap_or(info.tex_coord()), transform: placed }
 }
 
 fn finite3(color: [f32; 3]) -> Vec3 {
     let color = Vec3::from_array(color);
-    if color.is_finite() {
-        color.max(Vec3::ZERO)
-    } else {
-        Vec3::ZERO
-    }
+    if color.is_finite() { color.max(Vec3::ZERO) } else { Vec3::ZERO }
 }
 
 fn finite4(color: [f32; 4]) -> Vec4 {
     let color = Vec4::from_array(color);
-    if color.is_finite() {
-        color.clamp(Vec4::ZERO, Vec4::ONE)
-    } else {
-        Vec4::ONE
-    }
+    if color.is_finite() { color.clamp(Vec4::ZERO, Vec4::ONE) } else { Vec4::ONE }
 }

@@ -21,9 +21,7 @@ pub(super) fn read(
     let mut primitives = Vec::new();
     let mut meshes = Vec::new();
     for mesh in document.meshes() {
-        let name = mesh
-            .name()
-            .map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
+        let name = mesh.name().map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
         for primitive in mesh.primitives() {
             let default = document.materials().len();
             let material = primitive.material().index().unwrap_or(default);
@@ -32,20 +30,13 @@ pub(super) fn read(
                 primitives.push(raw);
                 owners.push(mesh.index());
             } else {
-                warnings.push(format!(
-                    "mesh '{name}' has points or lines, which are left out"
-                ));
+                warnings.push(format!("mesh '{name}' has points or lines, which are left out"));
             }
             if primitive.morph_targets().next().is_some() {
-                warnings.push(format!(
-                    "mesh '{name}' has morph targets, which stay at rest"
-                ));
+                warnings.push(format!("mesh '{name}' has morph targets, which stay at rest"));
             }
         }
-        meshes.push(Mesh {
-            name,
-            ..Mesh::default()
-        });
+        meshes.push(Mesh { name, ..Mesh::default() });
     }
     let (prepared, dropped) = prepare_all(primitives, materials)?;
     for (owner, primitive) in owners.into_iter().zip(prepared) {
@@ -55,16 +46,11 @@ pub(super) fn read(
 }
 
 fn append(mesh: &mut Mesh, primitive: Mesh) -> Result<(), String> {
-    let base = u32::try_from(mesh.vertices.len())
-        .map_err(|_| format!("mesh '{}' is too large", mesh.name))?;
+    let base = u32::try_from(mesh.vertices.len()).map_err(|_| format!("mesh '{}' is too large", mesh.name))?;
     let first = mesh.indices.len() as u32;
-    mesh.indices
-        .extend(primitive.indices.iter().map(|i| i.saturating_add(base)));
+    mesh.indices.extend(primitive.indices.iter().map(|i| i.saturating_add(base)));
     mesh.vertices.extend(primitive.vertices);
-    mesh.parts.extend(primitive.parts.iter().map(|part| Part {
-        first_index: part.first_index + first,
-        ..*part
-    }));
+    mesh.parts.extend(primitive.parts.iter().map(|part| Part { first_index: part.first_index + first, ..*part }));
     Ok(())
 }
 
@@ -75,88 +61,43 @@ fn read_primitive(
     material: usize,
     uv_source: &UvSource,
 ) -> Result<Option<RawMesh>, String> {
-    if matches!(
-        primitive.mode(),
-        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
-    ) {
+    if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
         return Ok(None);
     }
-    let positions = primitive
-        .get(&Semantic::Positions)
-        .ok_or("a primitive has no positions")?;
+    let positions = primitive.get(&Semantic::Positions).ok_or("a primitive has no positions")?;
     let positions = accessors::floats::<3>(&positions, buffers)?;
     let same_count = |found: usize, what: &str| match found == positions.len() {
         true => Ok(()),
         false => Err(format!("{found} {what} for {} positions", positions.len())),
     };
-    let mut vertices: Vec<Vertex> = positions
-        .iter()
-        .map(|&position| Vertex {
-            position,
-            ..Vertex::default()
-        })
-        .collect();
-    let normals = primitive
-        .get(&Semantic::Normals)
-        .map(|a| accessors::floats::<3>(&a, buffers))
-        .transpose()?;
-    let tangents = primitive
-        .get(&Semantic::Tangents)
-        .map(|a| accessors::floats::<4>(&a, buffers))
-        .transpose()?;
+    let mut vertices: Vec<Vertex> =
+        positions.iter().map(|&position| Vertex { position, ..Vertex::default() }).collect();
+    let normals = primitive.get(&Semantic::Normals).map(|a| accessors::floats::<3>(&a, buffers)).transpose()?;
+    let tangents = primitive.get(&Semantic::Tangents).map(|a| accessors::floats::<4>(&a, buffers)).transpose()?;
     let uvs = primitive.get(&Semantic::TexCoords(uv_source.set));
-    let uvs = uvs
-        .map(|a| accessors::floats::<2>(&a, buffers))
-        .transpose()?;
+    let uvs = uvs.map(|a| accessors::floats::<2>(&a, buffers)).transpose()?;
     if let Some(normals) = &normals {
         same_count(normals.len(), "normals")?;
-        vertices
-            .iter_mut()
-            .zip(normals)
-            .for_each(|(vertex, n)| vertex.normal = *n);
+        vertices.iter_mut().zip(normals).for_each(|(vertex, n)| vertex.normal = *n);
     }
     if let Some(tangents) = &tangents {
         same_count(tangents.len(), "tangents")?;
-        vertices
-            .iter_mut()
-            .zip(tangents)
-            .for_each(|(vertex, t)| vertex.tangent = *t);
+        vertices.iter_mut().zip(tangents).for_each(|(vertex, t)| vertex.tangent = *t);
     }
     if let Some(uvs) = &uvs {
         same_count(uvs.len(), "texture coordinates")?;
-        let placed = |uv: &[f32; 2]| {
-            uv_source
-                .transform
-                .transform_point2(Vec2::from_array(*uv))
-                .to_array()
-        };
-        vertices
-            .iter_mut()
-            .zip(uvs)
-            .for_each(|(vertex, uv)| vertex.uv = placed(uv));
+        let placed = |uv: &[f32; 2]| uv_source.transform.transform_point2(Vec2::from_array(*uv)).to_array();
+        vertices.iter_mut().zip(uvs).for_each(|(vertex, uv)| vertex.uv = placed(uv));
     }
     let indices = match primitive.indices() {
         Some(accessor) => accessors::indices(&accessor, buffers)?,
         None => (0..vertices.len() as u32).collect(),
     };
     let indices = triangles(primitive.mode(), indices);
-    let part = Part {
-        first_index: 0,
-        index_count: indices.len() as u32,
-        material: material as u32,
-    };
-    let mesh = Mesh {
-        name: name.into(),
-        vertices,
-        indices,
-        parts: vec![part],
-    };
+    let part = Part { first_index: 0, index_count: indices.len() as u32, material: material as u32 };
+    let mesh = Mesh { name: name.into(), vertices, indices, parts: vec![part] };
     // Tangents without normals cannot have been meant for ours.
-    Ok(Some(RawMesh {
-        mesh,
-        has_normals: normals.is_some(),
-        has_tangents: normals.is_some() && tangents.is_some(),
-    }))
+    Ok(Some(RawMesh { mesh, has_normals: normals.is_some(), has_tangents: normals.is_some() && tangents.is_some() }))
 }
 
 /// Strips and fans as separate triangles with the same winding.
@@ -164,22 +105,13 @@ fn triangles(mode: Mode, indices: Vec<u32>) -> Vec<u32> {
     match mode {
         Mode::TriangleStrip => {
             let triangle = |(i, w): (usize, &[u32])| {
-                if i % 2 == 0 {
-                    [w[0], w[1], w[2]]
-                } else {
-                    [w[1], w[0], w[2]]
-                }
+                if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }
             };
             indices.windows(3).enumerate().flat_map(triangle).collect()
         }
         Mode::TriangleFan => {
             let hub = indices.first().copied().unwrap_or_default();
-            indices
-                .get(1..)
-                .unwrap_or_default()
-                .windows(2)
-                .flat_map(|w| [hub, w[0], w[1]])
-                .collect()
+            indices.get(1..).unwrap_or_default().windows(2).flat_map(|w| [hub, w[0], w[1]]).collect()
         }
         _ => {
             let mut indices = indices;

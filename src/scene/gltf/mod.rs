@@ -18,76 +18,53 @@ use super::{Scene, SceneError};
 
 /// Geometry, materials, textures, lights and cameras of a glTF file; no sky.
 pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
-    let fail = |message: String| SceneError::Model {
-        path: path.into(),
-        message,
-    };
+    let fail = |message: String| SceneError::Model { path: path.into(), message };
     progress("reading", 0.0);
     let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
         path: path.into(),
         hint: "Check the path and its permissions".into(),
         source,
     })?;
-    let file = ::gltf::Gltf::from_slice(&bytes).map_err(|error| {
-        fail(format!(
-            "{error}. Export it again as glTF 2.0 without compression extensions"
-        ))
-    })?;
+    let file = ::gltf::Gltf::from_slice(&bytes)
+        .map_err(|error| fail(format!("{error}. Export it again as glTF 2.0 without compression extensions")))?;
     drop(bytes);
-    check(file.document.as_json())
-        .map_err(|problem| fail(format!("{problem}. Export it again")))?;
+    check(file.document.as_json()).map_err(|problem| fail(format!("{problem}. Export it again")))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let document = file.document;
     let buffers = buffers::load(&document, file.blob, folder).map_err(fail)?;
 
     progress("materials", 0.2);
     let mut warnings = Vec::new();
-    let (materials, uv_sources, requests) =
-        materials::read(&document, &buffers, folder, &mut warnings);
+    let (materials, uv_sources, requests) = materials::read(&document, &buffers, folder, &mut warnings);
     progress("meshes", 0.3);
-    let (meshes, dropped) =
-        meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings).map_err(fail)?;
+    let (meshes, dropped) = meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings).map_err(fail)?;
     progress("nodes", 0.6);
     let tracks = animation::tracks(&document, &buffers, &mut warnings).map_err(fail)?;
     let mut scene = nodes::place(&document, &tracks, &mut warnings).map_err(fail)?;
     // Warnings so far know only parts of the file; each must name the file itself.
     let name = path.display().to_string();
-    scene.warnings = warnings
-        .into_iter()
-        .map(|warning| format!("{name}: {warning}"))
-        .collect();
+    scene.warnings = warnings.into_iter().map(|warning| format!("{name}: {warning}")).collect();
     scene.warnings.extend(dropped.warning(&name));
     progress("textures", 0.7);
     let (textures, texture_warnings) = requests.load();
     scene.warnings.extend(texture_warnings);
     (scene.meshes, scene.materials, scene.textures) = (meshes, materials, textures);
-    scene
-        .instances
-        .retain(|instance| !scene.meshes[instance.mesh as usize].parts.is_empty());
+    scene.instances.retain(|instance| !scene.meshes[instance.mesh as usize].parts.is_empty());
     progress("done", 1.0);
     Ok(scene)
 }
 
 /// What the gltf crate takes for granted after its own validation, and what a damaged file may still break.
 fn check(root: &json::Root) -> Result<(), String> {
-    let lights = root
-        .extensions
-        .as_ref()
-        .and_then(|e| e.khr_lights_punctual.as_ref())
-        .map_or(&[][..], |l| &l.lights);
+    let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()).map_or(&[][..], |l| &l.lights);
     for (i, light) in lights.iter().enumerate() {
         use json::extensions::scene::khr_lights_punctual::Type;
-        if matches!(light.type_, json::validation::Checked::Valid(Type::Spot))
-            && light.spot.is_none()
-        {
+        if matches!(light.type_, json::validation::Checked::Valid(Type::Spot)) && light.spot.is_none() {
             return Err(format!("light {i} is a spot without cone angles"));
         }
     }
     for (i, node) in root.nodes.iter().enumerate() {
-        let light = node
-            .extensions
-            .as_ref()
-            .and_then(|e| e.khr_lights_punctual.as_ref());
+        let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
         if light.is_some_and(|light| light.light.value() >= lights.len()) {
             return Err(format!("node {i} has a light that does not exist"));
         }
@@ -104,14 +81,8 @@ fn check(root: &json::Root) -> Result<(), String> {
         }
     }
     for (i, animation) in root.animations.iter().enumerate() {
-        if animation
-            .channels
-            .iter()
-            .any(|channel| channel.sampler.value() >= animation.samplers.len())
-        {
-            return Err(format!(
-                "animation {i} has a channel whose sampler does not exist"
-            ));
+        if animation.channels.iter().any(|channel| channel.sampler.value() >= animation.samplers.len()) {
+            return Err(format!("animation {i} has a channel whose sampler does not exist"));
         }
     }
     Ok(())

@@ -31,79 +31,45 @@ pub(super) fn place(
     warnings: &mut Vec<String>,
 ) -> Result<Scene, String> {
     let mut placed = Scene::default();
-    let Some(root) = document
-        .default_scene()
-        .or_else(|| document.scenes().next())
-    else {
+    let Some(root) = document.default_scene().or_else(|| document.scenes().next()) else {
         warnings.push("the file has no scene".into());
         return Ok(placed);
     };
     let mut seen = vec![false; document.nodes().count()];
-    let mut stack: Vec<Visit> = root
-        .nodes()
-        .map(|node| Visit {
-            node,
-            parent: Mat4::IDENTITY,
-            moving: None,
-        })
-        .collect();
+    let mut stack: Vec<Visit> = root.nodes().map(|node| Visit { node, parent: Mat4::IDENTITY, moving: None }).collect();
     stack.reverse();
     while let Some(visit) = stack.pop() {
         let node = &visit.node;
         if std::mem::replace(&mut seen[node.index()], true) {
-            return Err(format!(
-                "node {} is its own ancestor or has two parents. Export it again",
-                node.index()
-            ));
+            return Err(format!("node {} is its own ancestor or has two parents. Export it again", node.index()));
         }
-        let name = node
-            .name()
-            .map_or_else(|| format!("node {}", node.index()), str::to_owned);
+        let name = node.name().map_or_else(|| format!("node {}", node.index()), str::to_owned);
         let local = Mat4::from_cols_array_2d(&node.transform().matrix());
         if !local.is_finite() {
-            return Err(format!(
-                "node '{name}' has a transform that is not finite. Export it again"
-            ));
+            return Err(format!("node '{name}' has a transform that is not finite. Export it again"));
         }
         let world = visit.parent * local;
         let moving = match (tracks.get(&node.index()), visit.moving) {
             (Some(_), Some(above)) => {
-                warnings.push(format!(
-                    "node '{name}' moves inside a moving node; its own motion is left out"
-                ));
-                Some(Moving {
-                    below: above.below * local,
-                    ..above
-                })
+                warnings.push(format!("node '{name}' moves inside a moving node; its own motion is left out"));
+                Some(Moving { below: above.below * local, ..above })
             }
-            (None, Some(above)) => Some(Moving {
-                below: above.below * local,
-                ..above
-            }),
+            (None, Some(above)) => Some(Moving { below: above.below * local, ..above }),
             (Some(track), None) => start_moving(node, visit.parent, track).or_else(|| {
-                warnings.push(format!(
-                    "node '{name}' moves inside an unevenly scaled node; it stays at rest"
-                ));
+                warnings.push(format!("node '{name}' moves inside an unevenly scaled node; it stays at rest"));
                 None
             }),
             (None, None) => None,
         };
         if node.skin().is_some() {
-            warnings.push(format!(
-                "node '{name}' has a skin, which stays in its bind pose"
-            ));
+            warnings.push(format!("node '{name}' has a skin, which stays in its bind pose"));
         }
         if let Some(mesh) = node.mesh() {
             let (transform, animation) = match &moving {
                 Some(moving) => (moving.below, Some(moving.animation.clone())),
                 None => (world, None),
             };
-            placed.instances.push(Instance {
-                name: name.clone(),
-                mesh: mesh.index() as u32,
-                transform,
-                animation,
-            });
+            placed.instances.push(Instance { name: name.clone(), mesh: mesh.index() as u32, transform, animation });
         }
         if let Some(light) = node.light() {
             placed.lights.push(read_light(&light, &name, world));
@@ -111,23 +77,13 @@ pub(super) fn place(
         if let Some(camera) = node.camera() {
             match read_camera(&camera.projection(), world) {
                 Some(view) => {
-                    placed
-                        .cameras
-                        .insert(camera.name().unwrap_or(&name).to_owned(), view);
+                    placed.cameras.insert(camera.name().unwrap_or(&name).to_owned(), view);
                 }
-                None => warnings.push(format!(
-                    "camera '{name}' is not a usable perspective; it is left out"
-                )),
+                None => warnings.push(format!("camera '{name}' is not a usable perspective; it is left out")),
             }
         }
-        let children: Vec<Visit> = node
-            .children()
-            .map(|node| Visit {
-                node,
-                parent: world,
-                moving: moving.clone(),
-            })
-            .collect();
+        let children: Vec<Visit> =
+            node.children().map(|node| Visit { node, parent: world, moving: moving.clone() }).collect();
         stack.extend(children.into_iter().rev());
     }
     Ok(placed)
@@ -139,43 +95,27 @@ fn start_moving(node: &Node, parent: Mat4, track: &Track) -> Option<Moving> {
     let rest = (Vec3::from_array(translation), Quat::from_array(rotation));
     let pose = |time: f32| {
         let (translation, rotation) = track.at(time, rest);
-        Keyframe {
-            time,
-            translation,
-            rotation,
-        }
+        Keyframe { time, translation, rotation }
     };
-    let own = Animation {
-        keyframes: track.times().into_iter().map(pose).collect(),
-        repeat: true,
-    };
+    let own = Animation { keyframes: track.times().into_iter().map(pose).collect(), repeat: true };
     let (animation, size) = own.seen_from(parent)?;
-    Some(Moving {
-        animation,
-        below: Mat4::from_scale(Vec3::from_array(scale) * size),
-    })
+    Some(Moving { animation, below: Mat4::from_scale(Vec3::from_array(scale) * size) })
 }
 
 fn read_light(light: &::gltf::khr_lights_punctual::Light, name: &str, world: Mat4) -> Light {
     let kind = match light.kind() {
         Kind::Directional => LightKind::Directional,
         Kind::Point => LightKind::Point,
-        Kind::Spot {
-            inner_cone_angle,
-            outer_cone_angle,
-        } => LightKind::Spot {
-            inner: inner_cone_angle,
-            outer: outer_cone_angle,
-        },
+        Kind::Spot { inner_cone_angle, outer_cone_angle } => {
+            LightKind::Spot { inner: inner_cone_angle, outer: outer_cone_angle }
+        }
     };
     Light {
         name: light.name().unwrap_or(name).to_owned(),
         kind,
         color: Vec3::from_array(light.color()) * light.intensity(),
         position: world.w_axis.truncate(),
-        direction: world
-            .transform_vector3(Vec3::NEG_Z)
-            .normalize_or(Vec3::NEG_Y),
+        direction: world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Y),
         shadow: true,
     }
 }
@@ -190,10 +130,7 @@ fn read_camera(projection: &Projection, world: Mat4) -> Option<Camera> {
     let usable = fov_y > 0.0 && fov_y < 180.0 && near > 0.0 && far > near && far.is_finite();
     usable.then(|| Camera {
         eye,
-        target: eye
-            + world
-                .transform_vector3(Vec3::NEG_Z)
-                .normalize_or(Vec3::NEG_Z),
+        target: eye + world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z),
         up: world.transform_vector3(Vec3::Y).normalize_or(Vec3::Y),
         fov_y,
         near,

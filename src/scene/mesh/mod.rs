@@ -39,14 +39,8 @@ impl Dropped {
 }
 
 /// Repairs meshes in parallel. Fails on an index outside of its mesh.
-pub(super) fn prepare_all(
-    raw: Vec<RawMesh>,
-    materials: &[Material],
-) -> Result<(Vec<Mesh>, Dropped), String> {
-    let prepared: Result<Vec<_>, String> = raw
-        .into_par_iter()
-        .map(|raw| prepare(raw, materials))
-        .collect();
+pub(super) fn prepare_all(raw: Vec<RawMesh>, materials: &[Material]) -> Result<(Vec<Mesh>, Dropped), String> {
+    let prepared: Result<Vec<_>, String> = raw.into_par_iter().map(|raw| prepare(raw, materials)).collect();
     let mut total = Dropped::default();
     let mut meshes = Vec::new();
     for (mesh, dropped) in prepared? {
@@ -58,11 +52,7 @@ pub(super) fn prepare_all(
 }
 
 fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Dropped), String> {
-    let RawMesh {
-        mut mesh,
-        has_normals,
-        has_tangents,
-    } = raw;
+    let RawMesh { mut mesh, has_normals, has_tangents } = raw;
     check_indices(&mesh, materials.len())?;
     let dropped = drop_bad_triangles(&mut mesh);
     drop_unused_vertices(&mut mesh);
@@ -72,10 +62,7 @@ fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Dropped), Stri
     } else {
         normals::generate(&mut mesh);
     }
-    let normal_mapped = mesh
-        .parts
-        .iter()
-        .any(|p| materials[p.material as usize].normal_texture.is_some());
+    let normal_mapped = mesh.parts.iter().any(|p| materials[p.material as usize].normal_texture.is_some());
     if has_tangents {
         tangents::repair(&mut mesh);
     } else if normal_mapped {
@@ -113,8 +100,7 @@ fn drop_bad_triangles(mesh: &mut Mesh) -> Dropped {
         let first = kept.len();
         let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
         for triangle in mesh.indices[range].as_chunks::<3>().0 {
-            let corner = triangle
-                .map(|i| DVec3::from_array(mesh.vertices[i as usize].position.map(f64::from)));
+            let corner = triangle.map(|i| DVec3::from_array(mesh.vertices[i as usize].position.map(f64::from)));
             if corner.iter().any(|p| !p.is_finite()) {
                 dropped.not_finite += 1;
             } else if !has_area(corner) {
@@ -133,15 +119,8 @@ fn drop_bad_triangles(mesh: &mut Mesh) -> Dropped {
 
 /// False for points and lines: the height is below 1e-9 of the longest edge (f64, so thin needles survive).
 fn has_area(corner: [DVec3; 3]) -> bool {
-    let (ab, ac, bc) = (
-        corner[1] - corner[0],
-        corner[2] - corner[0],
-        corner[2] - corner[1],
-    );
-    let longest = ab
-        .length_squared()
-        .max(ac.length_squared())
-        .max(bc.length_squared());
+    let (ab, ac, bc) = (corner[1] - corner[0], corner[2] - corner[0], corner[2] - corner[1]);
+    let longest = ab.length_squared().max(ac.length_squared()).max(bc.length_squared());
     ab.cross(ac).length() > 1e-9 * longest
 }
 

@@ -7,11 +7,7 @@ use crate::scene::{Mesh, Vertex};
 
 /// MikkTSpace tangents; vertices whose corners disagree are split.
 pub(super) fn generate(mesh: &mut Mesh) {
-    let corners = mesh
-        .indices
-        .iter()
-        .map(|&i| mesh.vertices[i as usize])
-        .collect();
+    let corners = mesh.indices.iter().map(|&i| mesh.vertices[i as usize]).collect();
     let mut soup = Soup { corners };
     if !soup.corners.is_empty() && mikktspace::generate_tangents(&mut soup) {
         (mesh.vertices, mesh.indices) = weld(&soup.corners);
@@ -40,10 +36,7 @@ pub(super) fn any(mesh: &mut Mesh) {
 }
 
 fn any_tangent(normal: [f32; 3]) -> [f32; 4] {
-    Vec3::from_array(normal)
-        .any_orthonormal_vector()
-        .extend(1.0)
-        .to_array()
+    Vec3::from_array(normal).any_orthonormal_vector().extend(1.0).to_array()
 }
 
 struct Soup {

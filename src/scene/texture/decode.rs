@@ -21,9 +21,7 @@ type Failure = (String, String);
 pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<String>) -> Result<Texture, Failure> {
     match recipe {
         Recipe::Color { image, mask } => {
-            let filter = mask.map_or(Filter::Plain, |cutoff| {
-                Filter::Masked(f32::from(cutoff) / 255.0)
-            });
+            let filter = mask.map_or(Filter::Plain, |cutoff| Filter::Masked(f32::from(cutoff) / 255.0));
             single(image, true, filter, warnings)
         }
         Recipe::Normal { image } => single(image, false, Filter::Normal, warnings),
@@ -31,10 +29,9 @@ pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<String>) -> Result<Textur
         Recipe::ColorAndMask { color, alpha, mask } => {
             color_and_mask(color.as_ref(), alpha, f32::from(*mask) / 255.0, warnings)
         }
-        Recipe::RoughnessAndMetallic {
-            roughness,
-            metallic,
-        } => roughness_and_metallic(roughness.as_ref(), metallic.as_ref(), warnings),
+        Recipe::RoughnessAndMetallic { roughness, metallic } => {
+            roughness_and_metallic(roughness.as_ref(), metallic.as_ref(), warnings)
+        }
     }
 }
 
@@ -47,12 +44,7 @@ pub(in crate::scene) fn first_level_rgba(texture: &Texture) -> Result<Cow<'_, [u
     }
 }
 
-fn single(
-    image: &Source,
-    srgb: bool,
-    filter: Filter,
-    warnings: &mut Vec<String>,
-) -> Result<Texture, Failure> {
+fn single(image: &Source, srgb: bool, filter: Filter, warnings: &mut Vec<String>) -> Result<Texture, Failure> {
     let fail = |problem: String| (image.name(), problem);
     let bytes = read(image).map_err(fail)?;
     if is_dds(&bytes) {
@@ -81,13 +73,7 @@ fn color_and_mask(
         pixel.0[3] = if has_alpha { from.0[3] } else { from.0[0] };
     }
     let name = color.unwrap_or(alpha).name();
-    Ok(finish(
-        result,
-        &name,
-        true,
-        Filter::Masked(cutoff),
-        warnings,
-    ))
+    Ok(finish(result, &name, true, Filter::Masked(cutoff), warnings))
 }
 
 fn roughness_and_metallic(
@@ -97,32 +83,14 @@ fn roughness_and_metallic(
 ) -> Result<Texture, Failure> {
     let rough = roughness.map(pixels).transpose()?;
     let metal = metallic.map(pixels).transpose()?;
-    let width = rough
-        .iter()
-        .chain(&metal)
-        .map(|i| i.width())
-        .max()
-        .unwrap_or(1);
-    let height = rough
-        .iter()
-        .chain(&metal)
-        .map(|i| i.height())
-        .max()
-        .unwrap_or(1);
+    let width = rough.iter().chain(&metal).map(|i| i.width()).max().unwrap_or(1);
+    let height = rough.iter().chain(&metal).map(|i| i.height()).max().unwrap_or(1);
     let red = |image: &Option<RgbaImage>, x: u32, y: u32| match image {
-        Some(image) => {
-            image
-                .get_pixel(
-                    scaled(x, width, image.width()),
-                    scaled(y, height, image.height()),
-                )
-                .0[0]
-        }
+        Some(image) => image.get_pixel(scaled(x, width, image.width()), scaled(y, height, image.height())).0[0],
         None => 255,
     };
-    let merged = RgbaImage::from_fn(width, height, |x, y| {
-        image::Rgba([255, red(&rough, x, y), red(&metal, x, y), 255])
-    });
+    let merged =
+        RgbaImage::from_fn(width, height, |x, y| image::Rgba([255, red(&rough, x, y), red(&metal, x, y), 255]));
     let name = roughness.or(metallic).map(Source::name).unwrap_or_default();
     Ok(finish(merged, &name, false, Filter::Plain, warnings))
 }
@@ -134,20 +102,14 @@ fn scaled(x: u32, from: u32, to: u32) -> u32 {
 fn pixels(source: &Source) -> Result<RgbaImage, Failure> {
     let fail = |problem: String| (source.name(), problem);
     let bytes = read(source).map_err(fail)?;
-    if is_dds(&bytes) {
-        dds::pixels(&bytes).map_err(fail)
-    } else {
-        decode(&bytes, &source.name()).map_err(fail)
-    }
+    if is_dds(&bytes) { dds::pixels(&bytes).map_err(fail) } else { decode(&bytes, &source.name()).map_err(fail) }
 }
 
 fn read(source: &Source) -> Result<Cow<'_, [u8]>, String> {
     match source {
         Source::File(path) => match std::fs::read(path) {
             Ok(bytes) => Ok(Cow::Owned(bytes)),
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                Err("the file does not exist".into())
-            }
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err("the file does not exist".into()),
             Err(error) => Err(format!("cannot read it: {error}")),
         },
         Source::Bytes(_, bytes) => Ok(Cow::Borrowed(bytes)),
@@ -162,17 +124,9 @@ fn is_dds(bytes: &[u8]) -> bool {
 /// By the file's own magic; TGA has none, so there the name's extension decides.
 fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
     let by_name = || ImageFormat::from_path(name).ok();
-    let format = image::guess_format(bytes)
-        .ok()
-        .or_else(by_name)
-        .ok_or("not a PNG, JPEG, TGA, BMP or DDS image")?;
-    if !matches!(
-        format,
-        ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tga | ImageFormat::Bmp
-    ) {
-        return Err(format!(
-            "{format:?} images are not supported; convert it to PNG"
-        ));
+    let format = image::guess_format(bytes).ok().or_else(by_name).ok_or("not a PNG, JPEG, TGA, BMP or DDS image")?;
+    if !matches!(format, ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tga | ImageFormat::Bmp) {
+        return Err(format!("{format:?} images are not supported; convert it to PNG"));
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
@@ -180,37 +134,17 @@ fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
     limits.max_image_height = Some(MAX_FILE_SIDE);
     limits.max_alloc = Some(MAX_FILE_BYTES);
     reader.limits(limits);
-    let image = reader
-        .decode()
-        .map_err(|error| format!("the image is damaged or too large ({error})"))?
-        .into_rgba8();
-    if image.width() == 0 || image.height() == 0 {
-        Err("the image is empty".into())
-    } else {
-        Ok(image)
-    }
+    let image = reader.decode().map_err(|error| format!("the image is damaged or too large ({error})"))?.into_rgba8();
+    if image.width() == 0 || image.height() == 0 { Err("the image is empty".into()) } else { Ok(image) }
 }
 
-fn finish(
-    image: RgbaImage,
-    name: &str,
-    srgb: bool,
-    filter: Filter,
-    warnings: &mut Vec<String>,
-) -> Texture {
-    let format = if srgb {
-        TextureFormat::Rgba8Srgb
-    } else {
-        TextureFormat::Rgba8Unorm
-    };
+fn finish(image: RgbaImage, name: &str, srgb: bool, filter: Filter, warnings: &mut Vec<String>) -> Texture {
+    let format = if srgb { TextureFormat::Rgba8Srgb } else { TextureFormat::Rgba8Unorm };
     let (width, height) = image.dimensions();
     let mut rgba = image.into_raw();
     let to = within_limit(width, height);
     if to != (width, height) {
-        warnings.push(format!(
-            "texture {name}: {width}x{height} reduced to {}x{}",
-            to.0, to.1
-        ));
+        warnings.push(format!("texture {name}: {width}x{height} reduced to {}x{}", to.0, to.1));
         rgba = mips::reduce(&rgba, (width, height), to, srgb, filter);
     }
     texture_from_rgba(name, to.0, to.1, rgba, format, filter)
@@ -222,10 +156,7 @@ fn within_limit(width: u32, height: u32) -> (u32, u32) {
     if longest <= MAX_SIDE {
         return (width, height);
     }
-    (
-        scaled(MAX_SIDE, longest, width).max(1),
-        scaled(MAX_SIDE, longest, height).max(1),
-    )
+    (scaled(MAX_SIDE, longest, width).max(1), scaled(MAX_SIDE, longest, height).max(1))
 }
 
 #[cfg(test)]

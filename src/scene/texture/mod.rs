@@ -41,20 +41,13 @@ pub(super) enum Recipe {
     /// sRGB colour; `mask` is an alpha cutoff in 1/255ths whose coverage the mips preserve.
     Color { image: Source, mask: Option<u8> },
     /// sRGB colour from one image (white without) and alpha from another.
-    ColorAndMask {
-        color: Option<Source>,
-        alpha: Source,
-        mask: u8,
-    },
+    ColorAndMask { color: Option<Source>, alpha: Source, mask: u8 },
     /// Tangent-space normals.
     Normal { image: Source },
     /// G = roughness, B = metallic in one image.
     MetallicRoughness { image: Source },
     /// Roughness and metallic in grey images of their own (white without).
-    RoughnessAndMetallic {
-        roughness: Option<Source>,
-        metallic: Option<Source>,
-    },
+    RoughnessAndMetallic { roughness: Option<Source>, metallic: Option<Source> },
 }
 
 /// The textures that materials ask for, each recipe once.
@@ -76,10 +69,8 @@ impl Requests {
     /// Decodes everything. What cannot be decoded becomes a visible stand-in and a warning.
     pub fn load(self) -> (Vec<Texture>, Vec<String>) {
         let recipes: Vec<(Recipe, String)> = self.recipes.into_iter().collect();
-        let loaded: Vec<(Texture, Vec<String>)> = recipes
-            .par_iter()
-            .map(|(recipe, material)| cook(recipe, material))
-            .collect();
+        let loaded: Vec<(Texture, Vec<String>)> =
+            recipes.par_iter().map(|(recipe, material)| cook(recipe, material)).collect();
         let mut textures = Vec::new();
         let mut warnings = Vec::new();
         for (texture, more) in loaded {
@@ -95,9 +86,8 @@ fn cook(recipe: &Recipe, material: &str) -> (Texture, Vec<String>) {
     match decode::cook(recipe, &mut warnings) {
         Ok(texture) => (texture, warnings),
         Err((file, problem)) => {
-            warnings.push(format!(
-                "texture {file} of material '{material}': {problem}; a checkerboard stands in for it"
-            ));
+            warnings
+                .push(format!("texture {file} of material '{material}': {problem}; a checkerboard stands in for it"));
             (stand_in::checkerboard(recipe, &file), warnings)
         }
     }

@@ -44,20 +44,14 @@ fn banner(mesh: &mut MeshBuilder, material: u32, phase: f32) {
         let narrow = 1.0 - 0.08 * (PI * drop).sin();
         // The lower edge hangs in a shallow point.
         let edge = 0.28 * (1.0 - x.abs()) * drop;
-        Vec3::new(
-            x * half * narrow,
-            bottom + (top - bottom) * v - edge,
-            depth * fold + swing,
-        )
+        Vec3::new(x * half * narrow, bottom + (top - bottom) * v - edge, depth * fold + swing)
     });
     rod(mesh, Vec3::new(0.0, top + 0.02, 0.0), half + 0.12, 0.022);
     for x in [-1.0f32, 1.0] {
         mesh.icosphere(GOLD, Vec3::new(x * (half + 0.14), top + 0.02, 0.0), 0.05, 2);
         // Brackets back to the wall.
-        let (low, high) = (
-            Vec3::new(x * 0.6 - 0.015, top + 0.005, -0.5),
-            Vec3::new(x * 0.6 + 0.015, top + 0.035, 0.01),
-        );
+        let (low, high) =
+            (Vec3::new(x * 0.6 - 0.015, top + 0.005, -0.5), Vec3::new(x * 0.6 + 0.015, top + 0.035, 0.01));
         mesh.cuboid(GOLD, low, high, 1.0, [true; 6]);
     }
 }
@@ -102,13 +96,6 @@ fn curtain(mesh: &mut MeshBuilder, material: u32, half: f32) {
     });
     // The tie, a gold cord around the gathered cloth.
     let at = bottom + (top - bottom) * tie;
-    mesh.ring(
-        GOLD,
-        Vec3::new(half * 1.01, at, 0.0),
-        Vec3::X * 0.155,
-        Vec3::Z * 0.10,
-        0.02,
-        [20, 6],
-    );
+    mesh.ring(GOLD, Vec3::new(half * 1.01, at, 0.0), Vec3::X * 0.155, Vec3::Z * 0.10, 0.02, [20, 6]);
     rod(mesh, Vec3::new(half * 0.56, top + 0.015, 0.0), 0.575, 0.018);
 }

@@ -53,25 +53,11 @@ pub(super) fn chains() -> Mesh {
 /// Links along a curve, each a quarter turn from the last.
 fn chain(mesh: &mut MeshBuilder, links: u32, curve: impl Fn(f32) -> Vec3) {
     for i in 0..links {
-        let (a, b) = (
-            curve(i as f32 / links as f32),
-            curve((i + 1) as f32 / links as f32),
-        );
+        let (a, b) = (curve(i as f32 / links as f32), curve((i + 1) as f32 / links as f32));
         let along = b - a;
         let flat = along.any_orthonormal_vector();
-        let across = if i % 2 == 0 {
-            flat
-        } else {
-            along.cross(flat).normalize()
-        };
-        mesh.ring(
-            IRON,
-            (a + b) * 0.5,
-            along * 0.62,
-            across * 0.032,
-            0.011,
-            [8, 4],
-        );
+        let across = if i % 2 == 0 { flat } else { along.cross(flat).normalize() };
+        mesh.ring(IRON, (a + b) * 0.5, along * 0.62, across * 0.032, 0.011, [8, 4]);
     }
 }
 
@@ -96,39 +82,16 @@ fn lantern(mesh: &mut MeshBuilder, centre: Vec3, scale: f32) {
         12,
         6,
         1.0,
-        &[
-            p(0.0, -0.26),
-            p(0.10, -0.24),
-            p(0.15, -0.1),
-            p(0.16, 0.06),
-            p(0.12, 0.2),
-            p(0.06, 0.27),
-            p(0.0, 0.28),
-        ],
+        &[p(0.0, -0.26), p(0.10, -0.24), p(0.15, -0.1), p(0.16, 0.06), p(0.12, 0.2), p(0.06, 0.27), p(0.0, 0.28)],
     );
-    let roof = [
-        p(0.0, 0.27),
-        p(0.24, 0.28),
-        p(0.25, 0.31),
-        p(0.15, 0.40),
-        p(0.06, 0.46),
-        p(0.05, 0.53),
-        p(0.0, 0.56),
-    ];
+    let roof = [p(0.0, 0.27), p(0.24, 0.28), p(0.25, 0.31), p(0.15, 0.40), p(0.06, 0.46), p(0.05, 0.53), p(0.0, 0.56)];
     mesh.lathe(IRON, 12, 12, 1.0, &roof);
     mesh.lathe(
         IRON,
         12,
         10,
         1.0,
-        &[
-            p(0.0, -0.40),
-            p(0.05, -0.38),
-            p(0.07, -0.34),
-            p(0.21, -0.31),
-            p(0.21, -0.27),
-            p(0.0, -0.265),
-        ],
+        &[p(0.0, -0.40), p(0.05, -0.38), p(0.07, -0.34), p(0.21, -0.31), p(0.21, -0.27), p(0.0, -0.265)],
     );
     for i in 0..6 {
         let (s, c) = (i as f32 / 6.0 * TAU).sin_cos();
@@ -136,18 +99,9 @@ fn lantern(mesh: &mut MeshBuilder, centre: Vec3, scale: f32) {
         mesh.surface(IRON, 6, 5, Vec2::ONE, |u, v| {
             let (ts, tc) = (-u * TAU).sin_cos();
             let bulge = 0.205 + 0.03 * (v * std::f32::consts::PI).sin();
-            out * (bulge + 0.012 * tc)
-                + Vec3::new(-s, 0.0, c) * (0.012 * ts)
-                + Vec3::Y * (-0.30 + 0.6 * v)
+            out * (bulge + 0.012 * tc) + Vec3::new(-s, 0.0, c) * (0.012 * ts) + Vec3::Y * (-0.30 + 0.6 * v)
         });
     }
-    mesh.ring(
-        GOLD,
-        Vec3::Y * 0.60,
-        Vec3::X * 0.05,
-        Vec3::Y * 0.06,
-        0.014,
-        [14, 6],
-    );
+    mesh.ring(GOLD, Vec3::Y * 0.60, Vec3::X * 0.05, Vec3::Y * 0.06, 0.014, [14, 6]);
     mesh.transform = Mat4::IDENTITY;
 }

@@ -37,20 +37,10 @@ pub(super) fn all() -> (Vec<Material>, Vec<Texture>) {
         roughness,
         ..matte(name, Vec3::ONE)
     };
-    let metal = |name: &str, color: Vec3, roughness: f32| Material {
-        metallic: 1.0,
-        roughness,
-        ..matte(name, color)
-    };
+    let metal = |name: &str, color: Vec3, roughness: f32| Material { metallic: 1.0, roughness, ..matte(name, color) };
     let mut cloth = |name: &str, color: Vec3| Material {
         two_sided: true,
-        ..textured(
-            name,
-            add(patterns::color(name, 512, |u, v| {
-                patterns::cloth(u, v, color)
-            })),
-            0.9,
-        )
+        ..textured(name, add(patterns::color(name, 512, |u, v| patterns::cloth(u, v, color))), 0.9)
     };
     let (red, green, blue) = (
         cloth("red cloth", Vec3::new(0.80, 0.07, 0.06)),
@@ -59,65 +49,22 @@ pub(super) fn all() -> (Vec<Material>, Vec<Texture>) {
     );
     let materials = vec![
         Material {
-            normal_texture: add(patterns::normals(
-                "floor normals",
-                512,
-                2.0,
-                patterns::floor_height,
-            )),
-            metallic_roughness_texture: add(patterns::roughness(
-                "floor roughness",
-                512,
-                patterns::floor_roughness,
-            )),
-            ..textured(
-                "floor tiles",
-                add(patterns::color("floor tiles", 512, patterns::floor_tile)),
-                1.0,
-            )
+            normal_texture: add(patterns::normals("floor normals", 512, 2.0, patterns::floor_height)),
+            metallic_roughness_texture: add(patterns::roughness("floor roughness", 512, patterns::floor_roughness)),
+            ..textured("floor tiles", add(patterns::color("floor tiles", 512, patterns::floor_tile)), 1.0)
         },
         Material {
-            normal_texture: add(patterns::normals(
-                "ashlar normals",
-                512,
-                2.0,
-                patterns::ashlar_height,
-            )),
-            ..textured(
-                "ashlar",
-                add(patterns::color("ashlar", 512, patterns::ashlar)),
-                0.85,
-            )
+            normal_texture: add(patterns::normals("ashlar normals", 512, 2.0, patterns::ashlar_height)),
+            ..textured("ashlar", add(patterns::color("ashlar", 512, patterns::ashlar)), 0.85)
         },
         Material {
-            normal_texture: add(patterns::normals(
-                "brick normals",
-                512,
-                1.0,
-                patterns::brick_height,
-            )),
-            ..textured(
-                "brick",
-                add(patterns::color("brick", 512, patterns::brick)),
-                0.9,
-            )
+            normal_texture: add(patterns::normals("brick normals", 512, 1.0, patterns::brick_height)),
+            ..textured("brick", add(patterns::color("brick", 512, patterns::brick)), 0.9)
         },
         matte("limestone trim", Vec3::new(0.72, 0.65, 0.54)),
-        textured(
-            "marble",
-            add(patterns::color("marble", 256, patterns::marble)),
-            0.45,
-        ),
-        textured(
-            "roof tiles",
-            add(patterns::color("roof tiles", 256, patterns::terracotta)),
-            0.85,
-        ),
-        textured(
-            "wood",
-            add(patterns::color("wood", 512, patterns::wood)),
-            0.6,
-        ),
+        textured("marble", add(patterns::color("marble", 256, patterns::marble)), 0.45),
+        textured("roof tiles", add(patterns::color("roof tiles", 256, patterns::terracotta)), 0.85),
+        textured("wood", add(patterns::color("wood", 512, patterns::wood)), 0.6),
         matte("plaster", Vec3::new(0.80, 0.74, 0.64)),
         red,
         green,
@@ -127,21 +74,11 @@ pub(super) fn all() -> (Vec<Material>, Vec<Texture>) {
         Material {
             alpha_cutoff: 0.5,
             two_sided: true,
-            ..textured(
-                "leaves",
-                add(patterns::masked("leaves", 256, patterns::leaves)),
-                0.7,
-            )
+            ..textured("leaves", add(patterns::masked("leaves", 256, patterns::leaves)), 0.7)
         },
         matte("terracotta", Vec3::new(0.46, 0.19, 0.10)),
-        Material {
-            emission: Vec3::new(30.0, 17.0, 6.5),
-            ..matte("lantern glass", Vec3::new(0.8, 0.7, 0.5))
-        },
-        Material {
-            roughness: 0.05,
-            ..matte("water", Vec3::new(0.02, 0.06, 0.07))
-        },
+        Material { emission: Vec3::new(30.0, 17.0, 6.5), ..matte("lantern glass", Vec3::new(0.8, 0.7, 0.5)) },
+        Material { roughness: 0.05, ..matte("water", Vec3::new(0.02, 0.06, 0.07)) },
         matte("soil", Vec3::new(0.06, 0.04, 0.03)),
         metal("copper", Vec3::new(0.95, 0.55, 0.38), 0.32),
     ];

@@ -61,11 +61,7 @@ pub(super) fn build() -> Scene {
     let mut scene = assemble("atrium", materials, meshes);
     scene.textures = textures;
     place_columns(&mut scene);
-    if let Some(ornament) = scene
-        .instances
-        .iter_mut()
-        .find(|i| i.name == "armillary sphere")
-    {
+    if let Some(ornament) = scene.instances.iter_mut().find(|i| i.name == "armillary sphere") {
         ornament.animation = Some(floating());
     }
     scene.lights.push(Light {
@@ -79,44 +75,19 @@ pub(super) fn build() -> Scene {
     scene.sky = Vec3::new(0.50, 0.68, 0.95);
     let diagonal = 35.0;
     for (name, eye, target, fov) in [
-        (
-            "default",
-            Vec3::new(9.6, 1.9, -1.15),
-            Vec3::new(-6.0, 3.35, 0.7),
-            60.0,
-        ),
-        (
-            "gallery",
-            Vec3::new(10.55, 6.75, 0.95),
-            Vec3::new(-6.0, 3.3, -0.5),
-            60.0,
-        ),
-        (
-            "arcade",
-            Vec3::new(-9.4, 1.75, 5.0),
-            Vec3::new(6.0, 2.2, 4.3),
-            58.3,
-        ),
-        (
-            "fountain",
-            Vec3::new(3.6, 1.6, 1.9),
-            Vec3::new(-0.4, 1.9, -0.3),
-            50.0,
-        ),
+        ("default", Vec3::new(9.6, 1.9, -1.15), Vec3::new(-6.0, 3.35, 0.7), 60.0),
+        ("gallery", Vec3::new(10.55, 6.75, 0.95), Vec3::new(-6.0, 3.3, -0.5), 60.0),
+        ("arcade", Vec3::new(-9.4, 1.75, 5.0), Vec3::new(6.0, 2.2, 4.3), 58.3),
+        ("fountain", Vec3::new(3.6, 1.6, 1.9), Vec3::new(-0.4, 1.9, -0.3), 50.0),
     ] {
-        scene
-            .cameras
-            .insert(name.into(), view(eye, target, fov, diagonal));
+        scene.cameras.insert(name.into(), view(eye, target, fov, diagonal));
     }
     scene
 }
 
 /// Turns the single column of each storey into one instance per place.
 fn place_columns(scene: &mut Scene) {
-    for (name, floor) in [
-        ("lower column", ARCADE_FLOOR),
-        ("upper column", GALLERY_FLOOR),
-    ] {
+    for (name, floor) in [("lower column", ARCADE_FLOOR), ("upper column", GALLERY_FLOOR)] {
         let Some(index) = scene.instances.iter().position(|i| i.name == name) else {
             continue;
         };
@@ -134,10 +105,7 @@ fn place_columns(scene: &mut Scene) {
 
 /// Feet of all columns, around the court.
 fn column_places() -> Vec<Vec3> {
-    sides()
-        .into_iter()
-        .flat_map(|(a, b, bays)| (0..bays).map(move |i| a.lerp(b, i as f32 / bays as f32)))
-        .collect()
+    sides().into_iter().flat_map(|(a, b, bays)| (0..bays).map(move |i| a.lerp(b, i as f32 / bays as f32))).collect()
 }
 
 /// The four sides of the court: from corner to corner, counter-clockwise seen from above, and their bays.
@@ -145,18 +113,8 @@ fn column_places() -> Vec<Vec3> {
 fn sides() -> [(Vec3, Vec3, u32); 4] {
     let [x, z] = COURT;
     let corner = |sx: f32, sz: f32| Vec3::new(sx * x, 0.0, sz * z);
-    let (a, b, c, d) = (
-        corner(-1.0, 1.0),
-        corner(1.0, 1.0),
-        corner(1.0, -1.0),
-        corner(-1.0, -1.0),
-    );
-    [
-        (a, b, BAYS[0]),
-        (b, c, BAYS[1]),
-        (c, d, BAYS[0]),
-        (d, a, BAYS[1]),
-    ]
+    let (a, b, c, d) = (corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0));
+    [(a, b, BAYS[0]), (b, c, BAYS[1]), (c, d, BAYS[0]), (d, a, BAYS[1])]
 }
 
 /// Each bay of a side: its two columns and the horizontal direction out of the court.
@@ -180,8 +138,5 @@ fn floating() -> Animation {
             rotation: Quat::from_rotation_y(turn * TAU),
         }
     });
-    Animation {
-        keyframes: keyframes.collect(),
-        repeat: true,
-    }
+    Animation { keyframes: keyframes.collect(), repeat: true }
 }

@@ -29,13 +29,7 @@ pub(super) fn fountain() -> Mesh {
         p(1.25, 0.34),
     ];
     mesh.lathe(MARBLE, 48, 26, 1.5, &basin);
-    mesh.lathe(
-        WATER,
-        48,
-        2,
-        1.0,
-        &[p(1.37, 0.58), p(0.7, 0.583), p(0.0, 0.58)],
-    );
+    mesh.lathe(WATER, 48, 2, 1.0, &[p(1.37, 0.58), p(0.7, 0.583), p(0.0, 0.58)]);
     let stem = [
         p(0.42, 0.40),
         p(0.40, 0.66),
@@ -61,14 +55,7 @@ pub(super) fn fountain() -> Mesh {
         18,
         10,
         1.0,
-        &[
-            p(0.10, 1.42),
-            p(0.10, 1.6),
-            p(0.05, 1.66),
-            p(0.09, 1.72),
-            p(0.03, 1.80),
-            p(0.0, 1.84),
-        ],
+        &[p(0.10, 1.42), p(0.10, 1.6), p(0.05, 1.66), p(0.09, 1.72), p(0.03, 1.80), p(0.0, 1.84)],
     );
     mesh.finish()
 }
@@ -77,20 +64,9 @@ pub(super) fn fountain() -> Mesh {
 pub(super) fn armillary() -> Mesh {
     let mut mesh = MeshBuilder::new("armillary sphere");
     mesh.icosphere(GOLD, Vec3::ZERO, 0.30, 4);
-    for (tilt, radius, material) in [
-        (0.0f32, 0.52, COPPER),
-        (1.05, 0.47, GOLD),
-        (2.1, 0.42, COPPER),
-    ] {
+    for (tilt, radius, material) in [(0.0f32, 0.52, COPPER), (1.05, 0.47, GOLD), (2.1, 0.42, COPPER)] {
         let turn = Quat::from_rotation_x(0.41) * Quat::from_rotation_z(tilt);
-        mesh.ring(
-            material,
-            Vec3::ZERO,
-            turn * Vec3::X * radius,
-            turn * Vec3::Z * radius,
-            0.022,
-            [64, 8],
-        );
+        mesh.ring(material, Vec3::ZERO, turn * Vec3::X * radius, turn * Vec3::Z * radius, 0.022, [64, 8]);
     }
     let axis = Quat::from_rotation_x(0.41) * Vec3::Y;
     let side = axis.any_orthonormal_vector();

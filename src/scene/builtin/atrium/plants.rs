@@ -40,21 +40,8 @@ pub(super) fn pots() -> Mesh {
     for place in pot_places() {
         mesh.transform = glam::Mat4::from_translation(place);
         mesh.lathe(POT, 24, 18, 1.0, &outline);
-        mesh.lathe(
-            SOIL,
-            24,
-            2,
-            1.0,
-            &[p(0.315, 0.50), p(0.2, 0.52), p(0.0, 0.54)],
-        );
-        mesh.ring(
-            TRIM,
-            Vec3::Y * 0.30,
-            Vec3::X * 0.295,
-            Vec3::NEG_Z * 0.295,
-            0.02,
-            [24, 6],
-        );
+        mesh.lathe(SOIL, 24, 2, 1.0, &[p(0.315, 0.50), p(0.2, 0.52), p(0.0, 0.54)]);
+        mesh.ring(TRIM, Vec3::Y * 0.30, Vec3::X * 0.295, Vec3::NEG_Z * 0.295, 0.02, [24, 6]);
     }
     mesh.finish()
 }
@@ -69,17 +56,10 @@ pub(super) fn foliage() -> Mesh {
             let (turn, rise) = (random.unit() * TAU, random.unit());
             let out = Vec3::new(turn.cos(), 0.0, turn.sin());
             let width = 0.42 * (std::f32::consts::PI * (0.12 + 0.8 * rise)).sin();
-            let root =
-                place + Vec3::Y * (0.52 + tall * rise) + out * (width * random.range(0.2, 0.9));
+            let root = place + Vec3::Y * (0.52 + tall * rise) + out * (width * random.range(0.2, 0.9));
             let lift = random.range(0.2, 1.4) + rise * 0.6;
             let size = random.range(0.22, 0.36);
-            card(
-                &mut mesh,
-                &mut random,
-                root,
-                (out + Vec3::Y * lift).normalize(),
-                size,
-            );
+            card(&mut mesh, &mut random, root, (out + Vec3::Y * lift).normalize(), size);
         }
     }
     for (i, place) in column_places().into_iter().enumerate() {
@@ -89,12 +69,7 @@ pub(super) fn foliage() -> Mesh {
     }
     for side in [-1.0f32, 1.0] {
         for x in [-9.6, -4.1, 1.4, 6.9] {
-            hang(
-                &mut mesh,
-                &mut random,
-                Vec3::new(x * -side, GALLERY_FLOOR + 0.86, side * (COURT[1] - 0.12)),
-                side,
-            );
+            hang(&mut mesh, &mut random, Vec3::new(x * -side, GALLERY_FLOOR + 0.86, side * (COURT[1] - 0.12)), side);
         }
     }
     mesh.finish()
@@ -126,11 +101,7 @@ fn hang(mesh: &mut MeshBuilder, random: &mut Random, top: Vec3, side: f32) {
             let swing = 0.09 * (t * 5.0 + sway).sin();
             let depth = 0.07 + 0.22 * (t * 4.0).min(1.0) + random.range(-0.03, 0.05);
             let root = top + Vec3::new(x + swing, -length * t, -side * depth);
-            let along = Vec3::new(
-                random.range(-0.8, 0.8),
-                -0.8,
-                -side * random.range(0.1, 0.8),
-            );
+            let along = Vec3::new(random.range(-0.8, 0.8), -0.8, -side * random.range(0.1, 0.8));
             let size = random.range(0.15, 0.25);
             card(mesh, random, root, along.normalize(), size);
         }

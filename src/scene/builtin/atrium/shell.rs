@@ -19,23 +19,12 @@ const OUTER_TOP: f32 = 11.55;
 /// The court, the arcades around it one step higher, and the gallery.
 pub(super) fn floors() -> Mesh {
     let mut mesh = MeshBuilder::new("floors");
-    level(
-        &mut mesh,
-        FLOOR,
-        [-KERB[0], KERB[0]],
-        [-KERB[1], KERB[1]],
-        0.0,
-    );
+    level(&mut mesh, FLOOR, [-KERB[0], KERB[0]], [-KERB[1], KERB[1]], 0.0);
     around(&mut mesh, FLOOR, KERB, ARCADE_FLOOR);
     let gallery = [COURT[0] - 0.2, COURT[1] - 0.2];
     around(&mut mesh, WOOD, gallery, GALLERY_FLOOR - 0.02);
     let [x, z] = KERB;
-    mesh.cuboid_inside(
-        TRIM,
-        Vec3::new(-x, 0.0, -z),
-        Vec3::new(x, ARCADE_FLOOR, z),
-        1.0,
-    );
+    mesh.cuboid_inside(TRIM, Vec3::new(-x, 0.0, -z), Vec3::new(x, ARCADE_FLOOR, z), 1.0);
     mesh.finish()
 }
 
@@ -62,61 +51,23 @@ pub(super) fn walls() -> Mesh {
     let mut mesh = MeshBuilder::new("walls");
     let [x, z] = WALL;
     let band = GALLERY_FLOOR - 0.02;
-    mesh.cuboid_inside(
-        ASHLAR,
-        Vec3::new(-x, ARCADE_FLOOR, -z),
-        Vec3::new(x, band, z),
-        2.0,
-    );
-    mesh.cuboid_inside(
-        BRICK,
-        Vec3::new(-x, band, -z),
-        Vec3::new(x, OUTER_TOP, z),
-        1.0,
-    );
+    mesh.cuboid_inside(ASHLAR, Vec3::new(-x, ARCADE_FLOOR, -z), Vec3::new(x, band, z), 2.0);
+    mesh.cuboid_inside(BRICK, Vec3::new(-x, band, -z), Vec3::new(x, OUTER_TOP, z), 1.0);
     let sides_only = [true, true, false, false, true, true];
-    mesh.cuboid(
-        PLASTER,
-        Vec3::new(-x - 0.3, -0.3, -z - 0.3),
-        Vec3::new(x + 0.3, OUTER_TOP, z + 0.3),
-        2.0,
-        sides_only,
-    );
+    mesh.cuboid(PLASTER, Vec3::new(-x - 0.3, -0.3, -z - 0.3), Vec3::new(x + 0.3, OUTER_TOP, z + 0.3), 2.0, sides_only);
     for (a, b, count) in sides() {
         // A pilaster where the vaults meet the wall, behind each column.
         let along = (b - a).normalize();
         let outward = along.cross(Vec3::Y);
-        let depth = if outward.x.abs() > 0.5 {
-            WALL[0] - COURT[0]
-        } else {
-            WALL[1] - COURT[1]
-        };
+        let depth = if outward.x.abs() > 0.5 { WALL[0] - COURT[0] } else { WALL[1] - COURT[1] };
         for i in 0..=count {
             let foot = a.lerp(b, i as f32 / count as f32) + outward * depth;
             mesh.transform = frame(along, outward, foot + Vec3::Y * ARCADE_FLOOR);
             let top = LOWER_SPRING - ARCADE_FLOOR;
             let faces = [true, true, false, false, true, false];
-            mesh.cuboid(
-                TRIM,
-                Vec3::new(-0.22, 0.0, -0.16),
-                Vec3::new(0.22, top + 0.1, 0.05),
-                1.0,
-                faces,
-            );
-            mesh.cuboid(
-                TRIM,
-                Vec3::new(-0.28, top - 0.22, -0.22),
-                Vec3::new(0.28, top - 0.04, 0.04),
-                1.0,
-                CLOSED_BACK,
-            );
-            mesh.cuboid(
-                TRIM,
-                Vec3::new(-0.27, -0.02, -0.21),
-                Vec3::new(0.27, 0.3, 0.04),
-                1.0,
-                CLOSED_BACK,
-            );
+            mesh.cuboid(TRIM, Vec3::new(-0.22, 0.0, -0.16), Vec3::new(0.22, top + 0.1, 0.05), 1.0, faces);
+            mesh.cuboid(TRIM, Vec3::new(-0.28, top - 0.22, -0.22), Vec3::new(0.28, top - 0.04, 0.04), 1.0, CLOSED_BACK);
+            mesh.cuboid(TRIM, Vec3::new(-0.27, -0.02, -0.21), Vec3::new(0.27, 0.3, 0.04), 1.0, CLOSED_BACK);
         }
     }
     mesh.transform = Mat4::IDENTITY;
@@ -131,12 +82,7 @@ const CLOSED_BACK: [bool; 6] = [true, true, true, true, true, false];
 
 /// x along, y up, z outward.
 fn frame(along: Vec3, outward: Vec3, origin: Vec3) -> Mat4 {
-    Mat4::from_cols(
-        along.extend(0.0),
-        Vec3::Y.extend(0.0),
-        outward.extend(0.0),
-        origin.extend(1.0),
-    )
+    Mat4::from_cols(along.extend(0.0), Vec3::Y.extend(0.0), outward.extend(0.0), origin.extend(1.0))
 }
 
 /// A wooden door with two leaves in the middle of an end wall, below and on the gallery.
@@ -145,39 +91,14 @@ fn doors(mesh: &mut MeshBuilder, side: f32) {
         let along = Vec3::new(0.0, 0.0, -side);
         mesh.transform = frame(along, Vec3::X * side, Vec3::new(side * WALL[0], floor, 0.0));
         for (x0, x1) in [(-0.62, -0.01), (0.01, 0.62)] {
-            mesh.cuboid(
-                WOOD,
-                Vec3::new(x0, -0.01, -0.07),
-                Vec3::new(x1, 2.35, 0.02),
-                1.3,
-                CLOSED_BACK,
-            );
+            mesh.cuboid(WOOD, Vec3::new(x0, -0.01, -0.07), Vec3::new(x1, 2.35, 0.02), 1.3, CLOSED_BACK);
             let handle = if x0 < 0.0 { -0.09 } else { 0.09 };
-            mesh.ring(
-                IRON,
-                Vec3::new(handle, 1.1, -0.09),
-                Vec3::X * 0.045,
-                Vec3::Y * 0.06,
-                0.01,
-                [16, 6],
-            );
+            mesh.ring(IRON, Vec3::new(handle, 1.1, -0.09), Vec3::X * 0.045, Vec3::Y * 0.06, 0.01, [16, 6]);
         }
         for (x0, x1) in [(-0.82, -0.6), (0.6, 0.82)] {
-            mesh.cuboid(
-                TRIM,
-                Vec3::new(x0, -0.03, -0.13),
-                Vec3::new(x1, 2.42, 0.03),
-                1.0,
-                CLOSED_BACK,
-            );
+            mesh.cuboid(TRIM, Vec3::new(x0, -0.03, -0.13), Vec3::new(x1, 2.42, 0.03), 1.0, CLOSED_BACK);
         }
-        mesh.cuboid(
-            TRIM,
-            Vec3::new(-0.9, 2.34, -0.17),
-            Vec3::new(0.9, 2.62, 0.04),
-            1.0,
-            CLOSED_BACK,
-        );
+        mesh.cuboid(TRIM, Vec3::new(-0.9, 2.34, -0.17), Vec3::new(0.9, 2.62, 0.04), 1.0, CLOSED_BACK);
     }
     mesh.transform = Mat4::IDENTITY;
 }
@@ -194,46 +115,20 @@ pub(super) fn roof() -> Mesh {
         tiles(&mut mesh, [low_a, low_b, high_b, high_a]);
         // Boards below, and the edge between both.
         let down = Vec3::Y * 0.14;
-        mesh.quad(
-            WOOD,
-            [low_b - down, low_a - down, high_a - down, high_b - down],
-            8,
-            2.0,
-        );
-        mesh.quad(
-            TRIM,
-            [
-                low_b - down,
-                low_b + Vec3::Y * 0.02,
-                low_a + Vec3::Y * 0.02,
-                low_a - down,
-            ],
-            8,
-            2.0,
-        );
+        mesh.quad(WOOD, [low_b - down, low_a - down, high_a - down, high_b - down], 8, 2.0);
+        mesh.quad(TRIM, [low_b - down, low_b + Vec3::Y * 0.02, low_a + Vec3::Y * 0.02, low_a - down], 8, 2.0);
         hip(&mut mesh, low_a, high_a);
     }
     // Beams of the gallery's ceiling, and the ceiling above them.
     let ceiling = WALL_TOP - 0.12;
-    for (x, z) in [
-        ([-WALL[0], WALL[0]], [COURT[1], WALL[1]]),
-        ([-WALL[0], WALL[0]], [-WALL[1], -COURT[1]]),
-    ] {
+    for (x, z) in [([-WALL[0], WALL[0]], [COURT[1], WALL[1]]), ([-WALL[0], WALL[0]], [-WALL[1], -COURT[1]])] {
         ceiling_rectangle(&mut mesh, x, z, ceiling);
         let count = 22;
         for i in 0..count {
             let at = x[0] + (x[1] - x[0]) * (i as f32 + 0.5) / count as f32;
-            let (low, high) = (
-                Vec3::new(at - 0.07, ceiling - 0.2, z[0] + 0.1),
-                Vec3::new(at + 0.07, ceiling + 0.03, z[1] + 0.05),
-            );
-            mesh.cuboid(
-                WOOD,
-                low,
-                high,
-                1.5,
-                [true, true, true, false, false, false],
-            );
+            let (low, high) =
+                (Vec3::new(at - 0.07, ceiling - 0.2, z[0] + 0.1), Vec3::new(at + 0.07, ceiling + 0.03, z[1] + 0.05));
+            mesh.cuboid(WOOD, low, high, 1.5, [true, true, true, false, false, false]);
         }
     }
     for x in [[COURT[0], WALL[0]], [-WALL[0], -COURT[0]]] {
@@ -281,14 +176,7 @@ pub(super) fn trim() -> Mesh {
         // Profiles are mitred at the corners: z runs out of the court, the court's side is -z.
         let half = a.distance(b) * 0.5;
         mesh.transform = frame(along, outward, (a + b) * 0.5);
-        let course = [
-            (-0.22, 4.74),
-            (-0.30, 4.78),
-            (-0.31, 4.84),
-            (-0.38, 4.90),
-            (-0.38, 5.03),
-            (0.26, 5.03),
-        ];
+        let course = [(-0.22, 4.74), (-0.30, 4.78), (-0.31, 4.84), (-0.38, 4.90), (-0.38, 5.03), (0.26, 5.03)];
         profile(&mut mesh, half, &course);
         let cornice = [
             (-0.20, 8.86),
@@ -306,10 +194,7 @@ pub(super) fn trim() -> Mesh {
         let (from, to) = (-half + 0.5, half - 0.5);
         for i in 0..dentils {
             let x = from + (to - from) * i as f32 / (dentils - 1) as f32;
-            let (low, high) = (
-                Vec3::new(x - 0.055, 9.05, -0.42),
-                Vec3::new(x + 0.055, 9.19, -0.32),
-            );
+            let (low, high) = (Vec3::new(x - 0.055, 9.05, -0.42), Vec3::new(x + 0.055, 9.19, -0.32));
             mesh.cuboid(TRIM, low, high, 1.0, [true, true, true, true, true, false]);
         }
         // A frieze of roundels between the arches.
@@ -317,14 +202,7 @@ pub(super) fn trim() -> Mesh {
             let x = -half + 2.0 * half * i as f32 / count as f32;
             for (y, radius) in [(4.42, 0.15), (8.46, 0.13)] {
                 let centre = Vec3::new(x, y, -0.25);
-                mesh.ring(
-                    TRIM,
-                    centre,
-                    Vec3::X * radius,
-                    Vec3::Y * radius,
-                    0.035,
-                    [16, 6],
-                );
+                mesh.ring(TRIM, centre, Vec3::X * radius, Vec3::Y * radius, 0.035, [16, 6]);
             }
         }
     }
@@ -336,16 +214,6 @@ fn profile(mesh: &mut MeshBuilder, half: f32, points: &[(f32, f32)]) {
     for pair in points.windows(2) {
         let ((z0, y0), (z1, y1)) = (pair[0], pair[1]);
         let at = |side: f32, z: f32, y: f32| Vec3::new(side * (half + z), y, z);
-        mesh.quad(
-            TRIM,
-            [
-                at(1.0, z0, y0),
-                at(-1.0, z0, y0),
-                at(-1.0, z1, y1),
-                at(1.0, z1, y1),
-            ],
-            1,
-            1.0,
-        );
+        mesh.quad(TRIM, [at(1.0, z0, y0), at(-1.0, z0, y0), at(-1.0, z1, y1), at(1.0, z1, y1)], 1, 1.0);
     }
 }
