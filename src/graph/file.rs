@@ -311,6 +311,10 @@ pub enum BlendMode {
     Alpha,
     /// Sum.
     Add,
+    /// The smaller of both: does not depend on the order.
+    Min,
+    /// The larger of both: does not depend on the order.
+    Max,
 }
 
 /// A depth attachment.

@@ -761,6 +761,8 @@ fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachme
                 BlendMode::Off => Blend::Off,
                 BlendMode::Alpha => Blend::Alpha,
                 BlendMode::Add => Blend::Add,
+                BlendMode::Min => Blend::Min,
+                BlendMode::Max => Blend::Max,
             })
             .collect(),
     };

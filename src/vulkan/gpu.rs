@@ -84,7 +84,7 @@ impl DeviceInfo {
             ..Default::default()
         };
         DeviceInfo {
-            name: "no device".into(),
+            name: "any device".into(),
             driver: String::new(),
             api: String::new(),
             kind: "none",

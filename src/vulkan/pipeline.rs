@@ -107,6 +107,10 @@ pub enum Blend {
     Alpha,
     /// Summed.
     Add,
+    /// The smaller of both.
+    Min,
+    /// The larger of both.
+    Max,
 }
 
 impl Blend {
@@ -114,7 +118,12 @@ impl Blend {
         let (src, dst) = match self {
             Blend::Off => (vk::BlendFactor::ONE, vk::BlendFactor::ZERO),
             Blend::Alpha => (vk::BlendFactor::SRC_ALPHA, vk::BlendFactor::ONE_MINUS_SRC_ALPHA),
-            Blend::Add => (vk::BlendFactor::ONE, vk::BlendFactor::ONE),
+            Blend::Add | Blend::Min | Blend::Max => (vk::BlendFactor::ONE, vk::BlendFactor::ONE),
+        };
+        let op = match self {
+            Blend::Min => vk::BlendOp::MIN,
+            Blend::Max => vk::BlendOp::MAX,
+            _ => vk::BlendOp::ADD,
         };
         vk::PipelineColorBlendAttachmentState::default()
             .blend_enable(self != Blend::Off)
@@ -122,6 +131,8 @@ impl Blend {
             .dst_color_blend_factor(dst)
             .src_alpha_blend_factor(vk::BlendFactor::ONE)
             .dst_alpha_blend_factor(dst)
+            .color_blend_op(op)
+            .alpha_blend_op(op)
             .color_write_mask(vk::ColorComponentFlags::RGBA)
     }
 }

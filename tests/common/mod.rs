@@ -14,6 +14,11 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// The device that tests run on: the software one, unless CONELAB_TEST_DEVICE names another.
+pub fn device() -> String {
+    std::env::var("CONELAB_TEST_DEVICE").unwrap_or("llvmpipe".into())
+}
+
 /// Compiled shaders and pipelines, kept between the tests of one build.
 pub fn cache() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("cache")
@@ -23,7 +28,7 @@ pub fn cache() -> PathBuf {
 pub fn conelab(home: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_conelab"));
     command.env("CONELAB_HOME", home).env("CONELAB_CACHE", cache()).current_dir(home);
-    command.env("CONELAB_DEVICE", "llvmpipe").env("CONELAB_VALIDATION", "true");
+    command.env("CONELAB_DEVICE", device()).env("CONELAB_VALIDATION", "true");
     command
 }
 
@@ -52,7 +57,7 @@ fn text(output: &Output) -> (bool, String, String) {
 /// A software device with the validation layer.
 pub fn lab(home: &Path) -> Lab {
     let home = Home { root: home.to_path_buf(), cache: Some(cache()) };
-    let options = GpuOptions { device: Some("llvmpipe".into()), validation: true, cache: None };
+    let options = GpuOptions { device: Some(device()), validation: true, cache: None };
     Lab::open(home, options).unwrap()
 }
 
