@@ -468,9 +468,13 @@ fn scene_file_composes() {
         cameras: { "wide": (eye: (0, 0, 9), target: (0, 0, 0), fov_y: 60) },
     )"#;
     let scene = open(write(&dir, "both.ron", text)).unwrap();
-    assert_eq!((scene.name.as_str(), scene.triangle_count(), scene.lights.len()), ("both", 34, 3));
+    assert_eq!(
+        (scene.name.as_str(), scene.triangle_count(), scene.lights.len()),
+        ("both", 34, 4),
+        "the box brings a lamp of its own"
+    );
     assert_eq!(scene.cameras.keys().collect::<Vec<_>>(), ["wide", "default"]);
-    assert_near(scene.lights[1].direction, Vec3::NEG_Y, 1e-6);
+    assert_near(scene.lights[2].direction, Vec3::NEG_Y, 1e-6);
     // Rotated about y: the quad's x becomes -z.
     let at = |time: f32| scene.instance_transform(0, time).transform_point3(Vec3::new(2.0, 0.0, 0.0));
     assert_near(at(0.0), Vec3::new(5.0, 0.0, -4.0), 1e-4);

@@ -90,7 +90,9 @@ impl Home {
     pub fn graph(&self, name: &str) -> Result<(Graph, Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
         let folders = self.folders();
         let given = Path::new(name);
-        let path = if given.is_file() { given.to_path_buf() } else { folders.passes.join(name) };
+        // A bare name is looked up among the graphs; a path is taken as it is.
+        let bare = given.components().count() == 1 && !given.is_file();
+        let path = if bare { folders.passes.join(name) } else { given.to_path_buf() };
         let graph = load(&path, &folders)?;
         let compiler = ShaderCompiler::new(&folders.shaders, self.cache.as_deref());
         let (linked, warnings) = link(&graph, &compiler, &folders.shaders)?;
