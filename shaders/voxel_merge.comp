@@ -13,7 +13,7 @@ layout(r32ui) uniform readonly uimage3D voxelIndex;
 
 // Neighbours in the list mostly hit the same voxel: neighbouring threads take fragments that lie far apart, so that
 // their atomics do not queue.
-const uint SHARES = 64;
+const uint SHARES = 1u << 16;
 
 // Running mean in eight bits with the count in the top byte (Crassin and Green 2012). Kept to show its
 // errors: it truncates at each step, wraps after 255 fragments and depends on their order.

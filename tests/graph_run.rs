@@ -787,7 +787,8 @@ fn a_pass_a_texture_and_a_parameter_take_no_rust() {
         ),
     );
     let (pixel, stats) = render(&["level=1"]);
-    assert_eq!(pixel, [255, 128, 0]);
+    // Half may be stored as 127 or 128 (Vulkan, section 3.10.1).
+    assert!(pixel[0] == 255 && (127..=128).contains(&pixel[1]) && pixel[2] == 0, "{pixel:?}");
     assert_eq!(names(&stats["passes"]), ["fill", "tint"]);
     assert_eq!(stats["params"], serde_json::json!({ "level": 1.0, "tint": [1.0, 0.5, 0.0] }));
     // What nobody needs takes no memory.
