@@ -6,7 +6,7 @@ SHELL := /bin/bash
 export PATH := $(PATH):$(HOME)/.cargo/bin
 
 # Size of the demo's pictures, and more arguments of `conelab render`, for example: make demo SIZE=1920x1080 ARGS="--set voxel_dim=256"
-SIZE ?= 640x360
+SIZE ?= 1280x720
 ARGS ?=
 # Run only the tests whose names hold this, for example: make test TESTS=voxel
 TESTS ?=

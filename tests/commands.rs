@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, fails, root, succeeds};
+use common::{conelab, device, fails, root, succeeds};
 use exr::prelude::read_first_rgba_layer_from_file;
 use insta::assert_snapshot;
 use std::path::{Path, PathBuf};
