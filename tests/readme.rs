@@ -42,7 +42,7 @@ fn every_command_of_the_readme_works() {
             .env("CONELAB_VALIDATION", "true")
             .output()
             .unwrap();
-        let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{command}\n{text}");
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        assert!(output.status.success(), "{command}\n{}{}", text(&output.stdout), text(&output.stderr));
     }
 }
