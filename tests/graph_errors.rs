@@ -175,7 +175,7 @@ impl Bench {
             other => panic!("{other}"),
         })?;
         let scene = Scene::open(&experiment.scene, &|_, _| {}).unwrap();
-        let env = environment(&scene, experiment.size, experiment.time);
+        let env = environment(&scene, experiment.size);
         let wanted = graph.output.iter().chain(&graph.outputs).cloned().collect();
         let input = PlanInput { params: &params, env, wanted, device: &self.device };
         plan(&graph, &linked, &input)?;

@@ -74,7 +74,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     }
     wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
     let device = any_device();
-    let env = environment(&scene, size, 0.0);
+    let env = environment(&scene, size);
     let input = PlanInput { params: &params, env, wanted, device: &device };
     let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
     print!("{}", if args.dot { report::dot(&graph, &linked, &plan) } else { report::text(&graph, &plan) });

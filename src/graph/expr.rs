@@ -38,7 +38,22 @@ static ENGINE: LazyLock<Engine> = LazyLock::new(|| {
     engine.set_max_operations(10_000).set_max_expr_depths(64).set_max_string_size(256);
     engine.register_fn("log2", f64::log2).register_fn("exp2", f64::exp2).register_fn("radians", f64::to_radians);
     engine.register_fn("log2", |a: i64| (a as f64).log2()).register_fn("exp2", |a: i64| (a as f64).exp2());
-    engine.register_fn("ceil", f64::ceil).register_fn("round", f64::round).register_fn("floor", f64::floor);
+    // Literals without a point are integers, which the package's functions do not take.
+    type Function = (&'static str, fn(f64) -> f64);
+    let functions: [Function; 8] = [
+        ("ceil", f64::ceil),
+        ("round", f64::round),
+        ("floor", f64::floor),
+        ("sqrt", f64::sqrt),
+        ("exp", f64::exp),
+        ("sin", f64::sin),
+        ("cos", f64::cos),
+        ("tan", f64::tan),
+    ];
+    for (name, f) in functions {
+        engine.register_fn(name, f);
+        engine.register_fn(name, move |a: i64| f(a as f64));
+    }
     for_numbers(&mut engine, "min", f64::min);
     for_numbers(&mut engine, "max", f64::max);
     engine.register_fn("select", |c: bool, a: Dynamic, b: Dynamic| if c { a } else { b });
@@ -178,6 +193,7 @@ mod tests {
         assert_eq!(eval("maximum + 1"), 6.0);
         assert_eq!(eval("ceil(n / 3)"), 43.0);
         assert_eq!(eval("7"), 7.0);
+        assert_eq!(eval("sqrt(64) + floor(8) + sin(0)"), 16.0);
     }
 
     #[test]

@@ -187,9 +187,6 @@ pub struct PassDecl {
     pub value: Option<(f64, f64, f64, f64)>,
     /// A copy.
     pub copy: Option<Loc<CopyDecl>>,
-    /// Run every frame even when nothing it reads has changed.
-    #[serde(default)]
-    pub always: bool,
     /// A note to readers.
     pub comment: Option<String>,
 }

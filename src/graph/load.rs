@@ -62,8 +62,6 @@ pub const BUILTIN_VARIABLES: &[&str] = &[
     "scene_max_x",
     "scene_max_y",
     "scene_max_z",
-    "time",
-    "frame",
 ];
 
 /// Reads `path` and what it includes.

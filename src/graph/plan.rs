@@ -462,8 +462,9 @@ impl Planner<'_> {
             let layer = t.layer.as_ref().map_or(0, |ex| self.count(ex, 0, "layer"));
             let plan =
                 AttachmentPlan { texture, mip, layer, clear: t.clear.map(|c| [c.0, c.1, c.2, c.3]), write: true };
-            let read = t.clear.is_none();
-            step.uses.push(Use::attachment(texture, mip, UseKind::Color, read, true, t.clear.is_some()));
+            // A clear of one layer leaves the others.
+            let whole = t.clear.is_some() && self.textures[texture].layers == 1;
+            step.uses.push(Use::attachment(texture, mip, UseKind::Color, !whole, true, whole));
             self.attachment_size(t.to.at, &plan, &mut size);
             step.color.push(Some(plan));
         }

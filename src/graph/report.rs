@@ -28,7 +28,7 @@ pub fn text(graph: &Graph, plan: &Plan) -> String {
     let schedule = schedule(plan);
     let _ = writeln!(out, "order");
     for (i, step) in plan.steps.iter().enumerate() {
-        for barrier in &schedule.barriers[1][i] {
+        for barrier in &schedule.barriers[0][i] {
             let _ = writeln!(out, "       | {}", barrier_text(graph, barrier));
         }
         let _ = writeln!(out, "{i:5}  {}{}", graph.passes[step.pass].value.name.value, repeat_text(plan, i));

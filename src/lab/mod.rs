@@ -162,7 +162,7 @@ impl Lab {
         let mut wanted = wanted(&graph)?;
         wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
         let viewpoint = viewpoint_of(experiment, &scene)?;
-        let env = environment(&scene, experiment.size, experiment.time);
+        let env = environment(&scene, experiment.size);
         let input = PlanInput { params: &params, env, wanted, device: &self.gpu.info };
         let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
         let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
@@ -186,7 +186,7 @@ impl Lab {
 }
 
 /// Variables of expressions that come from scene and size.
-pub fn environment(scene: &Scene, size: (u32, u32), time: f64) -> Env {
+pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
     let (low, high) = scene.bounds();
     let extent = high - low;
     let mut env = Env::new();
@@ -203,8 +203,6 @@ pub fn environment(scene: &Scene, size: (u32, u32), time: f64) -> Env {
         put(&format!("scene_min_{axis}"), f64::from(a));
         put(&format!("scene_max_{axis}"), f64::from(b));
     }
-    put("time", time);
-    put("frame", 0.0);
     env
 }
 
