@@ -1,5 +1,21 @@
 //! The command line.
 
+/// Like `println!`, but a reader that has gone away (`conelab graph ... | head`) is no error.
+macro_rules! say {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout(), $($text)*);
+    }};
+}
+
+/// Like `print!`, in the same way.
+macro_rules! say_part {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        let _ = write!(std::io::stdout(), $($text)*);
+    }};
+}
+
 mod check;
 mod graph;
 mod render;
@@ -94,18 +110,18 @@ fn scene(args: &SceneArgs) -> Result<(), LabError> {
     match &args.export {
         Some(path) => {
             scene.export(path)?;
-            println!("wrote {}", path.display());
+            say!("wrote {}", path.display());
         }
-        None => print!("{}", scene.summary()),
+        None => say_part!("{}", scene.summary()),
     }
     Ok(())
 }
 
 fn devices() -> Result<(), LabError> {
     for (number, (info, refused)) in list_devices()?.iter().enumerate() {
-        println!("{number}: {} ({}, {}), Vulkan {}", info.name, info.kind, info.driver, info.api);
+        say!("{number}: {} ({}, {}), Vulkan {}", info.name, info.kind, info.driver, info.api);
         match refused {
-            Some(why) => println!("   cannot be used: {why}"),
+            Some(why) => say!("   cannot be used: {why}"),
             None => {
                 let f = &info.features;
                 let list = [
@@ -118,9 +134,9 @@ fn devices() -> Result<(), LabError> {
                     ("timestamps", info.timestamp_ns > 0.0),
                 ];
                 for (name, has) in list {
-                    println!("   {} {name}", if has { "yes" } else { "no " });
+                    say!("   {} {name}", if has { "yes" } else { "no " });
                 }
-                println!("   {:.1} GiB of device memory", info.heap as f64 / (1u64 << 30) as f64);
+                say!("   {:.1} GiB of device memory", info.heap as f64 / (1u64 << 30) as f64);
             }
         }
     }

@@ -88,11 +88,11 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
                 match crate::scene::Scene::open(&name, &|_, _| {}) {
                     // Models are no part of the program; asked for by name, they must be there.
                     Err(SceneError::SceneFile { message, .. }) if all && message.starts_with("model file") => {
-                        println!("{name}: not checked: {message}");
+                        say!("{name}: not checked: {message}");
                     }
                     Err(e) => {
                         wrong += 1;
-                        println!("{e}");
+                        say!("{e}");
                     }
                     Ok(_) => {}
                 }
@@ -102,10 +102,10 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
         let errors = findings.iter().filter(|f| f.severity == Severity::Error).count();
         wrong += errors;
         for finding in &findings {
-            println!("{finding}");
+            say!("{finding}");
         }
     }
-    println!("checked {} files, {wrong} errors", files.len());
+    say!("checked {} files, {wrong} errors", files.len());
     if wrong > 0 { Err(LabError::Request(format!("{wrong} errors"))) } else { Ok(()) }
 }
 

@@ -47,7 +47,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         eprintln!("{warning}");
     }
     if args.params {
-        print!("{}", report::params(&graph.params));
+        say_part!("{}", report::params(&graph.params));
         return Ok(());
     }
     let mut params = match &experiment {
@@ -77,6 +77,6 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     let env = environment(&scene, size);
     let input = PlanInput { params: &params, env, wanted, device: &device };
     let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
-    print!("{}", if args.dot { report::dot(&graph, &linked, &plan) } else { report::text(&graph, &plan) });
+    say_part!("{}", if args.dot { report::dot(&graph, &linked, &plan) } else { report::text(&graph, &plan) });
     Ok(())
 }

@@ -76,7 +76,8 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     let mut shown = (String::new(), 0, 0);
     let (mut session, warnings) = lab.prepare(&experiment, Arc::new(scene), |graph| {
         shown = match resource {
-            Some(r) => r,
+            Some(r) if graph.textures.iter().any(|t| t.0 == r.0) => r,
+            Some(r) => return Err(crate::lab::no_texture(graph, &r.0)),
             None => (result_name(graph, exr)?, 0, 0),
         };
         Ok(vec![shown.0.clone()])
@@ -101,13 +102,13 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     let texels = session.texels(&shown.0, shown.1, shown.2)?;
     picture::write(&args.output, &texels)?;
     let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, args.warmup, failed);
-    print!("{}", stats::table(&stats));
-    println!("wrote {}", args.output.display());
+    say_part!("{}", stats::table(&stats));
+    say!("wrote {}", args.output.display());
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(&stats).map_err(|e| LabError::Request(e.to_string()))?;
         crate::files::write_whole(path, text.as_bytes())
             .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
-        println!("wrote {}", path.display());
+        say!("wrote {}", path.display());
     }
     drop(session);
     match lab.gpu.messages().len() {
@@ -137,6 +138,9 @@ fn adapt(experiment: &mut Experiment, args: &RenderArgs) -> Result<(), LabError>
         };
     }
     experiment.time = args.time.unwrap_or(experiment.time);
+    if !experiment.time.is_finite() || !args.step.is_finite() {
+        return Err(LabError::Request("--time and --step must be finite numbers of seconds".into()));
+    }
     if args.frames == 0 || args.frames.saturating_add(args.warmup) > MAX_FRAMES {
         return Err(LabError::Request(format!("--frames must be 1 to {MAX_FRAMES}")));
     }

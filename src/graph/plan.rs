@@ -9,7 +9,6 @@ use super::source::{At, Diagnostic};
 use super::usage::{Res, Use, UseKind, merge};
 use crate::shader::Resource;
 use crate::vulkan::{DeviceInfo, Format, Stage, vk};
-use std::collections::HashSet;
 
 /// Outside facts that a plan depends on.
 #[derive(Clone, Debug)]
@@ -203,6 +202,7 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
         }
         steps.extend(planner.steps(number, &pass.value, link));
     }
+    planner.checks(&buffers);
     let max_edge = planner.max_edge();
     if !planner.errors.is_empty() {
         return Err(planner.errors);
@@ -327,7 +327,20 @@ impl Planner<'_> {
             .collect()
     }
 
+    fn checks(&mut self, buffers: &[BufferPlan]) {
+        for check in &self.graph.checks {
+            let size = self.buffer(&check.buffer.value).map_or(0, |b| buffers[b].size);
+            if (u64::from(check.word) + 1) * 4 > size {
+                let message = format!("'{}' has {size} bytes and no word {}", check.buffer.value, check.word);
+                self.error(check.buffer.at, message);
+            }
+        }
+    }
+
     fn max_edge(&mut self) -> Option<f64> {
+        if self.env.get("triangle_count") == Some(&Var::Number(0.0)) {
+            return None;
+        }
         let needs = &self.graph.scene.as_ref()?.value;
         if let Some(when) = &needs.when
             && !self.condition(when)
@@ -581,7 +594,9 @@ impl Planner<'_> {
         let copy = &pass.copy.as_ref()?.value;
         if let (Some(from), Some(to)) = (self.buffer(&copy.from.value), self.buffer(&copy.to.value)) {
             step.uses.push(Use::transfer(Res::Buffer(from), (0, 1), true, false));
-            step.uses.push(Use::transfer(Res::Buffer(to), (0, 1), false, true));
+            // The target may be longer, so what it held stays needed.
+            let target = Use::transfer(Res::Buffer(to), (0, 1), true, true);
+            step.uses.push(Use { overwrite: false, ..target });
             return Some(Work::CopyBuffer(from, to));
         }
         let (from, to) = (self.texture(&copy.from.value)?, self.texture(&copy.to.value)?);
@@ -603,7 +618,7 @@ impl Planner<'_> {
         let Some(size) = decl.value.size.value.eval(&self.env).ok().filter(|s| *s >= 4.0) else { return };
         if !offset.is_multiple_of(4) {
             self.error(at, format!("a command begins at a multiple of 4 bytes, which {offset} is not"));
-        } else if (offset + bytes) as f64 > size {
+        } else if offset.checked_add(bytes).is_none_or(|end| end as f64 > size) {
             self.error(
                 at,
                 format!("a command of {bytes} bytes at byte {offset} ends outside '{name}', which has {size} bytes"),
@@ -636,12 +651,4 @@ impl Planner<'_> {
         }
         Some(groups)
     }
-}
-
-/// Names of resources that a plan makes.
-pub fn made<'g>(graph: &'g Graph, plan: &Plan) -> HashSet<&'g str> {
-    let textures =
-        graph.textures.iter().zip(&plan.textures).filter(|(_, p)| !p.usage.is_empty()).map(|(t, _)| t.0.as_str());
-    let buffers = graph.buffers.iter().zip(&plan.buffers).filter(|(_, p)| p.used).map(|(b, _)| b.0.as_str());
-    textures.chain(buffers).collect()
 }

@@ -143,7 +143,7 @@ impl Program {
     /// Gives every image its first layout and zeroes everything, so that first frames are like any other.
     fn initialise(&mut self) -> Result<()> {
         let dst = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-        Commands::once(&self.gpu, "initialise", |commands| {
+        Commands::once(&self.gpu, |commands| {
             for buffer in self.buffers.iter().flatten() {
                 commands.fill(buffer, 0);
             }
@@ -218,6 +218,11 @@ impl Program {
             aspect: format.aspect(),
             mips: (plan.mip, 1),
             layers: (plan.layer, 1),
+            usage: if format.is_depth() {
+                vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
+            } else {
+                vk::ImageUsageFlags::COLOR_ATTACHMENT
+            },
         };
         View::new(self.image(plan.texture, false, parity)?, &desc)
     }
@@ -253,6 +258,10 @@ impl Program {
                 aspect: format.aspect(),
                 mips: plan.mips,
                 layers: plan.layers,
+                usage: match bound.resource {
+                    Resource::Storage { .. } => vk::ImageUsageFlags::STORAGE,
+                    _ => vk::ImageUsageFlags::SAMPLED,
+                },
             };
             views.push(Some(View::new(self.image(t, plan.history, parity)?, &desc)?));
             let sampler = decl.and_then(|d| d.sampler).or(texture.sampler).unwrap_or_default();
@@ -526,18 +535,20 @@ impl Program {
         let plan = &self.plan.textures[texture];
         let copy = if plan.history { parity } else { 0 };
         let image = self.image(texture, false, parity)?.clone();
-        let layout = self.schedule.ends[parity][texture][copy][mip as usize];
+        // A mip that no step touches is as `initialise` left it.
+        let layout = match self.schedule.ends[parity][texture][copy][mip as usize] {
+            vk::ImageLayout::UNDEFINED => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+            layout => layout,
+        };
         let [w, h, d] = image.mip_extent(mip);
         let size = u64::from(w) * u64::from(h) * u64::from(d) * u64::from(plan.format.bytes);
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let target = Buffer::new(&self.gpu, "readback", size, usage, MemoryLocation::GpuToCpu)?;
         let src = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-        Commands::once(&self.gpu, "read a texture", |commands| {
-            if layout != vk::ImageLayout::UNDEFINED {
-                commands.barrier(None, &[(&image, relayout(&image, layout, src, mip))]);
-                commands.read_image(&image, src, mip, layer, &target);
-                commands.barrier(None, &[(&image, relayout(&image, src, layout, mip))]);
-            }
+        Commands::once(&self.gpu, |commands| {
+            commands.barrier(None, &[(&image, relayout(&image, layout, src, mip))]);
+            commands.read_image(&image, src, mip, layer, &target);
+            commands.barrier(None, &[(&image, relayout(&image, src, layout, mip))]);
             commands.full_barrier();
         })?;
         Ok(target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec())
@@ -552,7 +563,7 @@ impl Program {
         let Some(from) = self.buffers[buffer].clone() else { return Ok(Vec::new()) };
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let target = Buffer::new(&self.gpu, "readback", from.size, usage, MemoryLocation::GpuToCpu)?;
-        Commands::once(&self.gpu, "read a buffer", |commands| {
+        Commands::once(&self.gpu, |commands| {
             commands.full_barrier();
             commands.copy_buffer(&from, &target, from.size);
             commands.full_barrier();
@@ -570,6 +581,13 @@ impl Program {
         let buffers =
             graph.buffers.iter().zip(&self.buffers).map(|(b, made)| (b.0.clone(), made.as_ref().map_or(0, |m| m.size)));
         textures.chain(buffers).filter(|(_, bytes)| *bytes > 0).collect()
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // Waits for the frames in flight before anything they use is destroyed.
+        self.slots.clear();
     }
 }
 

@@ -156,11 +156,6 @@ impl Sources {
         self.files.iter().map(|(p, _)| p.as_path())
     }
 
-    /// Path of one file.
-    pub fn path(&self, file: u32) -> &Path {
-        self.files.get(file as usize).map_or(Path::new(""), |(p, _)| p.as_path())
-    }
-
     /// Line and column of an offset.
     pub fn place(&self, at: At) -> Place {
         let Some((file, text)) = self.files.get(at.file as usize) else { return Place::default() };

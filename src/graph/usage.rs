@@ -199,7 +199,7 @@ fn conflicts(graph: &Graph, step: &super::plan::Step, errors: &mut Vec<Diagnosti
             let overlap = a.mips.0 < b.mips.0 + b.mips.1 && b.mips.0 < a.mips.0 + a.mips.1;
             if a.res == b.res
                 && overlap
-                && a.layout != b.layout
+                && (a.layout != b.layout || a.write || b.write)
                 && let Res::Texture(t, _) = a.res
             {
                 let pass = &graph.passes[step.pass].value;

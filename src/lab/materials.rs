@@ -77,6 +77,7 @@ fn add(
         aspect: vk::ImageAspectFlags::COLOR,
         mips: (0, mips),
         layers: (0, layers),
+        usage: vk::ImageUsageFlags::SAMPLED,
     };
     out.views.push(Arc::new(View::new(&image, &desc)?));
     Ok(())

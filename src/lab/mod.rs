@@ -234,8 +234,21 @@ fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint, Lab
                 Err(LabError::Request(format!("scene '{}' has no camera '{name}' ({hint})", scene.name)))
             }
         },
-        CameraChoice::Placed(placed) => Ok(Viewpoint::placed(placed, scene)),
+        CameraChoice::Placed(placed) => {
+            let ((x, y, z), (u, v, w)) = (placed.eye, placed.target);
+            if [x, y, z, u, v, w, placed.fov_y].iter().all(|n| n.is_finite()) {
+                Ok(Viewpoint::placed(placed, scene))
+            } else {
+                Err(LabError::Request("the camera's numbers must be finite".into()))
+            }
+        }
     }
+}
+
+/// The error for a texture that the graph does not have.
+pub fn no_texture(graph: &Graph, name: &str) -> LabError {
+    let hint = nearest(name, graph.textures.iter().map(|t| t.0.as_str()));
+    LabError::Request(format!("no texture '{name}'{}", hint.map_or(String::new(), |h| format!(" ({h})"))))
 }
 
 impl Session {
@@ -288,8 +301,7 @@ impl Session {
     /// No such texture, mip or layer; the device was lost.
     pub fn texels(&mut self, name: &str, mip: u32, layer: u32) -> Result<Texels, LabError> {
         let Some(index) = self.graph.textures.iter().position(|t| t.0 == name) else {
-            let hint = nearest(name, self.graph.textures.iter().map(|t| t.0.as_str())).unwrap_or_default();
-            return Err(LabError::Request(format!("no texture '{name}' ({hint})")));
+            return Err(no_texture(&self.graph, name));
         };
         let plan = &self.program.plan.textures[index];
         if plan.usage.is_empty() {
@@ -334,6 +346,8 @@ pub fn any_device() -> DeviceInfo {
         anisotropy: true,
         write_without_format: true,
         multi_draw_indirect: true,
+        independent_blend: true,
+        full_index: true,
     };
     DeviceInfo::imaginary(all)
 }

@@ -4,7 +4,7 @@ use super::materials::{self, NO_TEXTURE};
 use super::view::{lights, shadow_view_count};
 use crate::graph::run::{Geometry, SceneResources};
 use crate::scene::Scene;
-use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, vk};
+use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, VulkanError, vk};
 use bytemuck::{Pod, Zeroable};
 use glam::Mat4;
 use std::collections::HashMap;
@@ -124,6 +124,15 @@ impl SceneGpu {
             ("positions", upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?),
             ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
         ]);
+        let limit = u64::from(gpu.info.limits.max_storage_buffer_range);
+        if let Some((name, buffer)) = buffers.iter().find(|(_, b)| b.size > limit) {
+            return Err(VulkanError::Limit {
+                what: format!("the scene's buffer '{name}'"),
+                asked: format!("{} bytes", buffer.size),
+                limit: format!("{limit} bytes (fewer triangles, or less splitting, would fit)"),
+                device: gpu.info.name.clone(),
+            });
+        }
         upload.finish()?;
         let bytes = buffers.values().map(|b| b.size).sum::<u64>() + index_buffer.size + textures.bytes;
         let sampler = Arc::new(Sampler::new(

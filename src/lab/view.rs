@@ -45,13 +45,14 @@ impl Viewpoint {
     pub fn placed(placed: &PlacedCamera, scene: &Scene) -> Viewpoint {
         let (low, high) = scene.bounds();
         let diagonal = (high - low).length().max(1.0);
+        let eye = Vec3::from(placed.eye);
         Viewpoint::new(&Camera {
-            eye: placed.eye.into(),
+            eye,
             target: placed.target.into(),
             up: Vec3::Y,
             fov_y: placed.fov_y,
             near: (0.001 * diagonal).max(0.01),
-            far: 2.0 * diagonal,
+            far: eye.distance((low + high) * 0.5) + diagonal,
         })
     }
 

@@ -1,6 +1,6 @@
 //! GLSL to SPIR-V through shaderc. Compiled modules are kept on disk by the content of everything that went into them.
 
-use super::reflect::{Interface, reflect};
+use super::reflect::{Interface, MAX_BINDINGS, reflect};
 use crate::graph::source::{Diagnostic, Place, nearest};
 use crate::vulkan::Stage;
 use sha2::{Digest, Sha256};
@@ -42,8 +42,6 @@ pub struct ShaderCompiler {
 const CACHE_VERSION: &str = "conelab spirv 1";
 /// Shader files larger than this are refused.
 const MAX_BYTES: u64 = 2 << 20;
-/// First binding of each stage, so that stages compiled apart do not collide in the one descriptor set.
-const BINDINGS_PER_STAGE: u32 = 32;
 
 impl ShaderCompiler {
     /// A compiler for `folder`, with compiled modules kept in `cache`.
@@ -61,8 +59,10 @@ impl ShaderCompiler {
         let key = self.key(source, &texts);
         let cached = self.cache.as_ref().map(|dir| dir.join(format!("{key}.spv")));
         let from_cache = cached.as_deref().and_then(crate::files::read_checked).and_then(|b| to_words(&b));
-        let words = match from_cache {
-            Some(words) => words,
+        // A module in the cache that cannot be read is compiled again.
+        let from_cache = from_cache.and_then(|words| reflect(&words, source.stage).ok().map(|i| (words, i)));
+        let (words, interface) = match from_cache {
+            Some(found) => found,
             None => {
                 let words = self.run(source, &texts)?;
                 if let Some(path) = &cached {
@@ -70,12 +70,13 @@ impl ShaderCompiler {
                     // A cache that cannot be written costs time, not correctness.
                     let _ = crate::files::write_checked(path, &bytes);
                 }
-                words
+                let interface = reflect(&words, source.stage).map_err(|message| {
+                    let place = Place { file: self.folder.join(&source.file), ..Place::default() };
+                    vec![Diagnostic::error(place, message)]
+                })?;
+                (words, interface)
             }
         };
-        let interface = reflect(&words, source.stage).map_err(|message| {
-            vec![Diagnostic::error(Place { file: self.folder.join(&source.file), ..Place::default() }, message)]
-        })?;
         Ok(Compiled {
             file: source.file.clone(),
             stage: source.stage,
@@ -125,6 +126,9 @@ impl ShaderCompiler {
     fn key(&self, source: &Source, texts: &BTreeMap<String, String>) -> String {
         let mut hash = Sha256::new();
         hash.update(CACHE_VERSION);
+        let (version, revision) = shaderc::get_spirv_version();
+        hash.update(version.to_le_bytes());
+        hash.update(revision.to_le_bytes());
         hash.update(&source.file);
         for (name, text) in texts {
             hash.update((name.len() as u64).to_le_bytes());
@@ -161,7 +165,8 @@ impl ShaderCompiler {
             shaderc::ResourceKind::Buffer,
             shaderc::ResourceKind::StorageBuffer,
         ] {
-            options.set_binding_base(resource, stage * BINDINGS_PER_STAGE);
+            // Stages are compiled apart and share one descriptor set.
+            options.set_binding_base(resource, stage * MAX_BINDINGS as u32);
         }
         options.set_include_callback(|name, _, _, depth| {
             if depth > 32 {

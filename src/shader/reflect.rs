@@ -88,6 +88,9 @@ pub struct Interface {
     pub outputs: Vec<u32>,
 }
 
+/// Most resources of one stage; stages get neighbouring ranges of binding numbers.
+pub const MAX_BINDINGS: usize = 32;
+
 /// Reads the interface of a module.
 ///
 /// # Errors
@@ -111,8 +114,17 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
                         "'{name}' is an array of resources; bind them one by one, with names of their own"
                     ));
                 }
+                if desc_bind.set() != 0 || interface.bindings.iter().any(|b| b.binding == desc_bind.bind()) {
+                    return Err(format!("'{name}' has a set or binding of its own; leave out layout(set, binding)"));
+                }
+                if interface.bindings.len() >= MAX_BINDINGS {
+                    return Err(format!("a shader binds at most {MAX_BINDINGS} resources"));
+                }
                 let resource = resource(desc_ty, ty).ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
                 interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource });
+            }
+            Variable::PushConstant { ty, .. } if ty.nbyte().is_some_and(|n| n > 4) => {
+                return Err(String::from("the only push constant is pass.index of params.glsl"));
             }
             Variable::PushConstant { .. } => interface.push = true,
             Variable::SpecConstant { spec_id, .. } => interface.constants.push(*spec_id),

@@ -91,14 +91,15 @@ impl FrameSlot {
         }
     }
 
-    /// Records and submits a frame. The slot must have been waited for.
+    /// Records and submits a frame, after the one that was submitted from this slot has finished.
     ///
     /// # Errors
     /// The device was lost.
     pub fn submit(&mut self, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
+        self.wait()?;
         let d = &self.gpu.device;
         let at = || VulkanError::at("submit a frame");
-        // SAFETY: the slot is not pending, so its pool may be reset; the queue is used by one thread at a time.
+        // SAFETY: the slot is not pending, so its pool may be reset; the lock keeps the queue to one thread.
         unsafe {
             d.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty()).map_err(at())?;
             let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
@@ -113,7 +114,8 @@ impl FrameSlot {
             d.end_command_buffer(self.buffer).map_err(at())?;
             let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];
             let submit = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
-            d.queue_submit2(self.gpu.queue, &submit, self.fence).map_err(at())?;
+            let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            d.queue_submit2(*queue, &submit, self.fence).map_err(at())?;
             self.pending = true;
         }
         Ok(())
@@ -142,7 +144,7 @@ impl Commands<'_> {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn once(gpu: &Arc<Gpu>, _what: &str, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
+    pub fn once(gpu: &Arc<Gpu>, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
         let mut slot = FrameSlot::new(gpu, 0)?;
         slot.submit(record)?;
         slot.wait()?;
@@ -185,7 +187,7 @@ impl Commands<'_> {
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.handle, &info) };
     }
 
-    /// Everything before is visible to everything after.
+    /// Everything before is visible to everything after, and to the host once the fence has been waited for.
     pub fn full_barrier(&mut self) {
         let all = vk::PipelineStageFlags2::ALL_COMMANDS;
         let write = vk::AccessFlags2::MEMORY_WRITE;
@@ -194,8 +196,8 @@ impl Commands<'_> {
                 vk::MemoryBarrier2::default()
                     .src_stage_mask(all)
                     .src_access_mask(write)
-                    .dst_stage_mask(all)
-                    .dst_access_mask(vk::AccessFlags2::MEMORY_READ | write),
+                    .dst_stage_mask(all | vk::PipelineStageFlags2::HOST)
+                    .dst_access_mask(vk::AccessFlags2::MEMORY_READ | write | vk::AccessFlags2::HOST_READ),
             ),
             &[],
         );

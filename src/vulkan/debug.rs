@@ -2,6 +2,7 @@
 
 use ash::{ext, vk};
 use std::ffi::{CStr, c_void};
+use std::io::Write;
 use std::sync::Mutex;
 
 /// The messages so far. Boxed by its owner so that the callback's pointer to it stays valid.
@@ -31,7 +32,8 @@ pub(super) unsafe extern "system" fn on_message(
     // The loader itself warns of drivers it cannot open, which is no fault of this program.
     if !text.starts_with("loader") && !text.contains("terminator_CreateInstance") {
         let level = if severity.contains(vk::DebugUtilsMessageSeverityFlagsEXT::ERROR) { "error" } else { "warning" };
-        eprintln!("vulkan validation {level}: {text}");
+        // A closed standard error must not unwind through the driver.
+        let _ = writeln!(std::io::stderr(), "vulkan validation {level}: {text}");
         if let Ok(mut list) = messages.0.lock() {
             list.push(format!("{level}: {text}"));
         }

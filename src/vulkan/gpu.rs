@@ -44,6 +44,10 @@ pub struct Features {
     pub write_without_format: bool,
     /// Several draws from one buffer in one call.
     pub multi_draw_indirect: bool,
+    /// Attachments of one pass may blend differently.
+    pub independent_blend: bool,
+    /// Vertex numbers above 2^24.
+    pub full_index: bool,
 }
 
 /// What a device is.
@@ -100,7 +104,7 @@ impl DeviceInfo {
 /// An open device with one graphics and compute queue.
 pub struct Gpu {
     pub(super) device: ash::Device,
-    pub(super) queue: vk::Queue,
+    pub(super) queue: Mutex<vk::Queue>,
     pub(super) family: u32,
     pub(super) allocator: Mutex<Option<Allocator>>,
     pub(super) pipeline_cache: vk::PipelineCache,
@@ -173,6 +177,10 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
             String::from_utf8_lossy(&bytes).into_owned()
         };
         let version = core.api_version;
+        let families = instance.get_physical_device_queue_family_properties(physical);
+        let family = queue_family(instance, physical).and_then(|f| families.get(f as usize).copied());
+        // Timers of fewer bits would wrap within a frame or two.
+        let timestamps = family.is_some_and(|f| f.timestamp_valid_bits >= 36);
         DeviceInfo {
             name: text(&core.device_name),
             driver: format!("{} {}", text(&driver.driver_name), text(&driver.driver_info)).trim().to_string(),
@@ -189,7 +197,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 vk::PhysicalDeviceType::CPU => "cpu",
                 _ => "other",
             },
-            timestamp_ns: f64::from(core.limits.timestamp_period),
+            timestamp_ns: if timestamps { f64::from(core.limits.timestamp_period) } else { 0.0 },
             limits: core.limits,
             heap,
             features: Features {
@@ -208,6 +216,8 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 write_without_format: have.shader_storage_image_write_without_format == vk::TRUE,
                 multi_draw_indirect: have.multi_draw_indirect == vk::TRUE
                     && have.draw_indirect_first_instance == vk::TRUE,
+                independent_blend: have.independent_blend == vk::TRUE,
+                full_index: have.full_draw_index_uint32 == vk::TRUE,
             },
             cache_key: format!(
                 "{:04x}-{:04x}-{:08x}-{}",
@@ -277,7 +287,9 @@ fn choose(instance: &ash::Instance, wanted: Option<&str>) -> Result<vk::Physical
     }
     let matches = |number: usize, info: &DeviceInfo| match wanted {
         None => true,
-        Some(w) => w == number.to_string() || info.name.to_lowercase().contains(&w.to_lowercase()),
+        // A number is a number, also where names hold digits.
+        Some(w) if w.parse::<usize>().is_ok() => w == number.to_string(),
+        Some(w) => info.name.to_lowercase().contains(&w.to_lowercase()),
     };
     let rank = |info: &DeviceInfo| match info.kind {
         "discrete" => 0,
@@ -339,7 +351,7 @@ impl Gpu {
         let names = debug_utils.then(|| Names { device: ext::debug_utils::Device::new(&instance, &device) });
         Ok(Arc::new(Gpu {
             device,
-            queue,
+            queue: Mutex::new(queue),
             family,
             allocator: Mutex::new(Some(allocator)),
             pipeline_cache,
@@ -356,12 +368,6 @@ impl Gpu {
     /// Validation messages so far; empty without validation.
     pub fn messages(&self) -> Vec<String> {
         self.messages.0.lock().map(|m| m.clone()).unwrap_or_default()
-    }
-
-    /// Waits until the device has nothing left to do.
-    pub fn wait_idle(&self) -> Result<()> {
-        // SAFETY: the device is alive; the queue is used from one thread at a time (`&self` of one lab).
-        unsafe { self.device.device_wait_idle() }.map_err(VulkanError::at("wait for the device"))
     }
 
     /// Writes the pipeline cache to disk, whole or not at all. Failing to is no error: the next start is slower.
@@ -400,7 +406,8 @@ fn create_device(
         .shader_storage_image_write_without_format(have.write_without_format)
         .multi_draw_indirect(have.multi_draw_indirect)
         .draw_indirect_first_instance(have.multi_draw_indirect)
-        .independent_blend(true)
+        .independent_blend(have.independent_blend)
+        .full_draw_index_uint32(have.full_index)
         .robust_buffer_access(true);
     let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
         .dynamic_rendering(true)

@@ -59,6 +59,8 @@ pub struct ViewDesc {
     pub mips: (u32, u32),
     /// First layer and their number.
     pub layers: (u32, u32),
+    /// What the view is for: a part of the image's usage, because its format may not allow all of it.
+    pub usage: vk::ImageUsageFlags,
 }
 
 /// A view of an image, which it keeps alive.
@@ -227,7 +229,9 @@ impl View {
     /// # Errors
     /// Vulkan's own.
     pub fn new(image: &Arc<Image>, desc: &ViewDesc) -> Result<View> {
+        let mut usage = vk::ImageViewUsageCreateInfo::default().usage(desc.usage);
         let info = vk::ImageViewCreateInfo::default()
+            .push_next(&mut usage)
             .image(image.handle)
             .view_type(desc.kind)
             .format(desc.format)
@@ -330,7 +334,7 @@ impl Upload {
     /// # Errors
     /// Vulkan's own.
     pub fn finish(self) -> Result<()> {
-        Commands::once(&self.gpu, "upload", |commands| {
+        Commands::once(&self.gpu, |commands| {
             for (buffer, staging) in &self.buffers {
                 commands.copy_buffer(staging, buffer, staging.size.min(buffer.size));
             }
