@@ -1145,3 +1145,23 @@ fn several_mistakes_are_told_at_once() {
         |         "levle": 1, "cells": 3, "method": "exact",
     "#);
 }
+
+#[test]
+fn what_a_shader_may_not_decide() {
+    assert_snapshot!(shader("fill.comp", "uniform writeonly image3D grid", "layout(set = 1, binding = 0) uniform writeonly image3D grid"), @"shaders/fill.comp: error: 'grid' has a set or binding of its own; leave out layout(set, binding)");
+    assert_snapshot!(shader("prepare.comp", "void main() {", "layout(push_constant) uniform P { vec4 a; vec4 b; } p;\nvoid main() { if (p.b.x > 0.0) return;"), @"shaders/prepare.comp: error: the only push constant is pass.index of params.glsl");
+    // The sum of offset and size does not fit 64 bits.
+    assert_snapshot!(graph("Indirect(\"work\", 0)", "Indirect(\"work\", 18446744073709551612)"), @r#"
+    passes/graph.ron:20:67: error: a command of 12 bytes at byte 18446744073709551612 ends outside 'work', which has 1024 bytes
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 18446744073709551612)),
+    "#);
+    // One mip is sampled and stored to at once.
+    assert_snapshot!(graph("\"src\": (of: \"grid\", mip: \"mip - 1\")", "\"src\": (of: \"grid\", mip: \"mip\")"), @r#"
+    passes/graph.ron:21:16: error: pass 'reduce' uses 'grid' in two ways at once (Storage and Sampled)
+        |         (name: "reduce", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
+    "#);
+    assert_snapshot!(graph("    output: \"picture\",", "    checks: [(buffer: \"work\", word: 4000000000, message: \"full\")],\n    output: \"picture\","), @r#"
+    passes/graph.ron:29:23: error: 'work' has 1024 bytes and no word 4000000000
+        |     checks: [(buffer: "work", word: 4000000000, message: "full")],
+    "#);
+}

@@ -897,3 +897,63 @@ fn shaders_see_parameters_of_every_kind() {
         })
         .unwrap();
 }
+
+#[test]
+fn clears_and_copies_of_a_part_keep_the_rest() {
+    let bench = Bench::new(
+        r#"(
+            textures: {
+                "stack": (size: (4, 4), format: "rgba8", layers: "3"),
+                "sum": (size: (4, 4), format: "r32f", mips: "2"),
+            },
+            buffers: { "short": (size: 64), "long": (size: 128) },
+            passes: [
+                (name: "each layer", repeat: "3", shaders: ["full.vert", "one.frag"], draw: Fullscreen,
+                    color: [(to: "stack", layer: "index", clear: (0, 0, 0, 0))]),
+                (name: "fill long", clear: "long", value: (7, 0, 0, 0)),
+                (name: "fill short", clear: "short", value: (5, 0, 0, 0)),
+                (name: "copy", copy: (from: "short", to: "long")),
+                (name: "add", shaders: ["add.comp"], dispatch: Cover("sum")),
+            ],
+        )"#,
+        &[
+            ("full.vert", FULL),
+            ("one.frag", "layout(location = 0) out vec4 color; void main() { color = vec4(1.0); }"),
+            (
+                "add.comp",
+                "layout(local_size_x = 4, local_size_y = 4) in;
+                uniform sampler2DArray stack;
+                layout(std430) readonly buffer Long { uint words[]; } long_buffer;
+                layout(r32f) uniform writeonly image2D sum;
+                void main() {
+                    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+                    float s = 0.0;
+                    for (int i = 0; i < 3; i++) s += texelFetch(stack, ivec3(p, i), 0).r;
+                    imageStore(sum, p, vec4(s + float(long_buffer.words[0] + long_buffer.words[31])));
+                }",
+            ),
+        ],
+    );
+    bench.write(
+        "passes/graph.ron",
+        &std::fs::read_to_string(bench.path("passes/graph.ron"))
+            .unwrap()
+            .replace("dispatch: Cover(\"sum\")", "dispatch: Cover(\"sum\"), bind: { \"long_buffer\": (of: \"long\") }"),
+    );
+    let lab = bench.lab();
+    let mut session = bench.run(&lab, &["sum"], 2);
+    assert_eq!(reds(&mut session, "sum", 0), [3.0 + 5.0 + 7.0; 16]);
+    // No pass touches this level: it holds the zeros it was made with.
+    assert_eq!(reds(&mut session, "sum", 1), [0.0; 4]);
+}
+
+#[test]
+fn a_session_that_is_dropped_waits_for_its_frames() {
+    let bench = Bench::new(IMAGES, IMAGE_SHADERS);
+    let lab = bench.lab();
+    let mut session = bench.run(&lab, &["histogram"], 1);
+    session.frame(0.0).unwrap();
+    session.frame(0.0).unwrap();
+    drop(session);
+    assert_eq!(lab.gpu.messages(), Vec::<String>::new());
+}

@@ -207,7 +207,10 @@ fn conflicts(graph: &Graph, step: &super::plan::Step, errors: &mut Vec<Diagnosti
                     "pass '{}' uses '{}' in two ways at once ({:?} and {:?})",
                     pass.name.value, graph.textures[t].0, a.kind, b.kind
                 );
-                errors.push(graph.sources.error(pass.name.at, message));
+                let found = graph.sources.error(pass.name.at, message);
+                if !errors.contains(&found) {
+                    errors.push(found);
+                }
             }
         }
     }
