@@ -7,6 +7,7 @@ mod live;
 pub mod load;
 mod needs;
 pub mod param;
+mod pipelines;
 pub mod plan;
 pub mod report;
 pub mod run;

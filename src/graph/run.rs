@@ -1,20 +1,19 @@
 //! A plan on a device: resources, pipelines, descriptor sets, and the recording of frames.
 
 use super::externals::EXTERNALS;
-use super::file::{AddressMode, BlendMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology, Which};
+use super::file::{PassDecl, Which};
 use super::link::{Linked, Target, bound_shape};
 use super::load::Graph;
 use super::param::Params;
+use super::pipelines::{clear_value, descriptor_pool, descriptor_type, make_pipelines, sampler_desc};
 use super::plan::{Plan, Step, Work};
 use super::usage::{Barrier, Res, Schedule, schedule};
-use crate::shader::{Resource, Shape, strip_outputs};
+use crate::shader::{Resource, Shape};
 use crate::vulkan::{
-    Attachments, BindingDesc, Blend, Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState,
-    FrameSlot, Gpu, Image, ImageDesc, Pipeline, PipelineDesc, Result, Sampler, SamplerDesc, Stage, StageDesc, View,
-    ViewDesc, VulkanError, format::Channels, vk,
+    Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, FrameSlot, Gpu, Image, ImageDesc, Pipeline,
+    Result, Sampler, SamplerDesc, View, ViewDesc, VulkanError, format::Channels, vk,
 };
 use gpu_allocator::MemoryLocation;
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
@@ -650,183 +649,4 @@ fn make_buffers(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<Option
             b.used.then(|| Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly).map(Arc::new)).transpose()
         })
         .collect()
-}
-
-fn descriptor_type(resource: &Resource) -> vk::DescriptorType {
-    match resource {
-        Resource::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
-        Resource::Buffer { .. } => vk::DescriptorType::STORAGE_BUFFER,
-        Resource::Sampled { .. } => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-        Resource::Storage { .. } => vk::DescriptorType::STORAGE_IMAGE,
-    }
-}
-
-fn descriptor_pool(gpu: &Arc<Gpu>, plan: &Plan, linked: &[Linked]) -> Result<DescriptorPool> {
-    let kinds: Vec<_> = plan
-        .steps
-        .iter()
-        .flat_map(|s| linked[s.pass].bound.iter().map(|b| descriptor_type(&b.resource)))
-        .flat_map(|k| [k, k])
-        .collect();
-    DescriptorPool::new(gpu, u32::try_from(plan.steps.len() * 2).unwrap_or(u32::MAX), &kinds)
-}
-
-/// Pipelines in parallel, and which of them each step uses.
-#[expect(clippy::type_complexity, reason = "used once, right above")]
-fn make_pipelines(
-    gpu: &Arc<Gpu>,
-    graph: &Graph,
-    linked: &[Linked],
-    plan: &Plan,
-    params: &Params,
-) -> Result<(Vec<Arc<Pipeline>>, Vec<Option<usize>>)> {
-    let mut descs: Vec<(usize, PipelineDesc)> = Vec::new();
-    let mut keys = Vec::new();
-    for step in &plan.steps {
-        let link = &linked[step.pass];
-        if link.stages.is_empty() {
-            keys.push(None);
-            continue;
-        }
-        let pass = &graph.passes[step.pass].value;
-        let draw = pass.draw.is_some().then(|| draw_state(pass, step, plan));
-        let known = descs.iter().position(|(p, d)| *p == step.pass && d.draw == draw);
-        keys.push(Some(known.unwrap_or_else(|| {
-            descs.push((step.pass, pipeline_desc(pass, link, params, draw)));
-            descs.len() - 1
-        })));
-    }
-    let pipelines = descs.par_iter().map(|(_, d)| Pipeline::new(gpu, d).map(Arc::new)).collect::<Result<_>>()?;
-    Ok((pipelines, keys))
-}
-
-fn pipeline_desc(
-    pass: &PassDecl,
-    link: &Linked,
-    params: &Params,
-    draw: Option<(DrawState, Attachments)>,
-) -> PipelineDesc {
-    let constants = params.constants();
-    let stages: Vec<StageDesc> = link
-        .stages
-        .iter()
-        .map(|s| StageDesc {
-            stage: s.stage,
-            spirv: match &draw {
-                Some((_, attachments)) if s.stage == Stage::Fragment => needed_outputs(&s.words, attachments),
-                _ => s.words.clone(),
-            },
-            constants: constants.iter().filter(|(id, _)| s.interface.constants.contains(id)).copied().collect(),
-        })
-        .collect();
-    PipelineDesc {
-        name: pass.name.value.clone(),
-        bindings: link
-            .bound
-            .iter()
-            .map(|b| BindingDesc { binding: b.binding, kind: descriptor_type(&b.resource), stage: b.stage })
-            .collect(),
-        push_bytes: if link.stages.iter().any(|s| s.interface.push) { 4 } else { 0 },
-        stages,
-        draw,
-    }
-}
-
-/// The fragment shader without the outputs whose attachments are left out.
-fn needed_outputs(words: &Arc<Vec<u32>>, attachments: &Attachments) -> Arc<Vec<u32>> {
-    let unneeded: Vec<u32> = (0u32..)
-        .zip(&attachments.color)
-        .filter(|(_, format)| **format == vk::Format::UNDEFINED)
-        .map(|(location, _)| location)
-        .collect();
-    if unneeded.is_empty() { words.clone() } else { Arc::new(strip_outputs(words, &unneeded)) }
-}
-
-fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachments) {
-    let raster = &pass.raster;
-    let attachments = Attachments {
-        color: step
-            .color
-            .iter()
-            .map(|c| c.as_ref().map_or(vk::Format::UNDEFINED, |a| plan.textures[a.texture].format.vk))
-            .collect(),
-        depth: step.depth.as_ref().map(|d| plan.textures[d.texture].format.vk),
-    };
-    let state = DrawState {
-        topology: match pass.topology {
-            Topology::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
-            Topology::Points => vk::PrimitiveTopology::POINT_LIST,
-            Topology::Lines => vk::PrimitiveTopology::LINE_LIST,
-            Topology::Patches => vk::PrimitiveTopology::PATCH_LIST,
-        },
-        cull: match raster.cull {
-            Cull::None => vk::CullModeFlags::NONE,
-            Cull::Back => vk::CullModeFlags::BACK,
-            Cull::Front => vk::CullModeFlags::FRONT,
-        },
-        depth_test: pass.depth.as_ref().map(|d| compare(d.value.test.unwrap_or(Compare::Less))),
-        depth_write: pass.depth.as_ref().is_some_and(|d| d.value.write),
-        depth_clamp: raster.depth_clamp,
-        depth_bias: raster.depth_bias,
-        samples: step.samples,
-        conservative: raster.conservative.is_some(),
-        discard: raster.discard,
-        blend: pass
-            .color
-            .0
-            .iter()
-            .map(|c| match c.value.blend {
-                BlendMode::Off => Blend::Off,
-                BlendMode::Alpha => Blend::Alpha,
-                BlendMode::Add => Blend::Add,
-                BlendMode::Min => Blend::Min,
-                BlendMode::Max => Blend::Max,
-            })
-            .collect(),
-    };
-    (state, attachments)
-}
-
-fn compare(c: Compare) -> vk::CompareOp {
-    match c {
-        Compare::Never => vk::CompareOp::NEVER,
-        Compare::Less => vk::CompareOp::LESS,
-        Compare::Equal => vk::CompareOp::EQUAL,
-        Compare::LessOrEqual => vk::CompareOp::LESS_OR_EQUAL,
-        Compare::Greater => vk::CompareOp::GREATER,
-        Compare::NotEqual => vk::CompareOp::NOT_EQUAL,
-        Compare::GreaterOrEqual => vk::CompareOp::GREATER_OR_EQUAL,
-        Compare::Always => vk::CompareOp::ALWAYS,
-    }
-}
-
-fn sampler_desc(s: &SamplerDecl, mips: bool, integer: bool) -> SamplerDesc {
-    let linear = s.filter == FilterMode::Linear && !integer;
-    let mip_linear = mips && !integer && s.mip_filter.unwrap_or(s.filter) == FilterMode::Linear;
-    SamplerDesc {
-        filter: if linear { vk::Filter::LINEAR } else { vk::Filter::NEAREST },
-        mip_filter: if mip_linear { vk::SamplerMipmapMode::LINEAR } else { vk::SamplerMipmapMode::NEAREST },
-        address: match s.address {
-            AddressMode::Clamp => vk::SamplerAddressMode::CLAMP_TO_EDGE,
-            AddressMode::Repeat => vk::SamplerAddressMode::REPEAT,
-            AddressMode::Mirror => vk::SamplerAddressMode::MIRRORED_REPEAT,
-            AddressMode::BorderZero | AddressMode::BorderOne => vk::SamplerAddressMode::CLAMP_TO_BORDER,
-        },
-        border: match (s.address == AddressMode::BorderOne, integer) {
-            (true, false) => vk::BorderColor::FLOAT_OPAQUE_WHITE,
-            (false, false) => vk::BorderColor::FLOAT_TRANSPARENT_BLACK,
-            (true, true) => vk::BorderColor::INT_OPAQUE_WHITE,
-            (false, true) => vk::BorderColor::INT_TRANSPARENT_BLACK,
-        },
-        compare: s.compare.map(compare),
-        anisotropic: false,
-    }
-}
-
-fn clear_value(channels: Channels, value: [f64; 4]) -> vk::ClearColorValue {
-    match channels {
-        Channels::Uint => vk::ClearColorValue { uint32: value.map(|v| v as u32) },
-        Channels::Int => vk::ClearColorValue { int32: value.map(|v| v as i32) },
-        _ => vk::ClearColorValue { float32: value.map(|v| v as f32) },
-    }
 }
