@@ -1155,6 +1155,10 @@ fn what_a_shader_may_not_decide() {
     passes/graph.ron:20:67: error: a command of 12 bytes at byte 18446744073709551612 ends outside 'work', which has 1024 bytes
         |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 18446744073709551612)),
     "#);
+    assert_snapshot!(shader("fill.comp", "imageStore(grid, ivec3(gl_GlobalInvocationID), light())", "double d = double(light().x) * 3.0LF; imageStore(grid, ivec3(gl_GlobalInvocationID), vec4(float(d)))"), @r#"
+    passes/graph.ron:20:16: error: pass 'fill' needs 64-bit numbers in shaders, which Test GPU does not have
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),
+    "#);
     // One mip is sampled and stored to at once.
     assert_snapshot!(graph("\"src\": (of: \"grid\", mip: \"mip - 1\")", "\"src\": (of: \"grid\", mip: \"mip\")"), @r#"
     passes/graph.ron:21:16: error: pass 'reduce' uses 'grid' in two ways at once (Storage and Sampled)

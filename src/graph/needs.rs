@@ -9,6 +9,10 @@ use super::source::Diagnostic;
 use crate::shader::Resource;
 use crate::vulkan::Stage;
 
+const CLIP_DISTANCE: u32 = 32;
+const FLOAT64: u32 = 10;
+const INT64: u32 = 11;
+
 /// One error for each feature that a pass of the plan needs and the device lacks.
 pub(super) fn check(graph: &Graph, linked: &[Linked], plan: &Plan, input: &PlanInput<'_>) -> Vec<Diagnostic> {
     let have = &input.device.features;
@@ -30,6 +34,7 @@ pub(super) fn check(graph: &Graph, linked: &[Linked], plan: &Plan, input: &PlanI
             })
         };
         let unformatted = link.bound.iter().any(|b| matches!(b.resource, Resource::Storage { format: None, .. }));
+        let uses = |capability: u32| link.stages.iter().any(|s| s.interface.capabilities.contains(&capability));
         let needs = [
             (
                 pass.raster.conservative.is_some(),
@@ -42,6 +47,9 @@ pub(super) fn check(graph: &Graph, linked: &[Linked], plan: &Plan, input: &PlanI
             (stores(false), have.vertex_stores, "stores from vertex, tessellation or geometry shaders"),
             (pass.raster.depth_clamp, have.depth_clamp, "depth clamping"),
             (unformatted, have.write_without_format, "writing images without a format"),
+            (uses(CLIP_DISTANCE), have.clip_distance, "gl_ClipDistance"),
+            // Not asked of any device: portable shaders do without.
+            (uses(FLOAT64) || uses(INT64), false, "64-bit numbers in shaders"),
         ];
         for (needed, available, what) in needs {
             if needed && !available {

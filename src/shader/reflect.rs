@@ -86,6 +86,8 @@ pub struct Interface {
     pub local_size: [u32; 3],
     /// Locations a fragment shader writes.
     pub outputs: Vec<u32>,
+    /// SPIR-V capabilities (section 3.31) by number.
+    pub capabilities: Vec<u32>,
 }
 
 /// Most resources of one stage; stages get neighbouring ranges of binding numbers.
@@ -103,8 +105,14 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
         .reflect()
         .map_err(|e| format!("reflection failed: {e}"))?;
     let entry = entries.first().ok_or("the shader has no entry point")?;
-    let mut interface =
-        Interface { bindings: vec![], constants: vec![], push: false, local_size: [1; 3], outputs: vec![] };
+    let mut interface = Interface {
+        bindings: vec![],
+        constants: vec![],
+        push: false,
+        local_size: [1; 3],
+        outputs: vec![],
+        capabilities: capabilities(words),
+    };
     for var in &entry.vars {
         match var {
             Variable::Descriptor { name, desc_bind, desc_ty, ty, nbind } => {
@@ -164,6 +172,16 @@ fn without_constant_operations(words: &[u32]) -> Vec<u32> {
         }
     }
     out
+}
+
+fn capabilities(words: &[u32]) -> Vec<u32> {
+    const OP_CAPABILITY: u32 = 17;
+    instructions(words)
+        .filter_map(|i| match i {
+            [first, capability] if first & 0xffff == OP_CAPABILITY => Some(*capability),
+            _ => None,
+        })
+        .collect()
 }
 
 fn block_name(ty: &Type) -> Option<String> {
