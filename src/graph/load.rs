@@ -577,8 +577,7 @@ impl Check<'_> {
 
     fn attachments(&mut self, pass: &PassDecl, at: At) {
         let name = &pass.name.value;
-        // A choice of formats is taken for colour; an unknown format was told where it stands.
-        // A choice of formats must hold formats of one kind, which the first tells.
+        // A choice of formats is of its first one's kind; an unknown format was told where it stands.
         let depth_format = |g: &Graph, n: &str| {
             let name = &g.textures.iter().find(|t| t.0 == n)?.1.value.format.value;
             let choice = g.params.list.iter().find(|p| p.name == *name);

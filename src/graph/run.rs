@@ -593,7 +593,6 @@ impl Drop for Program {
 fn relayout(image: &Image, from: vk::ImageLayout, to: vk::ImageLayout, mip: u32) -> vk::ImageMemoryBarrier2<'static> {
     let all = vk::PipelineStageFlags2::ALL_COMMANDS;
     let access = vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE;
-    let depth = matches!(image.desc.format, vk::Format::D32_SFLOAT | vk::Format::D16_UNORM);
     vk::ImageMemoryBarrier2::default()
         .src_stage_mask(all)
         .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
@@ -603,7 +602,7 @@ fn relayout(image: &Image, from: vk::ImageLayout, to: vk::ImageLayout, mip: u32)
         .new_layout(to)
         .subresource_range(
             vk::ImageSubresourceRange::default()
-                .aspect_mask(if depth { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR })
+                .aspect_mask(image.aspect())
                 .base_mip_level(mip)
                 .level_count(1)
                 .layer_count(vk::REMAINING_ARRAY_LAYERS),

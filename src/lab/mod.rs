@@ -168,7 +168,6 @@ impl Lab {
         let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
         let scene_gpu = SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene))?;
         let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources)?;
-        self.gpu.save_pipeline_cache();
         let session = Session {
             graph,
             params,

@@ -393,16 +393,9 @@ impl Commands<'_> {
     }
 }
 
-fn aspect(image: &Image) -> vk::ImageAspectFlags {
-    match image.desc.format {
-        vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => vk::ImageAspectFlags::DEPTH,
-        _ => vk::ImageAspectFlags::COLOR,
-    }
-}
-
 fn whole(image: &Image) -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange {
-        aspect_mask: aspect(image),
+        aspect_mask: image.aspect(),
         base_mip_level: 0,
         level_count: vk::REMAINING_MIP_LEVELS,
         base_array_layer: 0,
@@ -412,7 +405,7 @@ fn whole(image: &Image) -> vk::ImageSubresourceRange {
 
 fn layers(image: &Image, mip: u32) -> vk::ImageSubresourceLayers {
     vk::ImageSubresourceLayers {
-        aspect_mask: aspect(image),
+        aspect_mask: image.aspect(),
         mip_level: mip,
         base_array_layer: 0,
         layer_count: image.desc.layers,

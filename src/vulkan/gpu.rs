@@ -371,7 +371,7 @@ impl Gpu {
     }
 
     /// Writes the pipeline cache to disk, whole or not at all. Failing to is no error: the next start is slower.
-    pub fn save_pipeline_cache(&self) {
+    fn save_pipeline_cache(&self) {
         let Some(file) = &self.cache_file else { return };
         // SAFETY: the cache is alive.
         if let Ok(blob) = unsafe { self.device.get_pipeline_cache_data(self.pipeline_cache) } {

@@ -209,6 +209,14 @@ impl Image {
         Ok(image)
     }
 
+    /// The part of it that holds texels.
+    pub fn aspect(&self) -> vk::ImageAspectFlags {
+        match self.desc.format {
+            vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => vk::ImageAspectFlags::DEPTH,
+            _ => vk::ImageAspectFlags::COLOR,
+        }
+    }
+
     /// Extent of a mip.
     pub fn mip_extent(&self, mip: u32) -> [u32; 3] {
         self.desc.extent.map(|n| (n >> mip).max(1))
