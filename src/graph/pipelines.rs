@@ -32,15 +32,26 @@ pub(super) fn descriptor_pool(gpu: &Arc<Gpu>, plan: &Plan, linked: &[Linked]) ->
     DescriptorPool::new(gpu, u32::try_from(plan.steps.len() * 2).unwrap_or(u32::MAX), &kinds)
 }
 
-/// Pipelines in parallel, and which of them each step uses.
-#[expect(clippy::type_complexity, reason = "used once, by Program::new")]
+/// Pipelines with what they were made from.
+pub(super) type Pipelines = Vec<(PipelineDesc, Arc<Pipeline>)>;
+
+/// The pipelines of a plan, and which of them each step uses.
+pub(super) struct Made {
+    pub pipelines: Pipelines,
+    pub keys: Vec<Option<usize>>,
+    /// How many of them were made anew.
+    pub built: usize,
+}
+
+/// Makes pipelines in parallel; those whose description is among `kept` are taken from there.
 pub(super) fn make_pipelines(
     gpu: &Arc<Gpu>,
     graph: &Graph,
     linked: &[Linked],
     plan: &Plan,
     params: &Params,
-) -> Result<(Vec<Arc<Pipeline>>, Vec<Option<usize>>)> {
+    kept: &[(PipelineDesc, Arc<Pipeline>)],
+) -> Result<Made> {
     let mut descs: Vec<(usize, PipelineDesc)> = Vec::new();
     let mut keys = Vec::new();
     for step in &plan.steps {
@@ -57,8 +68,15 @@ pub(super) fn make_pipelines(
             descs.len() - 1
         })));
     }
-    let pipelines = descs.par_iter().map(|(_, d)| Pipeline::new(gpu, d).map(Arc::new)).collect::<Result<_>>()?;
-    Ok((pipelines, keys))
+    let pipelines: Vec<(bool, (PipelineDesc, Arc<Pipeline>))> = descs
+        .into_par_iter()
+        .map(|(_, desc)| match kept.iter().find(|(d, _)| *d == desc) {
+            Some((_, pipeline)) => Ok((false, (desc, pipeline.clone()))),
+            None => Pipeline::new(gpu, &desc).map(|made| (true, (desc, Arc::new(made)))),
+        })
+        .collect::<Result<_>>()?;
+    let built = pipelines.iter().filter(|p| p.0).count();
+    Ok(Made { pipelines: pipelines.into_iter().map(|p| p.1).collect(), keys, built })
 }
 
 fn pipeline_desc(

@@ -42,6 +42,14 @@ pub struct TexturePlan {
     pub history: bool,
 }
 
+impl TexturePlan {
+    /// Bytes of one layer of a mip, tightly packed.
+    pub fn mip_bytes(&self, mip: u32) -> u64 {
+        let texels: u64 = self.extent.iter().map(|n| u64::from((n >> mip).max(1))).product();
+        texels * u64::from(self.format.bytes)
+    }
+}
+
 /// A buffer as it is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BufferPlan {

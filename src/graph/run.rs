@@ -5,9 +5,10 @@ use super::file::{PassDecl, Which};
 use super::link::{Linked, Target, bound_shape};
 use super::load::Graph;
 use super::param::Params;
-use super::pipelines::{clear_value, descriptor_pool, descriptor_type, make_pipelines, sampler_desc};
+use super::pipelines::{Pipelines, clear_value, descriptor_pool, descriptor_type, make_pipelines, sampler_desc};
 use super::plan::{Plan, Step, Work};
-use super::usage::{Barrier, Res, Schedule, schedule};
+use super::successor::{Change, Parts};
+use super::usage::{Barrier, Layouts, Res, Schedule, schedule};
 use crate::shader::{Resource, Shape};
 use crate::vulkan::{
     Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, FrameSlot, Gpu, Image, ImageDesc, Pipeline,
@@ -49,21 +50,36 @@ pub struct Program {
     gpu: Arc<Gpu>,
     /// What it runs.
     pub plan: Plan,
-    schedule: Schedule,
+    pub(super) schedule: Schedule,
     scene: SceneResources,
+    pub(super) pipelines: Pipelines,
     steps: Vec<StepGpu>,
     pool: DescriptorPool,
     samplers: HashMap<SamplerDesc, Sampler>,
     /// Views that the sets refer to.
     views: Vec<View>,
     names: Vec<String>,
-    images: Vec<[Option<Arc<Image>>; 2]>,
-    buffers: Vec<Option<Arc<Buffer>>>,
+    pub(super) images: Vec<[Option<Arc<Image>>; 2]>,
+    pub(super) buffers: Vec<Option<Arc<Buffer>>>,
+    /// Layouts of all images between frames.
+    pub(super) resting: Layouts,
+    /// What was taken over from the program before.
+    pub change: Change,
     params: Arc<Buffer>,
-    slots: Vec<(FrameSlot, f64)>,
-    frame: u64,
+    slots: Vec<Slot>,
+    pub(super) frame: u64,
+    /// The texture that every frame copies to the CPU.
+    shown: Option<usize>,
     /// Steps where a pass begins.
     starts: Vec<usize>,
+}
+
+/// A frame in flight.
+struct Slot {
+    commands: FrameSlot,
+    cpu_ms: f64,
+    /// Where the shown texture is copied to.
+    readback: Option<Buffer>,
 }
 
 struct StepGpu {
@@ -83,13 +99,16 @@ pub struct FrameTimes {
     pub gpu_ms: f64,
     /// Recording and submitting on the CPU, ms.
     pub cpu_ms: f64,
+    /// Texels of the texture chosen by [`Program::show`], mip 0 and layer 0, tightly packed.
+    pub picture: Option<Vec<u8>>,
 }
 
 /// Frames recorded ahead of the GPU.
 const FRAMES_IN_FLIGHT: usize = 3;
 
 impl Program {
-    /// Makes everything that the plan needs.
+    /// Makes everything that the plan needs, except what can be taken from the parts of a running program; see
+    /// [`Program::succeed`].
     ///
     /// # Errors
     /// Out of device memory, and what the driver refuses.
@@ -100,20 +119,29 @@ impl Program {
         plan: Plan,
         params: &Params,
         scene: &SceneResources,
+        parts: &Parts,
     ) -> Result<Program> {
         let schedule = schedule(&plan);
-        let images = make_images(gpu, graph, &plan)?;
-        let buffers = make_buffers(gpu, graph, &plan)?;
+        let mut change = Change::default();
+        let images = make_images(gpu, graph, &plan, parts, &mut change)?;
+        let buffers = make_buffers(gpu, graph, &plan, parts, &mut change)?;
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
         let size = params.uniform_bytes().len() as u64;
         let params_buffer = Arc::new(Buffer::new(gpu, "params", size, usage, MemoryLocation::GpuOnly)?);
-        let (pipelines, keys) = make_pipelines(gpu, graph, linked, &plan, params)?;
+        let made = make_pipelines(gpu, graph, linked, &plan, params, &parts.pipelines)?;
+        change.built = made.built;
+        change.kept = made.pipelines.len() - made.built;
+        let resting = schedule.ends[1].clone();
         let mut program = Program {
             gpu: gpu.clone(),
             pool: descriptor_pool(gpu, &plan, linked)?,
             samplers: HashMap::new(),
             views: Vec::new(),
             names: graph.passes.iter().map(|p| p.value.name.value.clone()).collect(),
+            pipelines: made.pipelines,
+            resting,
+            change,
+            shown: None,
             steps: Vec::new(),
             starts: (0..plan.steps.len())
                 .filter(|i| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass)
@@ -129,26 +157,30 @@ impl Program {
         };
         let timestamps = u32::try_from(program.starts.len() + 1).unwrap_or(u32::MAX);
         for _ in 0..FRAMES_IN_FLIGHT {
-            program.slots.push((FrameSlot::new(gpu, timestamps)?, 0.0));
+            program.slots.push(Slot { commands: FrameSlot::new(gpu, timestamps)?, cpu_ms: 0.0, readback: None });
         }
-        for (i, key) in keys.iter().enumerate() {
-            let step = program.step(graph, linked, i, key.map(|k| pipelines[k].clone()))?;
+        for (i, key) in made.keys.iter().enumerate() {
+            let pipeline = key.map(|k| program.pipelines[k].1.clone());
+            let step = program.step(graph, linked, i, pipeline)?;
             program.steps.push(step);
         }
-        program.initialise()?;
+        program.initialise(parts)?;
         Ok(program)
     }
 
-    /// Gives every image its first layout and zeroes everything, so that first frames are like any other.
-    fn initialise(&mut self) -> Result<()> {
+    /// Gives every new image its first layout and zeroes what is new, so that first frames are like any other.
+    fn initialise(&mut self, parts: &Parts) -> Result<()> {
         let dst = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        for layout in self.resting.iter_mut().flatten().flatten().filter(|l| **l == vk::ImageLayout::UNDEFINED) {
+            *layout = dst;
+        }
         Commands::once(&self.gpu, |commands| {
-            for buffer in self.buffers.iter().flatten() {
+            for buffer in self.buffers.iter().flatten().filter(|b| !parts.holds_buffer(b)) {
                 commands.fill(buffer, 0);
             }
             for (t, copies) in self.images.iter().enumerate() {
                 for (c, image) in copies.iter().enumerate() {
-                    let Some(image) = image else { continue };
+                    let Some(image) = image.as_ref().filter(|i| !parts.holds_image(i)) else { continue };
                     commands.transition(image, vk::ImageLayout::UNDEFINED, dst);
                     if self.plan.textures[t].format.is_depth() {
                         commands.clear_depth(image, dst, 1.0);
@@ -156,8 +188,8 @@ impl Program {
                         commands.clear(image, dst, vk::ClearColorValue::default(), (0, vk::REMAINING_MIP_LEVELS));
                     }
                     let barriers: Vec<_> = (0u32..)
-                        .zip(&self.schedule.ends[1][t][c])
-                        .filter(|(_, layout)| **layout != vk::ImageLayout::UNDEFINED)
+                        .zip(&self.resting[t][c])
+                        .filter(|(_, layout)| **layout != dst)
                         .map(|(mip, layout)| (&**image, relayout(image, dst, *layout, mip)))
                         .collect();
                     commands.barrier(None, &barriers);
@@ -317,6 +349,10 @@ impl Program {
         }
     }
 
+    pub(super) fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
     /// The buffer that holds the parameters.
     pub fn params_buffer(&self) -> Arc<Buffer> {
         self.params.clone()
@@ -332,13 +368,57 @@ impl Program {
         let finished = self.finish(slot)?;
         let parity = usize::try_from(self.frame % 2).unwrap_or(0);
         let mut slots = std::mem::take(&mut self.slots);
+        let readback = self.readback(slots[slot].readback.take());
         let start = Instant::now();
-        let result = slots[slot].0.submit(|commands| self.record(commands, updates, parity));
-        slots[slot].1 = start.elapsed().as_secs_f64() * 1e3;
+        let result = readback.and_then(|readback| {
+            slots[slot].readback = readback;
+            let Slot { commands, readback, .. } = &mut slots[slot];
+            commands.submit(|commands| self.record(commands, updates, parity, readback.as_ref()))
+        });
+        slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.slots = slots;
         result?;
         self.frame += 1;
+        self.rest(parity);
         Ok(finished)
+    }
+
+    /// Copies this texture to the CPU with every frame from now on.
+    pub fn show(&mut self, texture: Option<usize>) {
+        self.shown = texture.filter(|t| !self.plan.textures[*t].usage.is_empty());
+    }
+
+    /// A host buffer for the shown texture: the one there is, if it fits.
+    fn readback(&self, old: Option<Buffer>) -> Result<Option<Buffer>> {
+        let Some(shown) = self.shown else { return Ok(None) };
+        let size = self.plan.textures[shown].mip_bytes(0);
+        if let Some(buffer) = old.filter(|b| b.size == size.max(16).next_multiple_of(4)) {
+            return Ok(Some(buffer));
+        }
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        Buffer::new(&self.gpu, "shown", size, usage, MemoryLocation::GpuToCpu).map(Some)
+    }
+
+    /// Remembers the layouts that a frame of this parity leaves behind.
+    fn rest(&mut self, parity: usize) {
+        for (now, end) in self.resting.iter_mut().flatten().flatten().zip(self.schedule.ends[parity].iter().flatten().flatten()) {
+            if *end != vk::ImageLayout::UNDEFINED {
+                *now = *end;
+            }
+        }
+    }
+
+    /// Waits until at most so many frames are unfinished and returns the times of the others, in order.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn finish_to(&mut self, unfinished: u64) -> Result<Vec<FrameTimes>> {
+        let mut list = Vec::new();
+        for age in (unfinished + 1..=FRAMES_IN_FLIGHT as u64).rev() {
+            let Some(frame) = self.frame.checked_sub(age) else { continue };
+            list.extend(self.finish(usize::try_from(frame % FRAMES_IN_FLIGHT as u64).unwrap_or(0))?);
+        }
+        Ok(list)
     }
 
     /// Waits for all frames and returns their times in order.
@@ -346,27 +426,32 @@ impl Program {
     /// # Errors
     /// The device was lost.
     pub fn finish_all(&mut self) -> Result<Vec<FrameTimes>> {
-        let mut list = Vec::new();
-        for i in 0..FRAMES_IN_FLIGHT as u64 {
-            let slot = usize::try_from((self.frame + i) % FRAMES_IN_FLIGHT as u64).unwrap_or(0);
-            list.extend(self.finish(slot)?);
-        }
-        Ok(list)
+        self.finish_to(0)
     }
 
     fn finish(&mut self, slot: usize) -> Result<Option<FrameTimes>> {
-        let (frame, cpu_ms) = &mut self.slots[slot];
-        let Some(ticks) = frame.wait()? else { return Ok(None) };
+        let Slot { commands, cpu_ms, readback } = &mut self.slots[slot];
+        let Some(ticks) = commands.wait()? else { return Ok(None) };
         let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
         let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass);
         Ok(Some(FrameTimes {
             passes: passes.zip(ticks.windows(2)).map(|(pass, t)| (pass, ms(t[0], t[1]))).collect(),
             gpu_ms: ticks.first().zip(ticks.last()).map_or(0.0, |(a, b)| ms(*a, *b)),
             cpu_ms: *cpu_ms,
+            picture: readback.as_ref().map(|b| {
+                let bytes = self.shown.map_or(0, |t| self.plan.textures[t].mip_bytes(0));
+                b.bytes()[..usize::try_from(bytes).unwrap_or(0).min(b.bytes().len())].to_vec()
+            }),
         }))
     }
 
-    fn record(&self, commands: &mut Commands<'_>, updates: &[(Arc<Buffer>, Vec<u8>)], parity: usize) {
+    fn record(
+        &self,
+        commands: &mut Commands<'_>,
+        updates: &[(Arc<Buffer>, Vec<u8>)],
+        parity: usize,
+        readback: Option<&Buffer>,
+    ) {
         use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
         if !updates.is_empty() {
             let barrier = |src, src_access, dst, dst_access| {
@@ -398,6 +483,16 @@ impl Program {
             commands.end_label();
         }
         commands.timestamp();
+        if let (Some(texture), Some(to)) = (self.shown, readback) {
+            let copy = usize::from(self.plan.textures[texture].history && parity == 1);
+            if let Some(image) = &self.images[texture][copy] {
+                let layout = match self.schedule.ends[parity][texture][copy][0] {
+                    vk::ImageLayout::UNDEFINED => self.resting[texture][copy][0],
+                    layout => layout,
+                };
+                copy_out(commands, image, layout, (0, 0), to);
+            }
+        }
     }
 
     fn barriers(&self, commands: &mut Commands<'_>, list: &[Barrier]) {
@@ -534,22 +629,11 @@ impl Program {
         let plan = &self.plan.textures[texture];
         let copy = if plan.history { parity } else { 0 };
         let image = self.image(texture, false, parity)?.clone();
-        // A mip that no step touches is as `initialise` left it.
-        let layout = match self.schedule.ends[parity][texture][copy][mip as usize] {
-            vk::ImageLayout::UNDEFINED => vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-            layout => layout,
-        };
-        let [w, h, d] = image.mip_extent(mip);
-        let size = u64::from(w) * u64::from(h) * u64::from(d) * u64::from(plan.format.bytes);
+        let layout = self.resting[texture][copy][mip as usize];
+        let size = plan.mip_bytes(mip);
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let target = Buffer::new(&self.gpu, "readback", size, usage, MemoryLocation::GpuToCpu)?;
-        let src = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-        Commands::once(&self.gpu, |commands| {
-            commands.barrier(None, &[(&image, relayout(&image, layout, src, mip))]);
-            commands.read_image(&image, src, mip, layer, &target);
-            commands.barrier(None, &[(&image, relayout(&image, src, layout, mip))]);
-            commands.full_barrier();
-        })?;
+        Commands::once(&self.gpu, |commands| copy_out(commands, &image, layout, (mip, layer), &target))?;
         Ok(target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec())
     }
 
@@ -590,7 +674,16 @@ impl Drop for Program {
     }
 }
 
-fn relayout(image: &Image, from: vk::ImageLayout, to: vk::ImageLayout, mip: u32) -> vk::ImageMemoryBarrier2<'static> {
+/// Copies a (mip, layer) of an image that rests in a layout, and leaves it there.
+fn copy_out(commands: &mut Commands<'_>, image: &Image, layout: vk::ImageLayout, part: (u32, u32), to: &Buffer) {
+    let src = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+    commands.barrier(None, &[(image, relayout(image, layout, src, part.0))]);
+    commands.read_image(image, src, part.0, part.1, to);
+    commands.barrier(None, &[(image, relayout(image, src, layout, part.0))]);
+    commands.full_barrier();
+}
+
+pub(super) fn relayout(image: &Image, from: vk::ImageLayout, to: vk::ImageLayout, mip: u32) -> vk::ImageMemoryBarrier2<'static> {
     let all = vk::PipelineStageFlags2::ALL_COMMANDS;
     let access = vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE;
     vk::ImageMemoryBarrier2::default()
@@ -609,7 +702,13 @@ fn relayout(image: &Image, from: vk::ImageLayout, to: vk::ImageLayout, mip: u32)
         )
 }
 
-fn make_images(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<[Option<Arc<Image>>; 2]>> {
+fn make_images(
+    gpu: &Arc<Gpu>,
+    graph: &Graph,
+    plan: &Plan,
+    parts: &Parts,
+    change: &mut Change,
+) -> Result<Vec<[Option<Arc<Image>>; 2]>> {
     let mut list = Vec::new();
     for ((name, decl), t) in graph.textures.iter().zip(&plan.textures) {
         let mut copies = [None, None];
@@ -626,7 +725,13 @@ fn make_images(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<[Option
                     views: views.filter_map(|v| crate::vulkan::Format::named(&v.value)).map(|f| f.vk).collect(),
                     usage: t.usage,
                 };
-                *slot = Some(Arc::new(Image::new(gpu, desc)?));
+                *slot = Some(match parts.image(name, c, &desc) {
+                    Some(kept) => kept,
+                    None => {
+                        change.resized += usize::from(parts.had(name));
+                        Arc::new(Image::new(gpu, desc)?)
+                    }
+                });
             }
         }
         list.push(copies);
@@ -634,7 +739,13 @@ fn make_images(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<[Option
     Ok(list)
 }
 
-fn make_buffers(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<Option<Arc<Buffer>>>> {
+fn make_buffers(
+    gpu: &Arc<Gpu>,
+    graph: &Graph,
+    plan: &Plan,
+    parts: &Parts,
+    change: &mut Change,
+) -> Result<Vec<Option<Arc<Buffer>>>> {
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER
         | vk::BufferUsageFlags::UNIFORM_BUFFER
         | vk::BufferUsageFlags::INDIRECT_BUFFER
@@ -645,7 +756,14 @@ fn make_buffers(gpu: &Arc<Gpu>, graph: &Graph, plan: &Plan) -> Result<Vec<Option
         .iter()
         .zip(&plan.buffers)
         .map(|((name, _), b)| {
-            b.used.then(|| Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly).map(Arc::new)).transpose()
+            if !b.used {
+                return Ok(None);
+            }
+            if let Some(kept) = parts.buffer(name, b.size) {
+                return Ok(Some(kept));
+            }
+            change.resized += usize::from(parts.had(name));
+            Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly).map(|made| Some(Arc::new(made)))
         })
         .collect()
 }

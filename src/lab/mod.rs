@@ -12,10 +12,11 @@ use crate::graph::expr::{Env, Var};
 use crate::graph::link::{Linked, link};
 use crate::graph::load::{Folders, Graph, load};
 use crate::graph::param::Params;
-use crate::graph::plan::{PlanInput, plan};
+use crate::graph::plan::{Plan, PlanInput, plan};
 use crate::graph::run::{FrameTimes, Program};
 use crate::graph::source::{Diagnostic, nearest};
-use crate::scene::{Scene, SceneError};
+use crate::graph::successor::Parts;
+use crate::scene::{Camera, Scene, SceneError};
 use crate::shader::ShaderCompiler;
 use crate::vulkan::{DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
 use std::path::{Path, PathBuf};
@@ -83,6 +84,15 @@ impl Home {
         Folders { passes: self.root.join("passes"), shaders: self.root.join("shaders") }
     }
 
+    /// [`Home::graph`], to be shared.
+    ///
+    /// # Errors
+    /// All mistakes.
+    pub fn load(&self, name: &str) -> Result<Loaded, Vec<Diagnostic>> {
+        let (graph, linked, warnings) = self.graph(name)?;
+        Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
+    }
+
     /// A graph with its shaders compiled and checked, and warnings; needs no device.
     ///
     /// # Errors
@@ -101,6 +111,7 @@ impl Home {
 }
 
 /// A device that runs experiments.
+#[derive(Clone)]
 pub struct Lab {
     /// Its folders.
     pub home: Home,
@@ -108,10 +119,31 @@ pub struct Lab {
     pub gpu: Arc<Gpu>,
 }
 
+/// A graph with its shaders compiled and checked.
+#[derive(Clone)]
+pub struct Loaded {
+    /// The graph.
+    pub graph: Arc<Graph>,
+    /// Its shaders.
+    pub linked: Arc<Vec<Linked>>,
+    /// What was found and is no error.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What a session in use lends to the one that will take its place.
+pub struct Seed {
+    parts: Parts,
+    scene: Arc<Scene>,
+    max_edge: Option<f64>,
+    scene_gpu: SceneGpu,
+}
+
 /// A graph on a scene, ready to make frames.
 pub struct Session {
     /// The graph.
-    pub graph: Graph,
+    pub graph: Arc<Graph>,
+    linked: Arc<Vec<Linked>>,
+    wanted: Vec<String>,
     /// Present parameter values.
     pub params: Params,
     /// What runs.
@@ -157,19 +189,43 @@ impl Lab {
         scene: Arc<Scene>,
         wanted: impl FnOnce(&Graph) -> Result<Vec<String>, LabError>,
     ) -> Result<(Session, Vec<Diagnostic>), LabError> {
-        let (graph, linked, warnings) = self.home.graph(&experiment.graph).map_err(LabError::Input)?;
+        let loaded = self.home.load(&experiment.graph).map_err(LabError::Input)?;
+        let warnings = loaded.warnings.clone();
+        let wanted = wanted(&loaded.graph)?;
+        Ok((self.build(experiment, &loaded, scene, wanted, None)?, warnings))
+    }
+
+    /// Makes a session, from parts of one in use where they fit; see [`Session::succeed`].
+    ///
+    /// # Errors
+    /// As [`Lab::prepare`].
+    pub fn build(
+        &self,
+        experiment: &Experiment,
+        loaded: &Loaded,
+        scene: Arc<Scene>,
+        mut wanted: Vec<String>,
+        seed: Option<&Seed>,
+    ) -> Result<Session, LabError> {
+        let Loaded { graph, linked, .. } = loaded.clone();
         let params = params_of(&graph, experiment)?;
-        let mut wanted = wanted(&graph)?;
         wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
         let viewpoint = viewpoint_of(experiment, &scene)?;
-        let env = environment(&scene, experiment.size);
-        let input = PlanInput { params: &params, env, wanted, device: &self.gpu.info };
-        let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
-        let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
-        let scene_gpu = SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene))?;
-        let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources)?;
-        let session = Session {
+        let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
+        let scene_gpu = match seed.filter(|s| Arc::ptr_eq(&s.scene, &scene) && s.max_edge == plan.max_edge) {
+            Some(seed) => seed.scene_gpu.fork(&self.gpu, &scene)?,
+            None => {
+                let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
+                SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene))?
+            }
+        };
+        let none = Parts::default();
+        let parts = seed.map_or(&none, |s| &s.parts);
+        let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources, parts)?;
+        Ok(Session {
             graph,
+            linked,
+            wanted,
             params,
             program,
             scene,
@@ -179,9 +235,21 @@ impl Lab {
             time: experiment.time,
             frame: 0,
             sent_params: false,
-        };
-        Ok((session, warnings))
+        })
     }
+}
+
+fn plan_of(
+    graph: &Graph,
+    linked: &[Linked],
+    params: &Params,
+    scene: &Scene,
+    size: (u32, u32),
+    wanted: &[String],
+    device: &DeviceInfo,
+) -> Result<Plan, LabError> {
+    let input = PlanInput { params, env: environment(scene, size), wanted: wanted.to_vec(), device };
+    plan(graph, linked, &input).map_err(LabError::Input)
 }
 
 /// Variables of expressions that come from scene and size.
@@ -251,6 +319,67 @@ pub fn no_texture(graph: &Graph, name: &str) -> LabError {
 }
 
 impl Session {
+    /// What the next session in this one's place can be made from, while this one runs on.
+    pub fn seed(&self) -> Seed {
+        Seed {
+            parts: self.program.parts(&self.graph),
+            scene: self.scene.clone(),
+            max_edge: self.program.plan.max_edge,
+            scene_gpu: self.scene_gpu.clone(),
+        }
+    }
+
+    /// Takes the place of the session that this one was made from, at a frame's border: textures keep their content,
+    /// time and camera go on.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn succeed(&mut self, old: &mut Session) -> Result<(), LabError> {
+        self.program.succeed(&mut old.program)?;
+        self.viewpoint = old.viewpoint.clone();
+        self.time = old.time;
+        self.frame = old.frame;
+        Ok(())
+    }
+
+    /// Sets parameters if that needs no other textures, passes or pipelines: then it is a buffer write, and `true`.
+    ///
+    /// # Errors
+    /// Values that the graph cannot be planned with.
+    pub fn set_params(&mut self, lab: &Lab, params: &Params) -> Result<bool, LabError> {
+        if params.constants() != self.params.constants() {
+            return Ok(false);
+        }
+        let size = self.size;
+        let plan = plan_of(&self.graph, &self.linked, params, &self.scene, size, &self.wanted, &lab.gpu.info)?;
+        if plan != self.program.plan {
+            return Ok(false);
+        }
+        self.params = params.clone();
+        self.sent_params = false;
+        Ok(true)
+    }
+
+    /// Looks through a camera from the next frame on.
+    pub fn look(&mut self, camera: &Camera) {
+        self.viewpoint.camera = *camera;
+    }
+
+    /// The camera of the next frame.
+    pub fn camera(&self) -> &Camera {
+        &self.viewpoint.camera
+    }
+
+    /// The time of the next frame, s.
+    pub fn set_time(&mut self, time: f64) {
+        self.time = time;
+    }
+
+    /// Copies this texture to the CPU with every frame ([`FrameTimes::picture`]).
+    pub fn show(&mut self, texture: &str) {
+        self.program.show(self.graph.textures.iter().position(|t| t.0 == texture));
+    }
+
     /// Runs one frame. The times that come back are those of an earlier frame, which has finished meanwhile.
     ///
     /// # Errors

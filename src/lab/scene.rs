@@ -59,6 +59,7 @@ struct InstanceBlock {
 }
 
 /// A scene's resources on the device.
+#[derive(Clone)]
 pub struct SceneGpu {
     /// By name, with what is drawn.
     pub resources: SceneResources,
@@ -165,6 +166,24 @@ impl SceneGpu {
             instances,
             sent: instance_blocks,
         })
+    }
+
+    /// The same geometry and textures with buffers of its own for what changes from frame to frame, so that two
+    /// programs can run on one upload.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn fork(&self, gpu: &Arc<Gpu>, scene: &Scene) -> Result<SceneGpu> {
+        let mut upload = Upload::new(gpu);
+        let mut resources = self.resources.clone();
+        let sent = instances(scene, 0.0, None);
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let instances = upload.buffer("instances", bytemuck::cast_slice(&sent), storage)?;
+        let camera = upload.buffer("camera", &[0; CAMERA_BYTES], vk::BufferUsageFlags::UNIFORM_BUFFER)?;
+        upload.finish()?;
+        resources.buffers.insert("instances", instances.clone());
+        resources.buffers.insert("camera", camera.clone());
+        Ok(SceneGpu { resources, camera, bytes: self.bytes, instances, sent })
     }
 
     /// Buffers that change with time: the poses of animated instances, when they moved.

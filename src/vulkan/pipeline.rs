@@ -67,7 +67,7 @@ impl Stage {
 pub type SpecValue = u32;
 
 /// One stage of a pipeline: SPIR-V whose bindings are those of the pipeline's list.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct StageDesc {
     /// Which stage.
     pub stage: Stage,
@@ -163,7 +163,7 @@ pub struct DrawState {
 }
 
 /// A pipeline to make.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PipelineDesc {
     /// Name for debuggers.
     pub name: String,
