@@ -60,7 +60,7 @@ struct DeviceArgs {
 
 impl DeviceArgs {
     fn options(&self) -> GpuOptions {
-        GpuOptions { device: self.device.clone(), validation: self.validate, cache: None }
+        GpuOptions { device: self.device.clone(), validation: self.validate, cache: None, display: None }
     }
 }
 

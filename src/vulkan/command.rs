@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// A command buffer being recorded. Its methods are Vulkan's commands; callers order them by barriers.
 pub struct Commands<'a> {
     gpu: &'a Gpu,
-    handle: vk::CommandBuffer,
+    pub(super) handle: vk::CommandBuffer,
     queries: Option<(vk::QueryPool, u32)>,
 }
 
@@ -96,6 +96,18 @@ impl FrameSlot {
     /// # Errors
     /// The device was lost.
     pub fn submit(&mut self, record: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
+        self.submit_between(None, record)
+    }
+
+    /// Like [`FrameSlot::submit`]; waits for the first semaphore and signals the second.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(super) fn submit_between(
+        &mut self,
+        semaphores: Option<(vk::Semaphore, vk::Semaphore)>,
+        record: impl FnOnce(&mut Commands<'_>),
+    ) -> Result<()> {
         self.wait()?;
         let d = &self.gpu.device;
         let at = || VulkanError::at("submit a frame");
@@ -113,7 +125,14 @@ impl FrameSlot {
             self.written = commands.queries.map_or(0, |q| q.1).min(self.query_count);
             d.end_command_buffer(self.buffer).map_err(at())?;
             let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];
-            let submit = [vk::SubmitInfo2::default().command_buffer_infos(&buffers)];
+            let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+            let part = |s| [vk::SemaphoreSubmitInfo::default().semaphore(s).stage_mask(all)];
+            let between = semaphores.map(|(wait, signal)| (part(wait), part(signal)));
+            let mut submit = vk::SubmitInfo2::default().command_buffer_infos(&buffers);
+            if let Some((wait, signal)) = &between {
+                submit = submit.wait_semaphore_infos(wait).signal_semaphore_infos(signal);
+            }
+            let submit = [submit];
             let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             d.queue_submit2(*queue, &submit, self.fence).map_err(at())?;
             self.pending = true;
@@ -381,6 +400,33 @@ impl Commands<'_> {
             })
             .image_extent(vk::Extent3D { width, height, depth })];
         unsafe { self.gpu.device.cmd_copy_image_to_buffer(self.handle, image.handle, layout, to.handle, &region) };
+    }
+
+    /// Fills an image with new content, and leaves it ready to be sampled by fragment shaders.
+    pub(super) fn refill(&mut self, image: &Image, from: &Buffer) {
+        let [width, height, depth] = image.mip_extent(0);
+        let region = vk::BufferImageCopy::default().image_subresource(layers(image, 0)).image_extent(vk::Extent3D {
+            width,
+            height,
+            depth,
+        });
+        self.fill_image(image, from, &[region]);
+    }
+
+    /// Moves a window's image or one like it between layouts around rendering.
+    pub(super) fn attach(&mut self, image: vk::Image, from: vk::ImageLayout, to: vk::ImageLayout) {
+        let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+        let barrier = [vk::ImageMemoryBarrier2::default()
+            .src_stage_mask(all)
+            .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+            .dst_stage_mask(all)
+            .dst_access_mask(vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE)
+            .old_layout(from)
+            .new_layout(to)
+            .image(image)
+            .subresource_range(super::surface::WHOLE)];
+        let info = vk::DependencyInfo::default().image_memory_barriers(&barrier);
+        unsafe { self.gpu.device.cmd_pipeline_barrier2(self.handle, &info) };
     }
 
     pub(super) fn fill_image(&mut self, image: &Image, from: &Buffer, regions: &[vk::BufferImageCopy]) {

@@ -2,7 +2,7 @@
 
 use super::debug::{Messages, Names, messenger_info};
 use super::{Result, VulkanError};
-use ash::{Entry, ext, vk};
+use ash::{Entry, ext, khr, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::ffi::{CStr, CString};
 use std::path::PathBuf;
@@ -17,6 +17,8 @@ pub struct GpuOptions {
     pub validation: bool,
     /// Folder for the pipeline cache; none when absent.
     pub cache: Option<PathBuf>,
+    /// The window system whose windows it must be able to present to.
+    pub display: Option<raw_window_handle::RawDisplayHandle>,
 }
 
 /// Optional abilities, asked for only by the switches that need them.
@@ -114,8 +116,9 @@ pub struct Gpu {
     cache_file: Option<PathBuf>,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Box<Messages>,
-    instance: ash::Instance,
-    _entry: Entry,
+    pub(super) physical: vk::PhysicalDevice,
+    pub(super) instance: ash::Instance,
+    pub(super) entry: Entry,
 }
 
 const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
@@ -125,7 +128,12 @@ fn load() -> Result<Entry> {
     unsafe { Entry::load() }.map_err(|e| VulkanError::Loader(e.to_string()))
 }
 
-fn create_instance(entry: &Entry, validation: bool, messages: &Messages) -> Result<(ash::Instance, bool)> {
+fn create_instance(
+    entry: &Entry,
+    validation: bool,
+    display: Option<raw_window_handle::RawDisplayHandle>,
+    messages: &Messages,
+) -> Result<(ash::Instance, bool)> {
     // SAFETY: plain enumeration and creation calls with structures that outlive them.
     unsafe {
         let layers = entry.enumerate_instance_layer_properties().map_err(VulkanError::at("list layers"))?;
@@ -138,7 +146,12 @@ fn create_instance(entry: &Entry, validation: bool, messages: &Messages) -> Resu
         let debug_utils =
             extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(ext::debug_utils::NAME)) || validation;
         let layer_names = if validation { vec![VALIDATION.as_ptr()] } else { vec![] };
-        let extension_names = if debug_utils { vec![ext::debug_utils::NAME.as_ptr()] } else { vec![] };
+        let mut extension_names = if debug_utils { vec![ext::debug_utils::NAME.as_ptr()] } else { vec![] };
+        if let Some(display) = display {
+            let needed =
+                ash_window::enumerate_required_extensions(display).map_err(VulkanError::at("present to this window"))?;
+            extension_names.extend_from_slice(needed);
+        }
         let app = vk::ApplicationInfo::default().application_name(c"conelab").api_version(vk::API_VERSION_1_3);
         let enables = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enables);
@@ -264,7 +277,7 @@ fn physical_devices(instance: &ash::Instance) -> Result<Vec<vk::PhysicalDevice>>
 pub fn list_devices() -> Result<Vec<(DeviceInfo, Option<String>)>> {
     let entry = load()?;
     let messages = Messages::default();
-    let (instance, _) = create_instance(&entry, false, &messages)?;
+    let (instance, _) = create_instance(&entry, false, None, &messages)?;
     let list = physical_devices(&instance)
         .map(|all| all.into_iter().map(|p| (describe(&instance, p), refusal(&instance, p))).collect());
     // SAFETY: nothing made from the instance is alive any more.
@@ -316,7 +329,7 @@ impl Gpu {
     pub fn open(options: &GpuOptions) -> Result<Arc<Gpu>> {
         let entry = load()?;
         let messages = Box::new(Messages::default());
-        let (instance, debug_utils) = create_instance(&entry, options.validation, &messages)?;
+        let (instance, debug_utils) = create_instance(&entry, options.validation, options.display, &messages)?;
         let messenger = if options.validation {
             let api = ext::debug_utils::Instance::new(&entry, &instance);
             // SAFETY: the callback's user data is the boxed message list, dropped after the messenger.
@@ -329,7 +342,7 @@ impl Gpu {
         let physical = choose(&instance, options.device.as_deref())?;
         let info = describe(&instance, physical);
         let family = queue_family(&instance, physical).unwrap_or(0);
-        let device = create_device(&instance, physical, family, &info.features)?;
+        let device = create_device(&instance, physical, family, &info.features, options.display.is_some())?;
         // SAFETY: the family and index were used to create the device.
         let queue = unsafe { device.get_device_queue(family, 0) };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -360,8 +373,9 @@ impl Gpu {
             cache_file,
             messenger,
             messages,
+            physical,
             instance,
-            _entry: entry,
+            entry,
         }))
     }
 
@@ -393,6 +407,7 @@ fn create_device(
     physical: vk::PhysicalDevice,
     family: u32,
     have: &Features,
+    present: bool,
 ) -> Result<ash::Device> {
     let features = vk::PhysicalDeviceFeatures::default()
         .geometry_shader(have.geometry)
@@ -418,8 +433,12 @@ fn create_device(
         vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true).uniform_buffer_standard_layout(true);
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
-    let extensions: Vec<_> =
-        have.conservative_rasterization.then(|| ext::conservative_rasterization::NAME.as_ptr()).into_iter().collect();
+    let extensions: Vec<_> = have
+        .conservative_rasterization
+        .then(|| ext::conservative_rasterization::NAME.as_ptr())
+        .into_iter()
+        .chain(present.then(|| khr::swapchain::NAME.as_ptr()))
+        .collect();
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&extensions)

@@ -8,19 +8,23 @@ mod debug;
 pub mod format;
 mod gpu;
 mod memory;
+mod painter;
 mod pipeline;
 mod sampler;
+mod surface;
 
 pub use ash::vk;
 pub use command::{Commands, FrameSlot};
 pub use format::Format;
 pub use gpu::{DeviceInfo, Features, Gpu, GpuOptions, list_devices};
 pub use memory::{Buffer, Image, ImageDesc, Upload, View, ViewDesc};
+pub use painter::{Painter, Pixels};
 pub use pipeline::{
     Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState, Pipeline, PipelineDesc,
     SpecValue, Stage, StageDesc,
 };
 pub use sampler::{Sampler, SamplerDesc};
+pub use surface::{Surface, WindowHandles};
 
 /// What went wrong in the Vulkan layer, and what a user can do about it.
 #[derive(Debug, thiserror::Error)]
@@ -66,6 +70,12 @@ pub enum VulkanError {
     /// The device was lost (a driver's reset, often a shader that runs too long).
     #[error("the GPU was lost during {0}: a shader ran too long, or the driver failed")]
     Lost(String),
+    /// The device cannot show pictures in this window.
+    #[error("{0} cannot present to this window. Name another device with --window-device (see `conelab devices`)")]
+    CannotPresent(String),
+    /// The window system.
+    #[error("the window failed: {0}")]
+    Window(String),
     /// Any other error code.
     #[error("Vulkan failed to {what}: {code}")]
     Code {

@@ -1,0 +1,118 @@
+//! Reload: a program hands over what its successor can use as it is, so that an edit costs what it changes.
+
+use super::pipelines::Pipelines;
+use super::run::{Program, relayout};
+use super::usage::Layouts;
+use crate::vulkan::{Buffer, Commands, Image, ImageDesc, Result, vk};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What a running program has made, to make another from while it runs on.
+#[derive(Clone, Default)]
+pub struct Parts {
+    pub(super) pipelines: Pipelines,
+    images: HashMap<String, [Option<Arc<Image>>; 2]>,
+    /// By name, with the size asked for.
+    buffers: HashMap<String, (u64, Arc<Buffer>)>,
+}
+
+/// What a new program took over and what it had to make.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Change {
+    /// Pipelines taken over.
+    pub kept: usize,
+    /// Pipelines made.
+    pub built: usize,
+    /// Textures and buffers that were there and had to be made anew.
+    pub resized: usize,
+}
+
+impl Parts {
+    /// The image of that name and copy, if it is just as described.
+    pub(super) fn image(&self, name: &str, copy: usize, desc: &ImageDesc) -> Option<Arc<Image>> {
+        self.images.get(name)?[copy].clone().filter(|i| i.desc == *desc)
+    }
+
+    pub(super) fn buffer(&self, name: &str, size: u64) -> Option<Arc<Buffer>> {
+        self.buffers.get(name).filter(|b| b.0 == size).map(|b| b.1.clone())
+    }
+
+    /// Whether there was a resource of that name, whatever its size.
+    pub(super) fn had(&self, name: &str) -> bool {
+        self.images.contains_key(name) || self.buffers.contains_key(name)
+    }
+
+    pub(super) fn holds_image(&self, image: &Arc<Image>) -> bool {
+        self.images.values().flatten().flatten().any(|i| Arc::ptr_eq(i, image))
+    }
+
+    pub(super) fn holds_buffer(&self, buffer: &Arc<Buffer>) -> bool {
+        self.buffers.values().any(|(_, b)| Arc::ptr_eq(b, buffer))
+    }
+}
+
+impl Program {
+    /// What a successor can take over. The program may run on while the successor is made.
+    pub fn parts(&self, graph: &super::load::Graph) -> Parts {
+        let images = graph.textures.iter().zip(&self.images).filter(|(_, i)| i[0].is_some());
+        let buffers = graph.buffers.iter().zip(&self.buffers).zip(&self.plan.buffers);
+        Parts {
+            pipelines: self.pipelines.clone(),
+            images: images.map(|(t, i)| (t.0.clone(), i.clone())).collect(),
+            buffers: buffers
+                .filter_map(|((b, made), plan)| made.as_ref().map(|m| (b.0.clone(), (plan.size, m.clone()))))
+                .collect(),
+        }
+    }
+
+    /// Takes the place of the program that this one was made from: waits for its frames, goes on with its count of
+    /// frames (so that what was last frame's stays last frame's) and brings images into the layouts of its own frames.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn succeed(&mut self, old: &mut Program) -> Result<()> {
+        old.finish_all()?;
+        self.frame = old.frame;
+        let before = usize::try_from((self.frame + 1) % 2).unwrap_or(0);
+        let mut wanted: Layouts = self.schedule.ends[before].clone();
+        let mut from = self.resting.clone();
+        for (t, copies) in self.images.iter().enumerate() {
+            for (c, image) in copies.iter().enumerate() {
+                let Some(image) = image else { continue };
+                if let Some(layouts) = old.layouts_of(image) {
+                    from[t][c].clone_from_slice(layouts);
+                }
+            }
+        }
+        Commands::once(self.gpu(), |commands| {
+            for (t, copies) in self.images.iter().enumerate() {
+                for (c, image) in copies.iter().enumerate() {
+                    let Some(image) = image else { continue };
+                    let mut barriers = Vec::new();
+                    for (mip, (from, to)) in (0u32..).zip(from[t][c].iter().zip(&mut wanted[t][c])) {
+                        if *to == vk::ImageLayout::UNDEFINED {
+                            *to = *from;
+                        } else if to != from {
+                            barriers.push((&**image, relayout(image, *from, *to, mip)));
+                        }
+                    }
+                    if !barriers.is_empty() {
+                        commands.barrier(None, &barriers);
+                    }
+                }
+            }
+            commands.full_barrier();
+        })?;
+        self.resting = wanted;
+        Ok(())
+    }
+
+    /// The layouts in which an image of this program rests, by mip.
+    fn layouts_of(&self, image: &Arc<Image>) -> Option<&[vk::ImageLayout]> {
+        let copies = self.images.iter().zip(&self.resting);
+        copies
+            .flat_map(|(images, layouts)| images.iter().zip(layouts))
+            .find(|(i, _)| i.as_ref().is_some_and(|i| Arc::ptr_eq(i, image)))
+            .map(|(_, layouts)| layouts.as_slice())
+    }
+}

@@ -1,0 +1,471 @@
+//! Paints egui's triangles and the program's pictures, into a window or into an image.
+
+use super::surface::{Surface, Swapchain, WHOLE};
+use super::{Buffer, FrameSlot, Gpu, Image, ImageDesc, Result, Sampler, SamplerDesc, View, ViewDesc, VulkanError, vk};
+use egui::{ClippedPrimitive, TextureId, TexturesDelta};
+use egui_ash_renderer::allocator::DefaultAllocator;
+use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, vulkan};
+use gpu_allocator::MemoryLocation;
+use std::sync::Arc;
+
+/// Where the painter's pixels go.
+enum Target {
+    Window { surface: Box<Surface>, swapchain: Option<Swapchain>, stale: bool },
+    Image(Option<(Arc<Image>, View)>),
+}
+
+/// Frames painted ahead.
+const SLOTS: usize = 2;
+
+struct Slot {
+    commands: FrameSlot,
+    acquired: vk::Semaphore,
+    /// Staging of the pictures that changed in this frame.
+    staging: Vec<Buffer>,
+}
+
+/// A picture of 8-bit RGBA pixels that the program changes often.
+struct Picture {
+    image: Option<(Arc<Image>, View)>,
+    set: vk::DescriptorSet,
+    id: TextureId,
+}
+
+/// New pixels of a picture.
+pub struct Pixels<'a> {
+    /// Number of the picture, below the number that the painter was made with.
+    pub picture: usize,
+    /// Width and height.
+    pub size: [u32; 2],
+    /// RGBA, 8 bits each, tightly packed.
+    pub bytes: &'a [u8],
+}
+
+/// Paints user interfaces.
+pub struct Painter {
+    renderer: Option<Renderer<DefaultAllocator>>,
+    pictures: Vec<Picture>,
+    slots: Vec<Slot>,
+    frame: usize,
+    acquired_image: Option<u32>,
+    sampler: Sampler,
+    pool: vk::DescriptorPool,
+    layout: vk::DescriptorSetLayout,
+    upload_pool: vk::CommandPool,
+    target: Target,
+    format: vk::Format,
+    gpu: Arc<Gpu>,
+    /// Milliseconds on the GPU of the last frame known.
+    pub gpu_ms: f64,
+}
+
+fn renderer_error(e: egui_ash_renderer::RendererError) -> VulkanError {
+    match e {
+        egui_ash_renderer::RendererError::Vulkan(code) => VulkanError::at("paint the window")(code),
+        other => VulkanError::Window(other.to_string()),
+    }
+}
+
+impl Painter {
+    /// A painter for a window, with room for so many pictures.
+    ///
+    /// # Errors
+    /// The device cannot present to the window, out of memory.
+    pub fn for_window(gpu: &Arc<Gpu>, surface: Surface, size: (u32, u32), pictures: usize) -> Result<Painter> {
+        let swapchain = Swapchain::new(gpu, &surface, size)?;
+        let format = swapchain.as_ref().map_or(vk::Format::B8G8R8A8_UNORM, |s| s.format);
+        Painter::new(gpu, Target::Window { surface: Box::new(surface), swapchain, stale: false }, format, pictures)
+    }
+
+    /// A painter into an image, read back with [`Painter::read`].
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn offscreen(gpu: &Arc<Gpu>, pictures: usize) -> Result<Painter> {
+        Painter::new(gpu, Target::Image(None), vk::Format::R8G8B8A8_UNORM, pictures)
+    }
+
+    fn new(gpu: &Arc<Gpu>, target: Target, format: vk::Format, pictures: usize) -> Result<Painter> {
+        let sampler = Sampler::new(
+            gpu,
+            &SamplerDesc {
+                // Enlarged pixels are to be seen as they are.
+                filter: vk::Filter::NEAREST,
+                mip_filter: vk::SamplerMipmapMode::NEAREST,
+                address: vk::SamplerAddressMode::CLAMP_TO_EDGE,
+                border: vk::BorderColor::FLOAT_TRANSPARENT_BLACK,
+                compare: None,
+                anisotropic: false,
+            },
+        )?;
+        // The layout is declared to be one that the renderer's own is compatible with.
+        let layout = vulkan::create_vulkan_descriptor_set_layout(&gpu.device).map_err(renderer_error)?;
+        let mut painter = Painter {
+            renderer: None,
+            pictures: Vec::new(),
+            slots: Vec::new(),
+            frame: 0,
+            acquired_image: None,
+            sampler,
+            pool: vk::DescriptorPool::null(),
+            layout,
+            upload_pool: vk::CommandPool::null(),
+            target,
+            format,
+            gpu: gpu.clone(),
+            gpu_ms: 0.0,
+        };
+        let count = u32::try_from(pictures).unwrap_or(u32::MAX).max(1);
+        // SAFETY: plain creations; `drop` destroys what was made.
+        unsafe {
+            let at = || VulkanError::at("prepare to paint");
+            let d = &gpu.device;
+            let info = vk::CommandPoolCreateInfo::default()
+                .queue_family_index(gpu.family)
+                .flags(vk::CommandPoolCreateFlags::TRANSIENT);
+            painter.upload_pool = d.create_command_pool(&info, None).map_err(at())?;
+            let sizes = [vk::DescriptorPoolSize {
+                ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+                descriptor_count: count,
+            }];
+            let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
+            painter.pool = d.create_descriptor_pool(&info, None).map_err(at())?;
+            for _ in 0..SLOTS {
+                let commands = FrameSlot::new(gpu, 2)?;
+                let acquired = d.create_semaphore(&Default::default(), None).map_err(at())?;
+                painter.slots.push(Slot { commands, acquired, staging: Vec::new() });
+            }
+        }
+        painter.make_renderer(pictures)?;
+        Ok(painter)
+    }
+
+    fn make_renderer(&mut self, pictures: usize) -> Result<()> {
+        let mode = RenderMode::DynamicRendering(DynamicRendering {
+            color_attachment_format: self.format,
+            depth_attachment_format: None,
+            stencil_attachment_format: None,
+        });
+        let options = Options { in_flight_frames: SLOTS, srgb_framebuffer: false, ..Options::default() };
+        let gpu = &self.gpu;
+        let mut renderer =
+            Renderer::with_default_allocator(&gpu.instance, gpu.physical, gpu.device.clone(), mode, options)
+                .map_err(renderer_error)?;
+        for _ in 0..pictures {
+            let layouts = [self.layout];
+            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(self.pool).set_layouts(&layouts);
+            // SAFETY: pool and layout are alive.
+            let set = unsafe { gpu.device.allocate_descriptor_sets(&info) }
+                .map_err(VulkanError::at("prepare to paint"))?[0];
+            let id = renderer.add_user_texture(set);
+            self.pictures.push(Picture { image: None, set, id });
+        }
+        self.renderer = Some(renderer);
+        Ok(())
+    }
+
+    /// The egui texture of a picture; it may be drawn once it has had pixels.
+    pub fn picture(&self, number: usize) -> TextureId {
+        self.pictures[number].id
+    }
+
+    /// The window's size changed, or its content must be made anew.
+    pub fn resized(&mut self) {
+        if let Target::Window { stale, .. } = &mut self.target {
+            *stale = true;
+        }
+    }
+
+    /// Paints a frame: changes textures, copies pictures, draws, presents. `false` if there was nothing to paint on (a
+    /// window without area, or one that does not take pictures now).
+    ///
+    /// # Errors
+    /// The device was lost, out of memory.
+    pub fn paint(
+        &mut self,
+        size: (u32, u32),
+        scale: f32,
+        mut textures: TexturesDelta,
+        primitives: &[ClippedPrimitive],
+        pixels: &[Pixels<'_>],
+    ) -> Result<bool> {
+        let slot = self.frame % SLOTS;
+        if let Some(ticks) = self.slots[slot].commands.wait()?
+            && let [a, b] = ticks[..]
+        {
+            self.gpu_ms = b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
+        }
+        self.change_textures(&mut textures)?;
+        for p in pixels {
+            self.fit_picture(p)?;
+        }
+        let Some((image, view, extent, swap)) = self.acquire(size, slot)? else {
+            self.free_textures(&textures)?;
+            return Ok(false);
+        };
+        self.slots[slot].staging = self.stage(pixels)?;
+        let Painter { slots, renderer, pictures, gpu, .. } = self;
+        let Some(renderer) = renderer else { return Ok(false) };
+        let Slot { commands, acquired, staging } = &mut slots[slot];
+        let mut result = Ok(());
+        let to_present = swap.is_some();
+        let semaphores = swap.map(|drawn| (*acquired, drawn));
+        commands.submit_between(semaphores, |commands| {
+            commands.timestamp();
+            for (p, staging) in pixels.iter().zip(staging.iter()) {
+                if let Some((image, _)) = &pictures[p.picture].image {
+                    commands.refill(image, staging);
+                }
+            }
+            commands.attach(image, vk::ImageLayout::UNDEFINED, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
+            let color = [vk::RenderingAttachmentInfo::default()
+                .image_view(view)
+                .image_layout(vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL)
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::STORE)];
+            let info = vk::RenderingInfo::default()
+                .render_area(vk::Rect2D::default().extent(extent))
+                .layer_count(1)
+                .color_attachments(&color);
+            // SAFETY: the command buffer is recording, and view and image live until the frame has finished.
+            unsafe { gpu.device.cmd_begin_rendering(commands.handle, &info) };
+            result = renderer.cmd_draw(commands.handle, extent, scale, primitives);
+            // SAFETY: as above.
+            unsafe { gpu.device.cmd_end_rendering(commands.handle) };
+            let end = if to_present {
+                vk::ImageLayout::PRESENT_SRC_KHR
+            } else {
+                vk::ImageLayout::TRANSFER_SRC_OPTIMAL
+            };
+            commands.attach(image, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, end);
+            commands.timestamp();
+        })?;
+        result.map_err(renderer_error)?;
+        self.present()?;
+        self.free_textures(&textures)?;
+        self.frame += 1;
+        Ok(true)
+    }
+
+    fn change_textures(&mut self, textures: &mut TexturesDelta) -> Result<()> {
+        let Some(renderer) = &mut self.renderer else { return Ok(()) };
+        let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        for (id, deltas) in std::mem::take(&mut textures.set) {
+            for delta in &deltas {
+                renderer.set_texture(*queue, self.upload_pool, id, delta).map_err(renderer_error)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn free_textures(&mut self, textures: &TexturesDelta) -> Result<()> {
+        let Some(renderer) = self.renderer.as_mut().filter(|_| !textures.free.is_empty()) else { return Ok(()) };
+        // Rare (a thumbnail that is gone): not worth remembering which frames still use them.
+        for slot in &mut self.slots {
+            slot.commands.wait()?;
+        }
+        for id in &textures.free {
+            renderer.free_texture(*id).map_err(renderer_error)?;
+        }
+        Ok(())
+    }
+
+    /// Gives a picture an image of the size of its new pixels.
+    fn fit_picture(&mut self, p: &Pixels<'_>) -> Result<()> {
+        let Some(picture) = self.pictures.get(p.picture) else { return Ok(()) };
+        let extent = [p.size[0], p.size[1], 1];
+        if picture.image.as_ref().is_some_and(|(image, _)| image.desc.extent == extent) {
+            return Ok(());
+        }
+        for slot in &mut self.slots {
+            slot.commands.wait()?;
+        }
+        let format = vk::Format::R8G8B8A8_UNORM;
+        let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
+        let (image, view) = plain_image(&self.gpu, "picture", p.size, format, usage, vk::ImageUsageFlags::SAMPLED)?;
+        let info = [vk::DescriptorImageInfo::default()
+            .sampler(self.sampler.handle)
+            .image_view(view.handle)
+            .image_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)];
+        let picture = &mut self.pictures[p.picture];
+        let write = vk::WriteDescriptorSet::default()
+            .dst_set(picture.set)
+            .descriptor_type(vk::DescriptorType::COMBINED_IMAGE_SAMPLER)
+            .image_info(&info);
+        // SAFETY: no frame that uses the set is unfinished.
+        unsafe { self.gpu.device.update_descriptor_sets(&[write], &[]) };
+        picture.image = Some((image, view));
+        Ok(())
+    }
+
+    fn stage(&mut self, pixels: &[Pixels<'_>]) -> Result<Vec<Buffer>> {
+        let slot = self.frame % SLOTS;
+        let mut old = std::mem::take(&mut self.slots[slot].staging);
+        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
+        pixels
+            .iter()
+            .map(|p| {
+                let size = p.bytes.len() as u64;
+                let mut buffer = match old.iter().position(|b| b.size == size) {
+                    Some(i) => old.swap_remove(i),
+                    None => Buffer::new(&self.gpu, "picture upload", size, usage, MemoryLocation::CpuToGpu)?,
+                };
+                buffer.bytes_mut()[..p.bytes.len()].copy_from_slice(p.bytes);
+                Ok(buffer)
+            })
+            .collect()
+    }
+
+    /// The image to draw on and, for a window's, the semaphore to signal.
+    #[expect(clippy::type_complexity, reason = "used once, by paint")]
+    fn acquire(
+        &mut self,
+        size: (u32, u32),
+        slot: usize,
+    ) -> Result<Option<(vk::Image, vk::ImageView, vk::Extent2D, Option<vk::Semaphore>)>> {
+        let acquired = self.slots[slot].acquired;
+        match &mut self.target {
+            Target::Image(image) => {
+                let fits = image.as_ref().is_some_and(|(i, _)| i.desc.extent == [size.0, size.1, 1]);
+                if !fits {
+                    for slot in &mut self.slots {
+                        slot.commands.wait()?;
+                    }
+                    let color = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+                    let usage = color | vk::ImageUsageFlags::TRANSFER_SRC;
+                    let size = [size.0, size.1];
+                    *image = Some(plain_image(&self.gpu, "interface", size, self.format, usage, color)?);
+                }
+                let extent = vk::Extent2D { width: size.0, height: size.1 };
+                Ok(image.as_ref().map(|(image, view)| (image.handle, view.handle, extent, None)))
+            }
+            Target::Window { surface, swapchain, stale } => {
+                for _ in 0..3 {
+                    if *stale || swapchain.is_none() {
+                        *swapchain = None;
+                        *swapchain = match Swapchain::new(&self.gpu, surface, size) {
+                            Err(VulkanError::Code { code: vk::Result::ERROR_SURFACE_LOST_KHR, .. }) => {
+                                surface.renew()?;
+                                Swapchain::new(&self.gpu, surface, size)?
+                            }
+                            made => made?,
+                        };
+                        *stale = false;
+                    }
+                    let Some(chain) = swapchain else { return Ok(None) };
+                    // A window that is hidden may give no image for long: the program must not stand still.
+                    let timeout = 100_000_000;
+                    // SAFETY: the semaphore is unused: its last frame has been waited for.
+                    let next = unsafe {
+                        chain.loader.acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null())
+                    };
+                    match next {
+                        Ok((index, suboptimal)) => {
+                            *stale = suboptimal;
+                            self.acquired_image = Some(index);
+                            let i = index as usize;
+                            return Ok(Some((chain.images[i], chain.views[i], chain.extent, Some(chain.drawn[i]))));
+                        }
+                        Err(vk::Result::TIMEOUT | vk::Result::NOT_READY) => return Ok(None),
+                        Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => *stale = true,
+                        Err(vk::Result::ERROR_SURFACE_LOST_KHR) => {
+                            *swapchain = None;
+                            surface.renew()?;
+                            *stale = true;
+                        }
+                        Err(code) => return Err(VulkanError::at("get the window's next image")(code)),
+                    }
+                }
+                Ok(None)
+            }
+        }
+    }
+
+    fn present(&mut self) -> Result<()> {
+        let Target::Window { swapchain: Some(chain), stale, .. } = &mut self.target else { return Ok(()) };
+        let Some(index) = self.acquired_image.take() else { return Ok(()) };
+        let (chains, indices, wait) = ([chain.handle], [index], [chain.drawn[index as usize]]);
+        let info = vk::PresentInfoKHR::default().wait_semaphores(&wait).swapchains(&chains).image_indices(&indices);
+        let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        // SAFETY: the image was acquired and its drawing signals the semaphore.
+        match unsafe { chain.loader.queue_present(*queue, &info) } {
+            Ok(suboptimal) => *stale |= suboptimal,
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR | vk::Result::ERROR_SURFACE_LOST_KHR) => *stale = true,
+            Err(code) => return Err(VulkanError::at("present a picture")(code)),
+        }
+        Ok(())
+    }
+
+    /// The pixels of the last frame painted offscreen: size and RGBA bytes.
+    ///
+    /// # Errors
+    /// The device was lost; nothing was painted offscreen.
+    pub fn read(&mut self) -> Result<([u32; 2], Vec<u8>)> {
+        for slot in &mut self.slots {
+            slot.commands.wait()?;
+        }
+        let Target::Image(Some((image, _))) = &self.target else {
+            return Err(VulkanError::Window("nothing was painted offscreen".into()));
+        };
+        let [w, h, _] = image.desc.extent;
+        let size = u64::from(w) * u64::from(h) * 4;
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let target = Buffer::new(&self.gpu, "screenshot", size, usage, MemoryLocation::GpuToCpu)?;
+        super::Commands::once(&self.gpu, |commands| {
+            commands.read_image(image, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, 0, 0, &target);
+            commands.full_barrier();
+        })?;
+        Ok(([w, h], target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec()))
+    }
+}
+
+fn plain_image(
+    gpu: &Arc<Gpu>,
+    name: &str,
+    size: [u32; 2],
+    format: vk::Format,
+    usage: vk::ImageUsageFlags,
+    view_usage: vk::ImageUsageFlags,
+) -> Result<(Arc<Image>, View)> {
+    let desc = ImageDesc {
+        name: name.into(),
+        extent: [size[0], size[1], 1],
+        volume: false,
+        layers: 1,
+        mips: 1,
+        format,
+        views: Vec::new(),
+        usage,
+    };
+    let image = Arc::new(Image::new(gpu, desc)?);
+    let desc = ViewDesc {
+        kind: vk::ImageViewType::TYPE_2D,
+        format,
+        aspect: WHOLE.aspect_mask,
+        mips: (0, 1),
+        layers: (0, 1),
+        usage: view_usage,
+    };
+    let view = View::new(&image, &desc)?;
+    Ok((image, view))
+}
+
+impl Drop for Painter {
+    fn drop(&mut self) {
+        // SAFETY: waits for all frames, then destroys what they used before the device can go.
+        unsafe {
+            let d = &self.gpu.device;
+            let _ = d.device_wait_idle();
+            for slot in &self.slots {
+                d.destroy_semaphore(slot.acquired, None);
+            }
+            self.renderer = None;
+            d.destroy_descriptor_pool(self.pool, None);
+            d.destroy_descriptor_set_layout(self.layout, None);
+            d.destroy_command_pool(self.upload_pool, None);
+        }
+        if let Target::Window { swapchain, .. } = &mut self.target {
+            *swapchain = None;
+        }
+    }
+}
