@@ -1,0 +1,122 @@
+//! What the engine tells the window.
+
+use crate::graph::load::Graph;
+use crate::graph::param::Params;
+use crate::graph::plan::TexturePlan;
+use crate::graph::source::Diagnostic;
+use crate::graph::successor::Change;
+use crate::lab::Texels;
+use crate::scene::Scene;
+use crate::workbench::wish::Look;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The device that the engine uses.
+#[derive(Clone, Debug)]
+pub struct DeviceReport {
+    /// Name.
+    pub name: String,
+    /// Driver.
+    pub driver: String,
+    /// Whether it is a software device.
+    pub software: bool,
+}
+
+/// A graph as it runs now.
+#[derive(Clone)]
+pub struct Outline {
+    /// The graph.
+    pub graph: Arc<Graph>,
+    /// Its parameters with the values they were built with.
+    pub params: Params,
+    /// The textures as they were made, in the graph's order.
+    pub textures: Vec<TexturePlan>,
+    /// (name, bytes) of what was made.
+    pub memory: Vec<(String, u64)>,
+    /// Bytes of geometry and textures of the scene.
+    pub scene_bytes: u64,
+    /// Numbers of the passes that run, in order.
+    pub passes: Vec<usize>,
+    /// (pass number, names of the resources it writes).
+    pub writes: Vec<(usize, Vec<String>)>,
+    /// Findings that are no errors.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A picture and the times of its frame.
+#[derive(Clone)]
+pub struct PictureReport {
+    /// 0 is A, 1 is B.
+    pub slot: usize,
+    /// Wish that it fulfils.
+    pub wish: u64,
+    /// Whether it is the preview, shown until the graph's own picture is there.
+    pub preview: bool,
+    /// Counts the slot's frames.
+    pub frame: u64,
+    /// Time of the scene, s.
+    pub time: f64,
+    /// Width and height.
+    pub size: [u32; 2],
+    /// RGBA, 8 bits each.
+    pub bytes: Arc<Vec<u8>>,
+    /// (pass number, ms) on the GPU.
+    pub passes: Vec<(usize, f64)>,
+    /// First to last command on the GPU, ms.
+    pub gpu_ms: f64,
+    /// Recording and submitting on the CPU, ms.
+    pub cpu_ms: f64,
+}
+
+/// News from the engine.
+pub enum Report {
+    /// A device was opened.
+    Device(DeviceReport),
+    /// A slot runs something new. The times are those of the whole build, ms, and of the wait from the change to it.
+    Built {
+        /// 0 is A, 1 is B.
+        slot: usize,
+        /// What runs.
+        outline: Arc<Outline>,
+        /// What was kept.
+        change: Change,
+        /// From the start of the build to the swap.
+        ms: f64,
+        /// The sources' revision.
+        revision: u64,
+    },
+    /// A build failed; what ran before runs on.
+    Failed {
+        /// 0 is A, 1 is B.
+        slot: usize,
+        /// What is wrong.
+        diagnostics: Vec<Diagnostic>,
+        /// The sources' revision.
+        revision: u64,
+    },
+    /// A slot's parameters were set without building anything.
+    Set {
+        /// 0 is A, 1 is B.
+        slot: usize,
+        /// The values.
+        params: Params,
+    },
+    /// A frame has finished.
+    Picture(PictureReport),
+    /// A scene is being loaded: what, and the share done.
+    Loading(String, f32),
+    /// A scene is there.
+    Loaded(Arc<Scene>),
+    /// A scene could not be loaded; the one before stays.
+    LoadFailed(String),
+    /// Texels that were looked for.
+    Texels(Look, Box<Texels>),
+    /// Bytes of a table's buffer, of slot A.
+    Table(usize, Vec<u8>),
+    /// Messages of the graph's checks that failed.
+    Checks(usize, Vec<String>),
+    /// A capture was made, or why not.
+    Captured(Result<PathBuf, String>),
+    /// Something the user should know.
+    Trouble(String),
+}

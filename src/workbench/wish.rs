@@ -1,0 +1,106 @@
+//! What the window wants to see; the engine always works towards the latest wish.
+
+use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
+use crate::graph::source::{At, Loc, Sources};
+use crate::scene::{Camera, Light};
+use glam::Vec3;
+
+/// A graph with the parameters that are not at their defaults.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SlotWish {
+    /// Graph file in the passes folder.
+    pub graph: String,
+    /// (name, value as RON).
+    pub params: Vec<(String, String)>,
+}
+
+/// How time goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Clock {
+    /// Whether time goes on.
+    pub playing: bool,
+    /// Seconds from frame to frame; real time when absent.
+    pub step: Option<f64>,
+    /// Single steps asked for so far.
+    pub steps: u64,
+    /// Time to start from, s, taken when `jumps` grows.
+    pub at: f64,
+    /// Jumps in time so far.
+    pub jumps: u64,
+}
+
+/// A part of a texture to look into.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// 0 or 1.
+    pub slot: usize,
+    /// Name of the texture.
+    pub texture: String,
+    /// Mip level.
+    pub mip: u32,
+    /// Array layer of a 2D texture.
+    pub layer: u32,
+    /// Axis across which a 3D texture is cut: 0 x, 1 y, 2 z.
+    pub axis: usize,
+    /// Texel along that axis.
+    pub slice: u32,
+}
+
+/// Everything that decides what is rendered.
+#[derive(Clone, Debug, Default)]
+pub struct Wish {
+    /// A and, when compared, B.
+    pub slots: [Option<SlotWish>; 2],
+    /// Built-in name or path of the scene.
+    pub scene: String,
+    /// Lights and sky that differ from the scene's own.
+    pub lights: Option<(Vec<Light>, Vec3)>,
+    /// The camera; the scene's own until it is known.
+    pub camera: Option<Camera>,
+    /// Picture size.
+    pub size: (u32, u32),
+    /// Time.
+    pub clock: Clock,
+    /// Render on when nothing changes, to measure.
+    pub continuous: bool,
+    /// Files of graphs or shaders changed so often.
+    pub revision: u64,
+    /// The scene's files changed so often.
+    pub scene_revision: u64,
+    /// What the inspector looks into.
+    pub look: Option<Look>,
+    /// The table shown, by the number that the graph gives it, of slot A.
+    pub table: Option<usize>,
+    /// Counts wishes.
+    pub number: u64,
+}
+
+impl Wish {
+    /// The experiment of a slot, as a session is made from it.
+    pub fn experiment(&self, slot: &SlotWish) -> Experiment {
+        let mut sources = Sources::default();
+        let text = slot.params.iter().map(|(n, v)| format!("{n}: {v}")).collect::<Vec<_>>().join("\n");
+        let file = sources.add("the panel".as_ref(), text);
+        let mut offset = 0;
+        let mut params = Vec::new();
+        for (name, value) in &slot.params {
+            params.push((Loc { value: name.clone(), at: At { file, offset } }, value.clone()));
+            offset += u32::try_from(name.len() + value.len() + 3).unwrap_or(0);
+        }
+        Experiment {
+            name: "workbench".into(),
+            graph: slot.graph.clone(),
+            scene: self.scene.clone(),
+            camera: self.camera.map_or(CameraChoice::Named("default".into()), |c| CameraChoice::Placed(placed(&c))),
+            size: self.size,
+            time: self.clock.at,
+            params,
+            sources,
+        }
+    }
+}
+
+/// A camera as an experiment writes it.
+pub fn placed(camera: &Camera) -> PlacedCamera {
+    PlacedCamera { eye: camera.eye.into(), target: camera.target.into(), fov_y: camera.fov_y }
+}
