@@ -1169,3 +1169,82 @@ fn what_a_shader_may_not_decide() {
         |     checks: [(buffer: "work", word: 4000000000, message: "full")],
     "#);
 }
+
+#[test]
+fn pointers_that_point_nowhere() {
+    assert_snapshot!(graph("output: \"picture\"", "pointer: \"cursor\", output: \"picture\""), @r#"
+    passes/graph.ron:29:14: error: no Vec2 parameter is named 'cursor'
+        |     pointer: "cursor", output: "picture",
+        = help: declare it: Vec2(name: "cursor", default: (-1, -1), ...)
+    "#);
+    assert_snapshot!(graph("output: \"picture\"", "pointer: \"cells\", output: \"picture\""), @r#"
+    passes/graph.ron:29:14: error: 'cells' holds a whole number and cannot be the pointer: it must be a Vec2
+        |     pointer: "cells", output: "picture",
+    "#);
+    let two = "Vec2(name: \"cursor\", default: (-1, -1), help: \"Pixel.\"),\n        Bool(name: \"bright\"";
+    let bench = bench().edit("passes/graph.ron", "Bool(name: \"bright\"", two);
+    let bench = bench.edit("passes/graph.ron", "output: \"picture\"", "pointer: \"cruser\", output: \"picture\"");
+    assert_snapshot!(bench.findings(), @r#"
+    passes/graph.ron:30:14: error: no Vec2 parameter is named 'cruser'
+        |     pointer: "cruser", output: "picture",
+        = help: did you mean 'cursor'?
+    "#);
+}
+
+#[test]
+fn tables_that_cannot_be_read() {
+    let table = |old: &str, new: &str| {
+        let right = "(buffer: \"work\", rows: 0, start: 16, stride: 16, title: \"Work\", help: \"Rows.\",
+            columns: [
+                (name: \"number\", at: 0, as: uint),
+                (name: \"place\", at: 4, as: vec3, unit: \"m\"),
+            ])";
+        assert_eq!(right.matches(old).count(), 1, "'{old}' stands once in the table");
+        graph("output: \"picture\",", &format!("tables: [{}],\n    output: \"picture\",", right.replace(old, new)))
+    };
+    assert_eq!(table("title", "title"), "");
+    assert_snapshot!(table("\"work\"", "\"wrok\""), @r#"
+    passes/graph.ron:29:23: error: no buffer is named 'wrok'
+        |     tables: [(buffer: "wrok", rows: 0, start: 16, stride: 16, title: "Work", help: "Rows.",
+        = help: did you mean 'work'?
+    "#);
+    assert_snapshot!(table("as: vec3", "as: vec5"), @r#"
+    passes/graph.ron:32:44: error: unknown name 'vec5'
+        |                 (name: "place", at: 4, as: vec5, unit: "m"),
+        = help: did you mean 'vec4'?
+    "#);
+    assert_snapshot!(table("at: 4", "at: 8"), @r#"
+    passes/graph.ron:32:17: error: column 'place' ends at byte 20 of a row of 16
+        |                 (name: "place", at: 8, as: vec3, unit: "m"),
+    "#);
+    assert_snapshot!(table("at: 4", "at: 2"), @r#"
+    passes/graph.ron:32:17: error: column 'place' begins at byte 2, which is no multiple of 4
+        |                 (name: "place", at: 2, as: vec3, unit: "m"),
+    "#);
+    assert_snapshot!(table("stride: 16", "stride: 18"), @r#"
+    passes/graph.ron:29:14: error: table 'Work': start 16 and stride 18 must be multiples of 4, the stride not 0
+        |     tables: [(buffer: "work", rows: 0, start: 16, stride: 18, title: "Work", help: "Rows.",
+    "#);
+    assert_snapshot!(table("\"place\"", "\"number\""), @r#"
+    passes/graph.ron:32:17: error: two columns of 'Work' are named 'number'
+        |                 (name: "number", at: 4, as: vec3, unit: "m"),
+    "#);
+    assert_snapshot!(table("\"Rows.\"", "\"\""), @r#"
+    passes/graph.ron:29:14: error: table 'Work' needs one line of help
+        |     tables: [(buffer: "work", rows: 0, start: 16, stride: 16, title: "Work", help: "",
+    "#);
+    let twice = "(buffer: \"work\", rows: 0, start: 4, stride: 4, title: \"T\", help: \"h\", columns: [(name: \"n\", at: 0, as: uint)])";
+    let twice = format!(
+        "tables: [\n        {twice},\n        {},\n    ],\n    output: \"picture\",",
+        twice.replace("as: uint", "as: int")
+    );
+    assert_snapshot!(graph("output: \"picture\",", &twice), @r#"
+    passes/graph.ron:31:9: error: two tables have the title 'T'
+        |         (buffer: "work", rows: 0, start: 4, stride: 4, title: "T", help: "h", columns: [(name: "n", at: 0, as: int)]),
+    "#);
+    let empty = "tables: [(buffer: \"work\", rows: 0, start: 4, stride: 4, title: \"T\", help: \"h\", columns: [])],\n    output: \"picture\",";
+    assert_snapshot!(graph("output: \"picture\",", empty), @r#"
+    passes/graph.ron:29:14: error: table 'T' has no columns
+        |     tables: [(buffer: "work", rows: 0, start: 4, stride: 4, title: "T", help: "h", columns: [])],
+    "#);
+}

@@ -5,6 +5,7 @@ mod common;
 
 use common::{assert_clean, conelab, floats, prepare, succeeds};
 use conelab::experiment::Experiment;
+use conelab::graph::table::{Cell, decode};
 use conelab::lab::{Lab, Session};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -956,4 +957,46 @@ fn a_session_that_is_dropped_waits_for_its_frames() {
     session.frame(0.0).unwrap();
     drop(session);
     assert_eq!(lab.gpu.messages(), Vec::<String>::new());
+}
+
+#[test]
+fn a_table_is_filled_only_for_who_asks() {
+    let bench = Bench::new(
+        r#"(
+            params: [Vec2(name: "spot", default: (-1.0, -1.0), help: "Pixel under the pointer.")],
+            textures: { "picture": (size: ("width", "height"), format: "rgba8") },
+            buffers: { "rows": (size: "16 + 16 * 8") },
+            passes: [
+                (name: "count", shaders: ["count.comp"], dispatch: Groups(1, 1, 1)),
+                (name: "paint", clear: "picture", value: (1, 0, 0, 1)),
+            ],
+            pointer: "spot",
+            tables: [(buffer: "rows", rows: 2, start: 16, stride: 16, title: "Squares", help: "Numbers.", columns: [
+                (name: "square", at: 12, as: uint), (name: "place", at: 0, as: vec2, unit: "px"), (name: "half", at: 8, as: float),
+            ])],
+            output: "picture",
+        )"#,
+        &[(
+            "count.comp",
+            "#include \"params.glsl\"
+            layout(local_size_x = 8) in;
+            struct Row { vec2 place; float half_number; uint square; };
+            layout(std430) writeonly buffer Rows { uvec4 head; Row list[8]; } rows;
+            void main() {
+                uint i = gl_LocalInvocationID.x;
+                rows.head = uvec4(0, 0, 3, 0);
+                rows.list[i] = Row(params.spot + float(i), 0.5 * float(i), i * i);
+            }",
+        )],
+    );
+    let lab = bench.lab();
+    let session = bench.run(&lab, &["picture"], 1);
+    assert_eq!(session.graph.pointer.as_deref(), Some("spot"));
+    assert!(!session.program.plan.buffers[0].used, "the table's buffer is made though nobody asked for it");
+    assert_eq!(session.program.plan.dropped.len(), 1, "{:?}", session.program.plan.dropped);
+
+    let mut session = bench.run(&lab, &["picture", "rows"], 1);
+    let bytes = session.program.read_buffer(0).unwrap();
+    let row = |square, x, half| vec![Cell::Uint(square), Cell::Vector(vec![x, x]), Cell::Float(half)];
+    assert_eq!(decode(&session.graph.tables[0], &bytes), [row(0, -1.0, 0.0), row(1, 0.0, 0.5), row(4, 1.0, 1.0)]);
 }

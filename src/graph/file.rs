@@ -3,6 +3,7 @@
 use super::expr::Expr;
 use super::param::Decl;
 use super::source::{Entries, Items, Loc, TwoOrThree};
+use super::table::Table;
 use serde::Deserialize;
 
 /// A graph file.
@@ -29,6 +30,10 @@ pub struct GraphFile {
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words of buffers that must be zero after a frame.
     pub checks: Items<CheckDecl>,
+    /// The `Vec2` parameter that a click on the picture sets.
+    pub pointer: Option<Loc<String>>,
+    /// Buffers that may be read as tables.
+    pub tables: Items<Table>,
 }
 
 /// An expression with its place.

@@ -308,6 +308,7 @@ impl Linker<'_> {
         wanted.extend(graph.output.as_deref());
         wanted.extend(graph.hdr.as_deref());
         wanted.extend(graph.checks.iter().map(|c| c.buffer.value.as_str()));
+        wanted.extend(graph.tables.iter().map(|t| t.buffer.value.as_str()));
         let warn = |at: At, message: String| {
             let d = graph.sources.error(at, message);
             Diagnostic { severity: Severity::Warning, ..d }

@@ -4,6 +4,7 @@ use super::expr::Expr;
 use super::file::{BufferDecl, CheckDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, SceneNeeds, TextureDecl};
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
+use super::table::Table;
 use crate::vulkan::{Format, Stage};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -42,6 +43,11 @@ pub struct Graph {
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words that must be zero.
     pub checks: Vec<CheckDecl>,
+    /// The `Vec2` parameter that a click on the picture sets: pixels from the picture's top left corner, negative
+    /// where nothing is pointed at.
+    pub pointer: Option<String>,
+    /// Buffers that may be read as tables; wanted only by who asks for them.
+    pub tables: Vec<Table>,
     /// The files it came from.
     pub sources: Sources,
 }
@@ -86,11 +92,15 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         outputs: Vec::new(),
         scene: None,
         checks: Vec::new(),
+        pointer: None,
+        tables: Vec::new(),
         sources,
     };
     let mut wanted = Vec::new();
     let mut decls = Vec::new();
     let mut checks = Vec::new();
+    let mut pointer = None;
+    let mut tables = Vec::new();
     for file in files {
         decls.extend(file.params.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
@@ -98,6 +108,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         graph.passes.extend(file.passes.0);
         graph.scene = file.scene.or(graph.scene);
         checks.extend(file.checks.0);
+        pointer = file.pointer.or(pointer);
+        tables.extend(file.tables.0);
         for (slot, name) in [(&mut graph.output, file.output), (&mut graph.hdr, file.hdr)] {
             if let Some(name) = name {
                 *slot = Some(name.value.clone());
@@ -122,12 +134,18 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     for item in &checks {
         check.buffer_name(&item.value.buffer);
     }
+    if let Some(name) = &pointer {
+        check.pointer(name);
+    }
+    check.tables(&tables);
     if let Some(needs) = &graph.scene {
         check.expr(&needs.value.max_edge);
         check.exprs(needs.value.when.as_ref());
     }
     let mut errors = check.errors;
     graph.checks = checks.into_iter().map(|c| c.value).collect();
+    graph.pointer = pointer.map(|p| p.value);
+    graph.tables = tables.into_iter().map(|t| t.value).collect();
     if errors.iter().any(|e| e.severity == Severity::Error) {
         errors.sort_by(|a, b| a.place.cmp(&b.place));
         errors.dedup();
@@ -365,6 +383,41 @@ impl Check<'_> {
         let found = self.graph.sources.error(name.at, format!("no {what} is named '{}'", name.value));
         self.errors.push(found.nearest(&name.value, known(self.graph)));
         false
+    }
+
+    fn pointer(&mut self, name: &Loc<String>) {
+        let params = &self.graph.params.list;
+        match params.iter().find(|p| p.name == name.value) {
+            Some(param) if param.kind == Kind::Vector(2) => {}
+            Some(param) => {
+                let message =
+                    format!("'{}' holds {} and cannot be the pointer: it must be a Vec2", name.value, param.expected());
+                self.error(name.at, message);
+            }
+            None if self.broken.contains(&name.value) => {}
+            None => {
+                let known: Vec<&str> =
+                    params.iter().filter(|p| p.kind == Kind::Vector(2)).map(|p| p.name.as_str()).collect();
+                let found = self.graph.sources.error(name.at, format!("no Vec2 parameter is named '{}'", name.value));
+                self.errors.push(if known.is_empty() {
+                    found.help(Some(format!("declare it: Vec2(name: \"{}\", default: (-1, -1), ...)", name.value)))
+                } else {
+                    found.nearest(&name.value, known)
+                });
+            }
+        }
+    }
+
+    fn tables(&mut self, tables: &[Loc<Table>]) {
+        for (i, table) in tables.iter().enumerate() {
+            self.buffer_name(&table.value.buffer);
+            if tables[..i].iter().any(|t| t.value.title == table.value.title) {
+                self.error(table.at, format!("two tables have the title '{}'", table.value.title));
+            }
+            for (at, message) in table.value.mistakes(table.at) {
+                self.error(at, message);
+            }
+        }
     }
 
     fn textures(&mut self) {

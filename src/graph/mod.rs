@@ -13,4 +13,5 @@ pub mod report;
 pub mod run;
 pub mod source;
 pub mod successor;
+pub mod table;
 pub mod usage;

@@ -490,7 +490,7 @@ impl Program {
                     vk::ImageLayout::UNDEFINED => self.resting[texture][copy][0],
                     layout => layout,
                 };
-                copy_out(commands, image, layout, (0, 0), to);
+                copy_out(commands, image, layout, (0, 0), None, to);
             }
         }
     }
@@ -619,21 +619,28 @@ impl Program {
         }
     }
 
-    /// Copies one mip and layer of a texture to the CPU: its extent, format and tightly packed texels.
+    /// Copies one mip and layer of a texture, or a (first texel, extent) box of it, to the CPU: tightly packed texels.
     ///
     /// # Errors
     /// The device was lost, out of memory.
-    pub fn read_texture(&mut self, texture: usize, mip: u32, layer: u32) -> Result<Vec<u8>> {
+    pub fn read_texture(
+        &mut self,
+        texture: usize,
+        mip: u32,
+        layer: u32,
+        part: Option<([u32; 3], [u32; 3])>,
+    ) -> Result<Vec<u8>> {
         self.finish_all()?;
         let parity = usize::try_from((self.frame + 1) % 2).unwrap_or(0);
         let plan = &self.plan.textures[texture];
         let copy = if plan.history { parity } else { 0 };
         let image = self.image(texture, false, parity)?.clone();
         let layout = self.resting[texture][copy][mip as usize];
-        let size = plan.mip_bytes(mip);
+        let extent = part.map_or(image.mip_extent(mip), |p| p.1);
+        let size = extent.iter().map(|n| u64::from(*n)).product::<u64>() * u64::from(plan.format.bytes);
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let target = Buffer::new(&self.gpu, "readback", size, usage, MemoryLocation::GpuToCpu)?;
-        Commands::once(&self.gpu, |commands| copy_out(commands, &image, layout, (mip, layer), &target))?;
+        Commands::once(&self.gpu, |commands| copy_out(commands, &image, layout, (mip, layer), part, &target))?;
         Ok(target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec())
     }
 
@@ -675,11 +682,18 @@ impl Drop for Program {
 }
 
 /// Copies a (mip, layer) of an image that rests in a layout, and leaves it there.
-fn copy_out(commands: &mut Commands<'_>, image: &Image, layout: vk::ImageLayout, part: (u32, u32), to: &Buffer) {
+fn copy_out(
+    commands: &mut Commands<'_>,
+    image: &Image,
+    layout: vk::ImageLayout,
+    (mip, layer): (u32, u32),
+    part: Option<([u32; 3], [u32; 3])>,
+    to: &Buffer,
+) {
     let src = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-    commands.barrier(None, &[(image, relayout(image, layout, src, part.0))]);
-    commands.read_image(image, src, part.0, part.1, to);
-    commands.barrier(None, &[(image, relayout(image, src, layout, part.0))]);
+    commands.barrier(None, &[(image, relayout(image, layout, src, mip))]);
+    commands.read_image(image, src, mip, layer, part, to);
+    commands.barrier(None, &[(image, relayout(image, src, layout, mip))]);
     commands.full_barrier();
 }
 

@@ -288,7 +288,11 @@ pub fn params_of(graph: &Graph, experiment: &Experiment) -> Result<Params, LabEr
     if errors.is_empty() { Ok(params) } else { Err(LabError::Input(errors)) }
 }
 
-fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint, LabError> {
+/// The camera of an experiment in a scene.
+///
+/// # Errors
+/// The scene has no camera of that name; numbers that are not finite.
+pub fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint, LabError> {
     match &experiment.camera {
         CameraChoice::Named(name) => match scene.cameras.get(name).or_else(|| {
             // Scenes without a camera of the default name are seen from their first.
@@ -428,6 +432,40 @@ impl Session {
     /// # Errors
     /// No such texture, mip or layer; the device was lost.
     pub fn texels(&mut self, name: &str, mip: u32, layer: u32) -> Result<Texels, LabError> {
+        self.texels_in(name, mip, layer, None)
+    }
+
+    /// Reads a slice of a texture's mip: for a volume the texels at `slice` along `axis`, for others all of them. The
+    /// result is 2D: y z for a cut across x, x z across y, x y across z.
+    ///
+    /// # Errors
+    /// As [`Session::texels`].
+    pub fn slice(&mut self, name: &str, mip: u32, layer: u32, axis: usize, slice: u32) -> Result<Texels, LabError> {
+        let index = self.graph.textures.iter().position(|t| t.0 == name);
+        let plan = index.map(|i| &self.program.plan.textures[i]);
+        let Some(plan) = plan.filter(|p| p.volume) else { return self.texels(name, mip, layer) };
+        let whole = plan.extent.map(|n| (n >> mip.min(31)).max(1));
+        let axis = axis.min(2);
+        let (mut first, mut extent) = ([0; 3], whole);
+        first[axis] = slice.min(whole[axis] - 1);
+        extent[axis] = 1;
+        let mut texels = self.texels_in(name, mip, layer, Some((first, extent)))?;
+        let [x, y, z] = extent;
+        texels.extent = match axis {
+            0 => [y, z, 1],
+            1 => [x, z, 1],
+            _ => [x, y, 1],
+        };
+        Ok(texels)
+    }
+
+    fn texels_in(
+        &mut self,
+        name: &str,
+        mip: u32,
+        layer: u32,
+        part: Option<([u32; 3], [u32; 3])>,
+    ) -> Result<Texels, LabError> {
         let Some(index) = self.graph.textures.iter().position(|t| t.0 == name) else {
             return Err(no_texture(&self.graph, name));
         };
@@ -444,9 +482,20 @@ impl Session {
             );
             return Err(LabError::Request(message));
         }
-        let extent = plan.extent.map(|n| (n >> mip).max(1));
+        let extent = part.map_or(plan.extent.map(|n| (n >> mip).max(1)), |p| p.1);
         let format = plan.format;
-        Ok(Texels { extent, format, bytes: self.program.read_texture(index, mip, layer)? })
+        Ok(Texels { extent, format, bytes: self.program.read_texture(index, mip, layer, part)? })
+    }
+
+    /// Content of a buffer of the graph, empty while no pass uses it.
+    ///
+    /// # Errors
+    /// No such buffer; the device was lost.
+    pub fn buffer(&mut self, name: &str) -> Result<Vec<u8>, LabError> {
+        match self.graph.buffers.iter().position(|b| b.0 == name) {
+            Some(index) => Ok(self.program.read_buffer(index)?),
+            None => Err(LabError::Request(format!("no buffer '{name}'"))),
+        }
     }
 
     /// The picture's size.

@@ -389,15 +389,25 @@ impl Commands<'_> {
         }
     }
 
-    /// Copies one mip and layer of an image into a buffer, tightly packed.
-    pub fn read_image(&mut self, image: &Image, layout: vk::ImageLayout, mip: u32, layer: u32, to: &Buffer) {
-        let [width, height, depth] = image.mip_extent(mip);
+    /// Copies one mip and layer of an image, or a (first texel, extent) box of it, into a buffer, tightly packed.
+    pub fn read_image(
+        &mut self,
+        image: &Image,
+        layout: vk::ImageLayout,
+        mip: u32,
+        layer: u32,
+        part: Option<([u32; 3], [u32; 3])>,
+        to: &Buffer,
+    ) {
+        let (offset, [width, height, depth]) = part.unwrap_or(([0; 3], image.mip_extent(mip)));
+        let [x, y, z] = offset.map(|n| i32::try_from(n).unwrap_or(i32::MAX));
         let region = [vk::BufferImageCopy::default()
             .image_subresource(vk::ImageSubresourceLayers {
                 base_array_layer: layer,
                 layer_count: 1,
                 ..layers(image, mip)
             })
+            .image_offset(vk::Offset3D { x, y, z })
             .image_extent(vk::Extent3D { width, height, depth })];
         unsafe { self.gpu.device.cmd_copy_image_to_buffer(self.handle, image.handle, layout, to.handle, &region) };
     }

@@ -412,7 +412,7 @@ impl Painter {
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let target = Buffer::new(&self.gpu, "screenshot", size, usage, MemoryLocation::GpuToCpu)?;
         super::Commands::once(&self.gpu, |commands| {
-            commands.read_image(image, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, 0, 0, &target);
+            commands.read_image(image, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, 0, 0, None, &target);
             commands.full_barrier();
         })?;
         Ok(([w, h], target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec()))

@@ -1,0 +1,203 @@
+//! Buffers as tables for people: a graph says where rows and columns lie, and the bytes become cells.
+
+use super::source::{At, Items, Loc};
+use serde::Deserialize;
+use std::collections::HashSet;
+use std::fmt;
+
+/// A buffer whose content may be read as a table.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// The buffer.
+    pub buffer: Loc<String>,
+    /// Index of the 32-bit word that holds the number of rows.
+    pub rows: u32,
+    /// Byte where the first row begins.
+    pub start: u32,
+    /// Bytes from one row to the next.
+    pub stride: u32,
+    /// Heading, unique in the graph.
+    pub title: String,
+    /// One line.
+    pub help: String,
+    /// Columns in the order shown.
+    pub columns: Items<Column>,
+}
+
+/// A column of a table.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Column {
+    /// Heading, unique in the table.
+    pub name: String,
+    /// Byte of the row where it begins.
+    pub at: u32,
+    /// Type of its values.
+    #[serde(rename = "as")]
+    pub kind: CellKind,
+    /// Unit, for people.
+    #[serde(default)]
+    pub unit: String,
+}
+
+/// Type of a column's values: 32-bit numbers, one or several.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+#[expect(missing_docs, reason = "named after GLSL's types")]
+pub enum CellKind {
+    Uint,
+    Int,
+    Float,
+    Vec2,
+    Vec3,
+    Vec4,
+}
+
+impl CellKind {
+    /// Size in bytes.
+    pub fn bytes(self) -> usize {
+        match self {
+            CellKind::Uint | CellKind::Int | CellKind::Float => 4,
+            CellKind::Vec2 => 8,
+            CellKind::Vec3 => 12,
+            CellKind::Vec4 => 16,
+        }
+    }
+}
+
+/// A value of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// Of a `uint` column.
+    Uint(u32),
+    /// Of an `int` column.
+    Int(i32),
+    /// Of a `float` column.
+    Float(f32),
+    /// Of a `vec2`, `vec3` or `vec4` column.
+    Vector(Vec<f32>),
+}
+
+impl fmt::Display for Cell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Cell::Uint(v) => write!(f, "{v}"),
+            Cell::Int(v) => write!(f, "{v}"),
+            Cell::Float(v) => write!(f, "{v:.4}"),
+            Cell::Vector(v) => {
+                let parts: Vec<String> = v.iter().map(|x| format!("{x:.4}")).collect();
+                write!(f, "{}", parts.join(" "))
+            }
+        }
+    }
+}
+
+/// No table has more rows than this; what a buffer holds beyond it is not shown.
+pub const MAX_ROWS: usize = 100_000;
+
+/// The rows that `bytes`, the content of the table's buffer, hold: as many as the row word says, and at most as fit.
+pub fn decode(table: &Table, bytes: &[u8]) -> Vec<Vec<Cell>> {
+    let count = word(bytes, table.rows as usize * 4).map_or(0, |n| n as usize).min(MAX_ROWS);
+    let stride = table.stride as usize;
+    let rows = bytes.get(table.start as usize..).unwrap_or_default();
+    let whole = rows.len().checked_div(stride).unwrap_or(0);
+    (0..count.min(whole)).map(|row| decode_row(table, &rows[row * stride..(row + 1) * stride])).collect()
+}
+
+fn decode_row(table: &Table, row: &[u8]) -> Vec<Cell> {
+    let column = |c: &Loc<Column>| {
+        let (kind, at) = (c.value.kind, c.value.at as usize);
+        let value = |i: usize| word(row, at + 4 * i).unwrap_or(0);
+        match kind {
+            CellKind::Uint => Cell::Uint(value(0)),
+            CellKind::Int => Cell::Int(value(0).cast_signed()),
+            CellKind::Float => Cell::Float(f32::from_bits(value(0))),
+            _ => Cell::Vector((0..kind.bytes() / 4).map(|i| f32::from_bits(value(i))).collect()),
+        }
+    };
+    table.columns.0.iter().map(column).collect()
+}
+
+fn word(bytes: &[u8], at: usize) -> Option<u32> {
+    let bytes = bytes.get(at..at.checked_add(4)?)?;
+    bytes.try_into().ok().map(u32::from_ne_bytes)
+}
+
+impl Table {
+    /// What is wrong with its layout, and where; `at` is the table's own place.
+    pub(super) fn mistakes(&self, at: At) -> Vec<(At, String)> {
+        let mut list = Vec::new();
+        let (title, stride) = (&self.title, self.stride);
+        if self.columns.0.is_empty() {
+            list.push((at, format!("table '{title}' has no columns")));
+        }
+        if stride == 0 || !stride.is_multiple_of(4) || !self.start.is_multiple_of(4) {
+            let start = self.start;
+            list.push((
+                at,
+                format!("table '{title}': start {start} and stride {stride} must be multiples of 4, the stride not 0"),
+            ));
+        }
+        if self.help.trim().is_empty() || self.help.contains('\n') {
+            list.push((at, format!("table '{title}' needs one line of help")));
+        }
+        let mut names = HashSet::new();
+        for Loc { value: column, at } in &self.columns.0 {
+            let name = &column.name;
+            let end = u64::from(column.at) + column.kind.bytes() as u64;
+            if end > u64::from(stride) {
+                list.push((*at, format!("column '{name}' ends at byte {end} of a row of {stride}")));
+            } else if !column.at.is_multiple_of(4) {
+                list.push((*at, format!("column '{name}' begins at byte {}, which is no multiple of 4", column.at)));
+            }
+            if !names.insert(name) {
+                list.push((*at, format!("two columns of '{title}' are named '{name}'")));
+            }
+        }
+        list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(text: &str) -> Table {
+        crate::graph::source::options().from_str(text).unwrap()
+    }
+
+    const PAIRS: &str = r#"(buffer: "b", rows: 1, start: 8, stride: 16, title: "t", help: "h", columns: [
+        (name: "n", at: 0, as: int), (name: "k", at: 0, as: uint), (name: "x", at: 4, as: float), (name: "v", at: 4, as: vec3),
+    ])"#;
+
+    fn buffer(rows: u32, floats: &[f32]) -> Vec<u8> {
+        let mut words = vec![7, rows];
+        words.extend(floats.iter().map(|f| f.to_bits()));
+        words.iter().flat_map(|w| w.to_ne_bytes()).collect()
+    }
+
+    #[test]
+    fn rows_become_cells() {
+        let minus_two = f32::from_bits((-2i32).cast_unsigned());
+        let cells = decode(&table(PAIRS), &buffer(1, &[minus_two, 1.5, 2.0, 3.0]));
+        let vector = Cell::Vector(vec![1.5, 2.0, 3.0]);
+        assert_eq!(cells, [[Cell::Int(-2), Cell::Uint(0xffff_fffe), Cell::Float(1.5), vector]]);
+        let text: Vec<String> = cells[0].iter().map(ToString::to_string).collect();
+        assert_eq!(text, ["-2", "4294967294", "1.5000", "1.5000 2.0000 3.0000"]);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_not_read() {
+        // The word asks for more rows than there are bytes; the last row is cut short; there is no row word at all.
+        assert_eq!(decode(&table(PAIRS), &buffer(u32::MAX, &[0.0; 11])).len(), 2);
+        assert_eq!(decode(&table(PAIRS), &buffer(0, &[0.0; 8])).len(), 0);
+        assert_eq!(decode(&table(PAIRS), &[0; 4]).len(), 0);
+        let dense = table(
+            r#"(buffer: "b", rows: 0, start: 4, stride: 4, title: "t", help: "h", columns: [(name: "n", at: 0, as: uint)])"#,
+        );
+        let mut bytes = vec![0xff; 4];
+        bytes.resize(4 * (MAX_ROWS + 10), 0);
+        assert_eq!(decode(&dense, &bytes).len(), MAX_ROWS);
+    }
+}
