@@ -19,6 +19,7 @@ macro_rules! say_part {
 mod check;
 mod graph;
 mod render;
+mod view;
 
 use crate::lab::LabError;
 use crate::vulkan::{GpuOptions, list_devices};
@@ -30,11 +31,13 @@ use std::path::PathBuf;
 #[command(name = "conelab", version, about)]
 pub struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Open the workbench in a window (the same as no command at all).
+    View(view::ViewArgs),
     /// Render an experiment to a picture, and its timings to JSON.
     Render(render::RenderArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
@@ -60,7 +63,7 @@ struct DeviceArgs {
 
 impl DeviceArgs {
     fn options(&self) -> GpuOptions {
-        GpuOptions { device: self.device.clone(), validation: self.validate, cache: None, display: None }
+        GpuOptions { device: self.device.clone(), validation: self.validate, cache: None }
     }
 }
 
@@ -78,7 +81,11 @@ struct SceneArgs {
 /// # Errors
 /// Everything that a command can fail with.
 pub fn run(cli: Cli) -> Result<(), LabError> {
-    match cli.command {
+    let Some(command) = cli.command else {
+        return view::run(&view::ViewArgs::parse_from(["view"]));
+    };
+    match command {
+        Command::View(args) => view::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),

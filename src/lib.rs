@@ -1,7 +1,7 @@
 //! conelab: a research workbench for voxel cone tracing.
 //!
 //! Knowledge flows one way: [`vulkan`], [`shader`], [`graph`] know no scene; [`scene`] knows no device; [`lab`] joins
-//! them to run an [`experiment`]; the commands are thin users of the lab.
+//! them to run an [`experiment`]; the commands and the [`workbench`] in its [`window`] are thin users of the lab.
 pub mod commands;
 pub mod experiment;
 pub mod files;
@@ -12,3 +12,5 @@ pub mod scene;
 pub mod shader;
 pub mod stats;
 pub mod vulkan;
+pub mod window;
+pub mod workbench;

@@ -34,6 +34,8 @@ pub struct GraphFile {
     pub pointer: Option<Loc<String>>,
     /// Buffers that may be read as tables.
     pub tables: Items<Table>,
+    /// Settings worth comparing.
+    pub compare: Items<CompareDecl>,
 }
 
 /// An expression with its place.
@@ -389,4 +391,29 @@ pub struct CopyDecl {
     pub from: Loc<String>,
     /// To.
     pub to: Loc<String>,
+}
+
+/// Two settings that the graph offers to put side by side.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CompareDecl {
+    /// What a button says.
+    pub title: String,
+    /// One line.
+    pub help: String,
+    /// Parameters of the first.
+    pub a: Entries<RawText>,
+    /// Parameters of the second.
+    pub b: Entries<RawText>,
+}
+
+/// A RON value kept as text, to be read by the parameter it is for.
+#[derive(Clone, Debug)]
+pub struct RawText(pub String);
+
+impl<'de> Deserialize<'de> for RawText {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+        Ok(RawText(raw.trim().get_ron().to_string()))
+    }
 }

@@ -1,7 +1,7 @@
 //! Reading a graph with its includes, and checking everything that needs no shader.
 
 use super::expr::Expr;
-use super::file::{BufferDecl, CheckDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, SceneNeeds, TextureDecl};
+use super::file::{BufferDecl, CheckDecl, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds, TextureDecl};
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
 use super::table::Table;
@@ -48,6 +48,8 @@ pub struct Graph {
     pub pointer: Option<String>,
     /// Buffers that may be read as tables; wanted only by who asks for them.
     pub tables: Vec<Table>,
+    /// Settings worth comparing.
+    pub compare: Vec<Loc<CompareDecl>>,
     /// The files it came from.
     pub sources: Sources,
 }
@@ -94,6 +96,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         checks: Vec::new(),
         pointer: None,
         tables: Vec::new(),
+        compare: Vec::new(),
         sources,
     };
     let mut wanted = Vec::new();
@@ -108,6 +111,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         graph.passes.extend(file.passes.0);
         graph.scene = file.scene.or(graph.scene);
         checks.extend(file.checks.0);
+        graph.compare.extend(file.compare.0);
         pointer = file.pointer.or(pointer);
         tables.extend(file.tables.0);
         for (slot, name) in [(&mut graph.output, file.output), (&mut graph.hdr, file.hdr)] {
@@ -130,6 +134,9 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     }
     for name in &wanted {
         check.texture_name(name);
+    }
+    for compare in &graph.compare {
+        check.values(compare.value.a.0.iter().chain(&compare.value.b.0));
     }
     for item in &checks {
         check.buffer_name(&item.value.buffer);
@@ -281,6 +288,18 @@ struct Check<'g> {
 }
 
 impl Check<'_> {
+    /// Names and values of parameters.
+    fn values<'v>(&mut self, list: impl Iterator<Item = &'v (Loc<String>, Loc<RawText>)>) {
+        for (name, text) in list {
+            let mut params = self.graph.params.clone();
+            if !self.broken.contains(&name.value)
+                && let Err(message) = params.set(&name.value, &text.value.0)
+            {
+                self.errors.push(self.graph.sources.error(name.at, message));
+            }
+        }
+    }
+
     fn error(&mut self, at: At, message: String) {
         self.errors.push(self.graph.sources.error(at, message));
     }

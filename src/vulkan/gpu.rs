@@ -17,8 +17,6 @@ pub struct GpuOptions {
     pub validation: bool,
     /// Folder for the pipeline cache; none when absent.
     pub cache: Option<PathBuf>,
-    /// The window system whose windows it must be able to present to.
-    pub display: Option<raw_window_handle::RawDisplayHandle>,
 }
 
 /// Optional abilities, asked for only by the switches that need them.
@@ -327,9 +325,20 @@ impl Gpu {
     /// # Errors
     /// No loader, no device of Vulkan 1.3, no validation layer where asked for.
     pub fn open(options: &GpuOptions) -> Result<Arc<Gpu>> {
+        Gpu::open_for(options, None)
+    }
+
+    /// Opens a device that can present to windows of a window system.
+    ///
+    /// # Errors
+    /// As [`Gpu::open`].
+    pub fn open_for(
+        options: &GpuOptions,
+        display: Option<raw_window_handle::RawDisplayHandle>,
+    ) -> Result<Arc<Gpu>> {
         let entry = load()?;
         let messages = Box::new(Messages::default());
-        let (instance, debug_utils) = create_instance(&entry, options.validation, options.display, &messages)?;
+        let (instance, debug_utils) = create_instance(&entry, options.validation, display, &messages)?;
         let messenger = if options.validation {
             let api = ext::debug_utils::Instance::new(&entry, &instance);
             // SAFETY: the callback's user data is the boxed message list, dropped after the messenger.
@@ -342,7 +351,7 @@ impl Gpu {
         let physical = choose(&instance, options.device.as_deref())?;
         let info = describe(&instance, physical);
         let family = queue_family(&instance, physical).unwrap_or(0);
-        let device = create_device(&instance, physical, family, &info.features, options.display.is_some())?;
+        let device = create_device(&instance, physical, family, &info.features, display.is_some())?;
         // SAFETY: the family and index were used to create the device.
         let queue = unsafe { device.get_device_queue(family, 0) };
         let allocator = Allocator::new(&AllocatorCreateDesc {

@@ -57,7 +57,7 @@ fn text(output: &Output) -> (bool, String, String) {
 /// A software device with the validation layer.
 pub fn lab(home: &Path) -> Lab {
     let home = Home { root: home.to_path_buf(), cache: Some(cache()) };
-    let options = GpuOptions { device: Some(device()), validation: true, cache: None, display: None };
+    let options = GpuOptions { device: Some(device()), validation: true, cache: None };
     Lab::open(home, options).unwrap()
 }
 

@@ -1,0 +1,47 @@
+//! `conelab view`.
+
+use super::DeviceArgs;
+use crate::lab::{Home, LabError};
+use crate::vulkan::GpuOptions;
+use crate::window::{self, WindowOptions};
+use crate::workbench::Options;
+use clap::Parser;
+use std::path::PathBuf;
+
+/// Arguments of `view`.
+#[derive(Debug, Parser)]
+pub struct ViewArgs {
+    /// Experiment file; configs/default.ron when absent.
+    experiment: Option<PathBuf>,
+    /// Another scene: a built-in name, a scene RON, or a model file.
+    #[arg(long)]
+    scene: Option<String>,
+    /// Size of the picture in pixels; that of the window's middle when absent.
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
+    /// Size of the window.
+    #[arg(long, value_name = "WxH", default_value = "1600x900")]
+    window: String,
+    /// The device that paints the window, if it is not the one that renders.
+    #[arg(long, value_name = "DEVICE")]
+    window_device: Option<String>,
+    /// Write what happens to this file, one JSON object a line, for scripts.
+    #[arg(long, value_name = "FILE")]
+    events: Option<PathBuf>,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Opens the window.
+pub fn run(args: &ViewArgs) -> Result<(), LabError> {
+    let home = Home::find()?;
+    let size = args.size.as_deref().map(super::render::parse_size).transpose()?;
+    let gpu = args.device.options();
+    let window = WindowOptions {
+        gpu: GpuOptions { device: args.window_device.clone().or(gpu.device.clone()), ..gpu.clone() },
+        size: super::render::parse_size(&args.window)?,
+    };
+    let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
+    let options = Options { home, gpu, experiment, scene: args.scene.clone(), size, events: args.events.clone() };
+    window::run(options, window)
+}

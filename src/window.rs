@@ -1,0 +1,209 @@
+//! The window: winit's events in, painted frames out. It has a device of its own, see [`crate::workbench::engine`].
+
+use crate::lab::LabError;
+use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels, Surface, VulkanError};
+use crate::workbench::{Options, PICTURES, Workbench};
+use egui::{TextureId, ViewportId};
+use raw_window_handle::HasDisplayHandle;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::window::{Window, WindowId};
+
+/// Something happened on another thread.
+struct Wake;
+
+/// How the window itself is opened.
+pub struct WindowOptions {
+    /// The device that paints the window.
+    pub gpu: GpuOptions,
+    /// Width and height in points.
+    pub size: (u32, u32),
+}
+
+/// A window that is open.
+struct Open {
+    state: egui_winit::State,
+    painter: Painter,
+    textures: Vec<TextureId>,
+    gpu: Arc<Gpu>,
+    window: Arc<Window>,
+}
+
+struct App {
+    workbench: Option<Workbench>,
+    options: WindowOptions,
+    context: egui::Context,
+    open: Option<Open>,
+    error: Option<LabError>,
+    repaint_at: Option<Instant>,
+    messages: Vec<String>,
+}
+
+/// Opens the workbench in a window and runs until it is closed.
+///
+/// # Errors
+/// No window system, no device that can present, an experiment that cannot be read; validation messages.
+pub fn run(options: Options, window: WindowOptions) -> Result<(), LabError> {
+    let event_loop = EventLoop::<Wake>::with_user_event().build().map_err(|e| {
+        LabError::Request(format!(
+            "cannot open a window: {e}. It needs X11 or Wayland; `conelab render` and `conelab screenshot` need neither"
+        ))
+    })?;
+    let proxy = event_loop.create_proxy();
+    // A window that has closed wakes nobody.
+    let workbench = Workbench::new(options, Arc::new(move || drop(proxy.send_event(Wake))))?;
+    let mut app = App {
+        workbench: Some(workbench),
+        options: window,
+        context: egui::Context::default(),
+        open: None,
+        error: None,
+        repaint_at: None,
+        messages: Vec::new(),
+    };
+    let ran = event_loop.run_app(&mut app);
+    app.close();
+    ran.map_err(|e| LabError::Request(format!("the window failed: {e}")))?;
+    if let Some(error) = app.error {
+        return Err(error);
+    }
+    match app.messages.len() {
+        0 => Ok(()),
+        n => Err(LabError::Request(format!("the Vulkan validation layer had {n} messages (see above)"))),
+    }
+}
+
+impl App {
+    fn create(&mut self, event_loop: &ActiveEventLoop) -> Result<Open, LabError> {
+        let (width, height) = self.options.size;
+        let attributes =
+            Window::default_attributes().with_title("conelab").with_inner_size(LogicalSize::new(width, height));
+        let window = event_loop
+            .create_window(attributes)
+            .map_err(|e| LabError::Request(format!("cannot open a window: {e}")))?;
+        let window = Arc::new(window);
+        let display = window.display_handle().map_err(|e| VulkanError::Window(e.to_string()))?.as_raw();
+        let gpu = Gpu::open_for(&self.options.gpu, Some(display))?;
+        let surface = Surface::new(&gpu, window.clone())?;
+        let size = window.inner_size();
+        let painter = Painter::for_window(&gpu, surface, (size.width, size.height), PICTURES)?;
+        let side = gpu.info.limits.max_image_dimension2_d as usize;
+        let scale = Some(window.scale_factor() as f32);
+        let state =
+            egui_winit::State::new(self.context.clone(), ViewportId::ROOT, &*window, scale, window.theme(), Some(side));
+        let textures = (0..PICTURES).map(|i| painter.picture(i)).collect();
+        Ok(Open { state, painter, textures, gpu, window })
+    }
+
+    fn paint(&mut self) -> Result<(), LabError> {
+        let (Some(open), Some(workbench)) = (&mut self.open, &mut self.workbench) else { return Ok(()) };
+        if workbench.is_described() {
+            self.context.enable_accesskit();
+        }
+        let soon = workbench.pump();
+        let input = open.state.take_egui_input(&open.window);
+        let textures = &open.textures;
+        let mut output = self.context.run_ui(input, |ui| workbench.ui(ui, textures));
+        let more = workbench.describe(output.platform_output.accesskit_update.as_ref(), output.pixels_per_point);
+        output.platform_output.accesskit_update = None;
+        open.state.handle_platform_output(&open.window, output.platform_output);
+        let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
+        let size = open.window.inner_size();
+        let pixels: Vec<Pixels<'_>> = workbench
+            .pixels()
+            .iter()
+            .map(|(picture, size, bytes)| Pixels { picture: *picture, size: *size, bytes: bytes.as_slice() })
+            .collect();
+        let deltas = output.textures_delta;
+        let painted =
+            open.painter.paint((size.width, size.height), output.pixels_per_point, deltas, &primitives, &pixels)?;
+        drop(pixels);
+        if painted {
+            workbench.painted();
+        }
+        let delay = output.viewport_output.get(&ViewportId::ROOT).map_or(Duration::MAX, |v| v.repaint_delay);
+        let delay = soon.map_or(delay, |s| delay.min(s));
+        let delay = if more { delay.min(Duration::from_millis(110)) } else { delay };
+        self.repaint_at = Instant::now().checked_add(delay);
+        Ok(())
+    }
+
+    fn close(&mut self) {
+        if let Some(workbench) = self.workbench.take() {
+            self.messages.extend(workbench.close());
+        }
+        if let Some(Open { painter, gpu, state, .. }) = self.open.take() {
+            drop(painter);
+            drop(state);
+            self.messages.extend(gpu.messages());
+        }
+    }
+
+    fn check(&mut self, result: Result<(), LabError>, event_loop: &ActiveEventLoop) {
+        if let Err(e) = result {
+            self.error = Some(e);
+            event_loop.exit();
+        }
+    }
+}
+
+impl ApplicationHandler<Wake> for App {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        if self.open.is_some() {
+            return;
+        }
+        let made = self.create(event_loop).map(|open| {
+            open.window.request_redraw();
+            self.open = Some(open);
+        });
+        self.check(made, event_loop);
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, Wake: Wake) {
+        if let Some(open) = &self.open {
+            open.window.request_redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        let response = open.state.on_window_event(&open.window, &event);
+        if response.repaint {
+            open.window.request_redraw();
+        }
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+                open.painter.resized();
+                open.window.request_redraw();
+            }
+            WindowEvent::DroppedFile(path) => {
+                if let Some(workbench) = &mut self.workbench {
+                    workbench.dropped(&path);
+                }
+            }
+            WindowEvent::RedrawRequested => {
+                let painted = self.paint();
+                self.check(painted, event_loop);
+            }
+            _ => {}
+        }
+    }
+
+    fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(open) = &self.open else { return };
+        match self.repaint_at {
+            Some(at) if at <= Instant::now() => {
+                self.repaint_at = None;
+                open.window.request_redraw();
+                event_loop.set_control_flow(ControlFlow::Wait);
+            }
+            Some(at) => event_loop.set_control_flow(ControlFlow::WaitUntil(at)),
+            None => event_loop.set_control_flow(ControlFlow::Wait),
+        }
+    }
+}

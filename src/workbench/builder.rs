@@ -1,0 +1,90 @@
+//! Builds sessions aside, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits for it.
+
+use crate::experiment::Experiment;
+use crate::lab::{Lab, LabError, Loaded, Seed, Session};
+use crate::scene::Scene;
+use crossbeam_channel::{Receiver, Sender};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What a session is built from; two equal keys give the same session.
+#[derive(Clone, PartialEq)]
+pub struct Key {
+    /// Graph file.
+    pub graph: String,
+    /// Parameters that differ from the defaults.
+    pub params: Vec<(String, String)>,
+    /// Picture size.
+    pub size: (u32, u32),
+    /// Revision of the files.
+    pub revision: u64,
+    /// Which scene was loaded.
+    pub scene: u64,
+    /// Further resources whose content is read.
+    pub wanted: Vec<String>,
+}
+
+/// Something to build.
+pub struct Job {
+    /// 0 is A, 1 is B.
+    pub slot: usize,
+    /// What from.
+    pub key: Key,
+    /// The same, as an experiment.
+    pub experiment: Experiment,
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Parts of the session in use.
+    pub seed: Option<Seed>,
+    /// The graph, if its files did not change since it was loaded.
+    pub loaded: Option<Loaded>,
+    /// Whether this is only the preview.
+    pub preview: bool,
+    /// The device.
+    pub lab: Lab,
+}
+
+/// What became of it.
+pub struct Done {
+    /// 0 is A, 1 is B.
+    pub slot: usize,
+    /// What from.
+    pub key: Key,
+    /// Whether this is only the preview.
+    pub preview: bool,
+    /// When the build began.
+    pub start: Instant,
+    /// The session and its graph.
+    pub result: Result<(Box<Session>, Loaded), LabError>,
+}
+
+/// Builds until the jobs' sender is gone.
+pub fn run(jobs: &Receiver<Job>, done: &Sender<Done>) {
+    for job in jobs {
+        let start = Instant::now();
+        let (slot, key, preview) = (job.slot, job.key.clone(), job.preview);
+        let result = build(job);
+        if done.send(Done { slot, key, preview, start, result }).is_err() {
+            return;
+        }
+    }
+}
+
+fn build(job: Job) -> Result<(Box<Session>, Loaded), LabError> {
+    let loaded = match job.loaded {
+        Some(loaded) => loaded,
+        None => job.lab.home.load(&job.experiment.graph).map_err(LabError::Input)?,
+    };
+    let graph = &loaded.graph;
+    let output = graph.output.clone().ok_or_else(|| {
+        LabError::Request(format!("graph '{}' has no `output`: there is nothing to show", graph.name))
+    })?;
+    let has = |name: &String| {
+        graph.textures.iter().any(|t| t.0 == *name) || graph.buffers.iter().any(|b| b.0 == *name)
+    };
+    let mut wanted = vec![output.clone()];
+    wanted.extend(job.key.wanted.iter().filter(|n| has(n)).cloned());
+    let mut session = job.lab.build(&job.experiment, &loaded, job.scene, wanted, job.seed.as_ref())?;
+    session.show(&output);
+    Ok((Box::new(session), loaded))
+}

@@ -1,0 +1,138 @@
+//! A beside B: how the two are shown, and how far they are apart.
+
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// How A and B are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mode {
+    /// A left and B right of a line that can be moved.
+    #[default]
+    Split,
+    /// One of them; a key changes which.
+    Flip,
+    /// Beside each other.
+    Side,
+    /// Absolute difference of the display values.
+    Difference,
+    /// Perceived difference, FLIP (Andersson et al. 2020).
+    Perceived,
+}
+
+/// Names of the modes.
+pub const MODES: [(Mode, &str); 5] = [
+    (Mode::Split, "split"),
+    (Mode::Flip, "flip"),
+    (Mode::Side, "side by side"),
+    (Mode::Difference, "difference"),
+    (Mode::Perceived, "FLIP"),
+];
+
+/// A picture to compare: 8-bit RGBA.
+#[derive(Clone)]
+pub struct Shown {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Pixels.
+    pub bytes: Arc<Vec<u8>>,
+}
+
+/// A map of differences and what it says as numbers.
+pub struct Map {
+    /// RGBA.
+    pub bytes: Arc<Vec<u8>>,
+    /// Width and height.
+    pub size: [u32; 2],
+    /// Mean over the picture: of the absolute difference (0 to 255), or of FLIP (0 to 1).
+    pub mean: f64,
+    /// Largest.
+    pub max: f64,
+    /// Pixels that differ at all.
+    pub differing: usize,
+}
+
+/// Absolute difference of each channel, multiplied by `gain` to be seen.
+pub fn difference(a: &Shown, b: &Shown, gain: u32) -> Option<Map> {
+    if a.size != b.size || a.bytes.len() != b.bytes.len() {
+        return None;
+    }
+    let mut bytes = vec![255; a.bytes.len()];
+    let rows = a.size[0].max(1) as usize * 4;
+    let parts: Vec<(u64, u8, usize)> = bytes
+        .par_chunks_mut(rows)
+        .zip(a.bytes.par_chunks(rows).zip(b.bytes.par_chunks(rows)))
+        .map(|(out, (a, b))| {
+            let (mut sum, mut max, mut differing) = (0, 0, 0);
+            for ((out, a), b) in out.chunks_exact_mut(4).zip(a.chunks_exact(4)).zip(b.chunks_exact(4)) {
+                let mut any = false;
+                for c in 0..3 {
+                    let d = a[c].abs_diff(b[c]);
+                    sum += u64::from(d);
+                    max = max.max(d);
+                    any |= d != 0;
+                    out[c] = u8::try_from(u32::from(d).saturating_mul(gain)).unwrap_or(255);
+                }
+                differing += usize::from(any);
+            }
+            (sum, max, differing)
+        })
+        .collect();
+    let count = (a.bytes.len() / 4 * 3).max(1);
+    Some(Map {
+        size: a.size,
+        mean: parts.iter().map(|p| p.0).sum::<u64>() as f64 / count as f64,
+        max: f64::from(parts.iter().map(|p| p.1).max().unwrap_or(0)),
+        differing: parts.iter().map(|p| p.2).sum(),
+        bytes: Arc::new(bytes),
+    })
+}
+
+/// FLIP of the two pictures, A as the reference, in the colours of the magma map.
+pub fn flip(a: &Shown, b: &Shown) -> Option<Map> {
+    if a.size != b.size || a.bytes.len() != b.bytes.len() || a.size.contains(&0) {
+        return None;
+    }
+    let rgb = |s: &Shown| -> Vec<u8> { s.bytes.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect() };
+    let [width, height] = a.size;
+    let reference = nv_flip::FlipImageRgb8::with_data(width, height, &rgb(a));
+    let test = nv_flip::FlipImageRgb8::with_data(width, height, &rgb(b));
+    let error = nv_flip::flip(reference, test, nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    let values = error.to_vec();
+    let colours = error.apply_color_lut(&nv_flip::magma_lut()).to_vec();
+    Some(Map {
+        size: a.size,
+        mean: values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len().max(1) as f64,
+        max: values.iter().copied().map(f64::from).fold(0.0, f64::max),
+        differing: values.iter().filter(|v| **v > 0.0).count(),
+        bytes: Arc::new(colours.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(pixels: &[[u8; 4]]) -> Shown {
+        Shown { size: [pixels.len() as u32, 1], bytes: Arc::new(pixels.concat()) }
+    }
+
+    #[test]
+    fn equal_pictures_differ_nowhere() {
+        let a = shown(&[[10, 20, 30, 255], [0, 0, 0, 255]]);
+        let map = difference(&a, &a, 1).unwrap();
+        assert_eq!((map.mean, map.max, map.differing), (0.0, 0.0, 0));
+        let map = flip(&a, &a).unwrap();
+        assert_eq!((map.mean, map.differing), (0.0, 0));
+    }
+
+    #[test]
+    fn the_difference_is_absolute_and_scaled_only_for_the_eye() {
+        let a = shown(&[[10, 20, 30, 255], [5, 5, 5, 255]]);
+        let b = shown(&[[13, 20, 26, 255], [5, 5, 5, 255]]);
+        let map = difference(&a, &b, 10).unwrap();
+        assert_eq!((map.max, map.differing), (4.0, 1));
+        assert!((map.mean - 7.0 / 6.0).abs() < 1e-9);
+        assert_eq!(map.bytes[..4], [30, 0, 40, 255]);
+        assert!(difference(&a, &shown(&[[0; 4]]), 1).is_none());
+    }
+}

@@ -1,0 +1,68 @@
+//! What happens in the window, one JSON object a line, for scripts and tests (`conelab view --events FILE`).
+
+use egui::accesskit;
+use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// A log of events.
+pub struct Events {
+    file: File,
+    start: Instant,
+    widgets: Value,
+    nodes: HashMap<u64, accesskit::Node>,
+    told: Instant,
+}
+
+impl Events {
+    /// Writes to a file, which is made anew.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn new(path: &Path) -> std::io::Result<Events> {
+        let now = Instant::now();
+        let file = File::create(path)?;
+        Ok(Events { file, start: now, widgets: Value::Null, nodes: HashMap::new(), told: now })
+    }
+
+    /// Writes an event; the time is added, in ms since the start.
+    pub fn write(&mut self, event: &str, mut fields: Value) {
+        if let Some(map) = fields.as_object_mut() {
+            map.insert("event".into(), event.into());
+            map.insert("ms".into(), json!(self.start.elapsed().as_secs_f64() * 1e3));
+        }
+        // A disk that is full must not end the program.
+        let _ = writeln!(self.file, "{fields}");
+    }
+
+    /// Writes where the widgets are, in points, when that changed; at most some times a second. `true` if more is to
+    /// be told later.
+    pub fn widgets(&mut self, update: Option<&accesskit::TreeUpdate>, scale: f32) -> bool {
+        if let Some(update) = update {
+            self.nodes = update.nodes.iter().map(|(id, node)| (id.0, node.clone())).collect();
+        }
+        let mut list: Vec<Value> = Vec::new();
+        for node in self.nodes.values() {
+            let label = node.label().or(node.value()).unwrap_or_default();
+            let Some(b) = node.bounds().filter(|_| !label.is_empty()) else { continue };
+            let rect = [b.x0, b.y0, b.x1, b.y1].map(|v| v.round());
+            let value = node.numeric_value().map_or_else(|| json!(node.value().unwrap_or_default()), |v| json!(v));
+            list.push(json!({ "role": format!("{:?}", node.role()), "label": label, "value": value, "rect": rect }));
+        }
+        list.sort_by_key(Value::to_string);
+        let list = json!({ "scale": scale, "list": list });
+        if list == self.widgets {
+            return false;
+        }
+        if self.told.elapsed().as_millis() < 100 {
+            return true;
+        }
+        self.told = Instant::now();
+        self.widgets = list.clone();
+        self.write("widgets", list);
+        false
+    }
+}

@@ -1,0 +1,741 @@
+//! The workbench: an engine that renders aside, and the interface that says what it shall render.
+//!
+//! Nothing here knows a window system: [`crate::window`] and offscreen screenshots are two hosts of the same interface.
+
+mod builder;
+pub mod compare;
+pub mod edit;
+pub mod engine;
+pub mod events;
+mod help;
+mod keep;
+mod messages;
+mod motion;
+mod panel;
+mod renderdoc;
+pub mod report;
+mod surroundings;
+mod view;
+mod watch;
+pub mod wish;
+
+use crate::experiment::Experiment;
+use crate::graph::file::RawText;
+use crate::graph::source::{Diagnostic, Entries};
+use crate::graph::successor::Change;
+use crate::lab::{Home, LabError, viewpoint_of};
+use crate::scene::Scene;
+use crate::vulkan::GpuOptions;
+use compare::{Map, Mode, Shown};
+use crossbeam_channel::{Receiver, Sender, unbounded};
+use egui::{TextureId, Ui, Vec2};
+use engine::{Engine, Order};
+use events::Events;
+use report::{DeviceReport, Outline, PictureReport, Report};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use wish::{SlotWish, Wish};
+
+/// Pictures that hosts keep for the interface: A, B, the comparison, the inspector.
+pub const PICTURES: usize = 4;
+/// The picture of the comparison.
+const COMPARISON: usize = 2;
+
+/// New pixels of a picture: its number, size and RGBA bytes.
+pub type NewPixels = (usize, [u32; 2], Arc<Vec<u8>>);
+
+/// What is known of A or B.
+#[derive(Default)]
+struct Slot {
+    outline: Option<Arc<Outline>>,
+    /// Errors of the last build.
+    errors: Vec<Diagnostic>,
+    /// Messages of the graph's checks.
+    checks: Vec<String>,
+    picture: Option<PictureReport>,
+}
+
+/// What is shown on the right.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Tab {
+    Surroundings,
+    Keep,
+}
+
+/// How to open the workbench.
+pub struct Options {
+    /// Its folders.
+    pub home: Home,
+    /// The device that renders.
+    pub gpu: GpuOptions,
+    /// The experiment to open.
+    pub experiment: PathBuf,
+    /// Another scene than the experiment's.
+    pub scene: Option<String>,
+    /// Picture size; that of the window's middle when absent.
+    pub size: Option<(u32, u32)>,
+    /// Where to log what happens.
+    pub events: Option<PathBuf>,
+}
+
+/// The workbench.
+pub struct Workbench {
+    engine: Engine,
+    watch: watch::Watch,
+    wish: Wish,
+    /// The wish that the engine was told last.
+    told: Wish,
+    name: String,
+    slots: [Slot; 2],
+    scene: Option<Arc<Scene>>,
+    experiment: Option<Experiment>,
+    loading: Option<(String, f32)>,
+    device: Option<DeviceReport>,
+    history: edit::History,
+    panel: panel::Panel,
+    panel_slot: usize,
+    view: view::View,
+    tab: Tab,
+    help: bool,
+    /// What was said last, and since when.
+    status: String,
+    trouble: Option<String>,
+    pixels: Vec<NewPixels>,
+    comparison: Option<(Mode, Map)>,
+    comparing: bool,
+    compared: (Sender<(Mode, Option<Map>)>, Receiver<(Mode, Option<Map>)>),
+    /// The area of the picture, in pixels of the screen.
+    area: [u32; 2],
+    fixed_size: Option<(u32, u32)>,
+    resize_since: Option<Instant>,
+    events: Option<Events>,
+    changed_at: Option<Instant>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+    root: PathBuf,
+}
+
+impl Workbench {
+    /// Opens the workbench; `wake` is called from other threads when there is something new to show.
+    ///
+    /// # Errors
+    /// An experiment that cannot be read, a log that cannot be written.
+    pub fn new(options: Options, wake: Arc<dyn Fn() + Send + Sync>) -> Result<Workbench, LabError> {
+        let experiment = Experiment::read(&options.experiment).map_err(LabError::Input)?;
+        let events = options.events.as_deref().map(Events::new).transpose();
+        let events = events.map_err(|e| LabError::Request(format!("cannot write the log of events: {e}")))?;
+        let root = options.home.root.clone();
+        let software = options.gpu.device.as_deref().is_some_and(|d| d.to_lowercase().contains("llvmpipe"));
+        let engine = Engine::start(options.home, options.gpu, wake.clone());
+        let mut watch = watch::Watch::new(&root, wake.clone());
+        let wish = Wish {
+            slots: [Some(slot_of(&experiment)), None],
+            scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
+            size: options.size.unwrap_or((0, 0)),
+            clock: wish::Clock { at: experiment.time, jumps: 1, ..wish::Clock::default() },
+            // A software device has better things to do than to draw the same picture again.
+            continuous: !software,
+            ..Wish::default()
+        };
+        watch.scene(&wish.scene);
+        let trouble = watch.trouble.clone();
+        Ok(Workbench {
+            engine,
+            watch,
+            told: Wish::default(),
+            wish,
+            name: experiment.name.clone(),
+            slots: Default::default(),
+            scene: None,
+            experiment: Some(experiment),
+            loading: None,
+            device: None,
+            history: edit::History::default(),
+            panel: panel::Panel::default(),
+            panel_slot: 0,
+            view: view::View::default(),
+            tab: Tab::Surroundings,
+            help: false,
+            status: String::new(),
+            trouble,
+            pixels: Vec::new(),
+            comparison: None,
+            comparing: false,
+            compared: unbounded(),
+            area: [0, 0],
+            fixed_size: options.size,
+            resize_since: None,
+            events,
+            changed_at: None,
+            wake,
+            root,
+        })
+    }
+
+    fn event(&mut self, name: &str, fields: serde_json::Value) {
+        if let Some(events) = &mut self.events {
+            events.write(name, fields);
+        }
+    }
+
+    /// Takes in what other threads have to say. Returns how soon to ask again, if something is about to come.
+    pub fn pump(&mut self) -> Option<Duration> {
+        while let Ok(report) = self.engine.reports.try_recv() {
+            self.report(report);
+        }
+        while let Ok((mode, map)) = self.compared.1.try_recv() {
+            self.comparing = false;
+            if let Some(map) = map {
+                self.pixels.retain(|p| p.0 != COMPARISON);
+                self.pixels.push((COMPARISON, map.size, map.bytes.clone()));
+                let (mean, max, differing) = (map.mean, map.max, map.differing);
+                let name = compare::MODES.iter().find(|m| m.0 == mode).map_or("", |m| m.1);
+                self.event("compared", json!({ "mode": name, "mean": mean, "max": max, "differing": differing }));
+                self.comparison = Some((mode, map));
+            }
+        }
+        match self.watch.take() {
+            Ok(changed) => {
+                self.files_changed(&changed);
+                None
+            }
+            Err(wait) => wait,
+        }
+    }
+
+    fn files_changed(&mut self, changed: &watch::Changed) {
+        if changed.method {
+            self.wish.revision += 1;
+            self.changed_at = Some(Instant::now());
+            self.event("changed", json!({ "revision": self.wish.revision }));
+        }
+        if changed.scene {
+            self.wish.scene_revision += 1;
+        }
+        for path in &changed.experiments {
+            self.experiment_changed(path);
+        }
+        self.tell();
+    }
+
+    /// The open experiment's file was edited: its values take the place of those here.
+    fn experiment_changed(&mut self, path: &Path) {
+        if path.file_stem().is_none_or(|s| s.to_string_lossy() != self.name.as_str()) {
+            return;
+        }
+        match Experiment::read(path) {
+            Ok(experiment) => {
+                self.slots[0].errors.clear();
+                if slot_of(&experiment) != self.wish.slots[0].clone().unwrap_or_default()
+                    || experiment.scene != self.wish.scene
+                {
+                    self.open(&experiment);
+                    self.status = format!("read {} again", path.display());
+                }
+            }
+            Err(errors) => self.slots[0].errors = errors,
+        }
+    }
+
+    /// Shows an experiment in slot A.
+    fn open(&mut self, experiment: &Experiment) {
+        self.name.clone_from(&experiment.name);
+        self.wish.slots[0] = Some(slot_of(experiment));
+        if self.wish.scene == experiment.scene {
+            if let Some(scene) = &self.scene {
+                self.wish.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
+            }
+        } else {
+            self.open_scene(&experiment.scene);
+        }
+        self.experiment = Some(experiment.clone());
+        self.wish.clock.at = experiment.time;
+        self.wish.clock.jumps += 1;
+    }
+
+    fn open_scene(&mut self, spec: &str) {
+        self.wish.scene = spec.to_string();
+        self.wish.lights = None;
+        self.watch.scene(spec);
+    }
+
+    /// A file was dropped on the window.
+    pub fn dropped(&mut self, path: &Path) {
+        let spec = path.to_string_lossy().into_owned();
+        let is_ron = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ron"));
+        match Experiment::read(path) {
+            Ok(experiment) if is_ron => self.open(&experiment),
+            _ => {
+                self.experiment = None;
+                self.open_scene(&spec);
+            }
+        }
+        self.tell();
+    }
+
+    fn report(&mut self, report: Report) {
+        match report {
+            Report::Device(device) => {
+                self.wish.continuous &= !device.software;
+                self.event("device", json!({ "name": device.name, "driver": device.driver }));
+                self.device = Some(device);
+                self.trouble = None;
+            }
+            Report::Built { slot, outline, change, ms, revision } => {
+                let Change { kept, built, resized } = change;
+                self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
+                self.event(
+                    "built",
+                    json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
+                        "revision": revision }),
+                );
+                self.slots[slot].errors.clear();
+                self.slots[slot].outline = Some(outline);
+            }
+            Report::Failed { slot, diagnostics, revision } => {
+                let texts: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+                self.event("failed", json!({ "slot": slot, "errors": texts, "revision": revision }));
+                self.slots[slot].errors = diagnostics;
+            }
+            Report::Set { slot, .. } => {
+                if !self.slots[slot].errors.is_empty() {
+                    self.slots[slot].errors.clear();
+                    self.event("mended", json!({ "slot": slot }));
+                }
+            }
+            Report::Picture(picture) => self.picture_came(picture),
+            Report::Loading(what, part) => self.loading = Some((what, part)),
+            Report::Loaded(scene) => self.loaded(scene),
+            Report::LoadFailed(why) => {
+                self.loading = None;
+                self.event("load failed", json!({ "why": why }));
+                self.trouble = Some(why);
+            }
+            Report::Texels(..) | Report::Table(..) => {}
+            Report::Checks(slot, failed) => self.slots[slot].checks = failed,
+            Report::Captured(result) => {
+                let ok = result.is_ok();
+                let text = match result {
+                    Ok(path) => format!("captured {}", path.display()),
+                    Err(why) => format!("not captured: {why}"),
+                };
+                self.event("captured", json!({ "ok": ok, "text": text }));
+                self.status = text;
+            }
+            Report::Trouble(text) => {
+                self.event("trouble", json!({ "text": text }));
+                self.trouble = Some(text);
+            }
+        }
+    }
+
+    fn picture_came(&mut self, picture: PictureReport) {
+        let number = picture.slot;
+        self.pixels.retain(|p| p.0 != number);
+        self.pixels.push((number, picture.size, picture.bytes.clone()));
+        if self.events.is_some() {
+            let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
+            let fields = json!({ "slot": number, "preview": picture.preview, "frame": picture.frame,
+                "wish": picture.wish, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
+                "since_change_ms": since });
+            self.event("picture", fields);
+        }
+        self.slots[number].picture = Some(picture);
+        self.compare();
+    }
+
+    fn loaded(&mut self, scene: Arc<Scene>) {
+        self.loading = None;
+        self.trouble = None;
+        self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
+        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
+        if !same || self.experiment.is_some() {
+            let fallback = Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
+            let experiment = self.experiment.take().unwrap_or(fallback);
+            match viewpoint_of(&experiment, &scene) {
+                Ok(v) => self.wish.camera = Some(v.camera),
+                Err(e) => {
+                    self.trouble = Some(e.to_string());
+                    self.wish.camera = Some(crate::lab::Viewpoint::around(&scene).camera);
+                }
+            }
+        }
+        self.scene = Some(scene);
+        self.tell();
+    }
+
+    /// The present experiment, as slot A shows it.
+    fn bare(&self) -> Experiment {
+        let slot = self.wish.slots[0].clone().unwrap_or_default();
+        Experiment { name: self.name.clone(), ..self.wish.experiment(&slot) }
+    }
+
+    /// Works out the map of differences on a thread, one at a time.
+    fn compare(&mut self) {
+        let mode = self.view.mode;
+        if !matches!(mode, Mode::Difference | Mode::Perceived) || self.comparing {
+            return;
+        }
+        let shown = |s: &Slot| s.picture.as_ref().map(|p| Shown { size: p.size, bytes: p.bytes.clone() });
+        let (Some(a), Some(b)) = (shown(&self.slots[0]), shown(&self.slots[1])) else { return };
+        self.comparing = true;
+        let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
+        std::thread::spawn(move || {
+            let map = if mode == Mode::Difference {
+                compare::difference(&a, &b, gain)
+            } else {
+                compare::flip(&a, &b)
+            };
+            let _ = out.send((mode, map));
+            wake();
+        });
+    }
+
+    fn comparison_text(&self) -> Option<String> {
+        let (mode, map) = self.comparison.as_ref().filter(|(mode, _)| *mode == self.view.mode)?;
+        let share = 100.0 * map.differing as f64 / f64::from((map.size[0] * map.size[1]).max(1));
+        Some(match mode {
+            Mode::Perceived => format!("mean FLIP {:.4}, largest {:.3}", map.mean, map.max),
+            _ => format!("mean {:.3}/255, largest {}, {share:.1} % of pixels", map.mean, map.max),
+        })
+    }
+
+    /// Whether the picture is older than the last good build or shows what no longer compiles.
+    fn stale(&self) -> bool {
+        self.slots.iter().any(|s| !s.errors.is_empty())
+    }
+
+    fn waiting_text(&self) -> String {
+        match &self.loading {
+            Some((what, part)) => format!("loading {what}: {:.0} %", 100.0 * part),
+            None if self.device.is_none() => "opening the device".into(),
+            None => "building the passes".into(),
+        }
+    }
+
+    /// Sets the parameter that the graph names for clicks.
+    fn point_at(&mut self, at: Option<Vec2>) {
+        let Some(outline) = self.slots[0].outline.clone() else { return };
+        let Some(name) = &outline.graph.pointer else { return };
+        let Some(param) = outline.graph.params.list.iter().find(|p| p.name == *name) else { return };
+        let at = at.map_or([-1.0; 2], |p| [f64::from(p.x.floor()), f64::from(p.y.floor())]);
+        for slot in self.wish.slots.iter_mut().flatten() {
+            edit::set(slot, param, &crate::graph::param::Value::Vector(at.to_vec()));
+        }
+    }
+
+    /// Tells the engine, if something is wished for that it does not know.
+    fn tell(&mut self) {
+        let mut wish = self.wish.clone();
+        wish.number = self.told.number;
+        if wish_differs(&wish, &self.told) {
+            wish.number += 1;
+            self.wish.number = wish.number;
+            self.told = wish.clone();
+            self.engine.wish(wish);
+        }
+    }
+
+    /// Pixels that the host has not shown yet.
+    pub fn pixels(&self) -> &[NewPixels] {
+        &self.pixels
+    }
+
+    /// The host has shown them.
+    pub fn painted(&mut self) {
+        if !self.pixels.is_empty() {
+            let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
+            let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
+            let wish = self.slots[0].picture.as_ref().map_or(0, |p| p.wish);
+            self.event("painted", json!({ "pictures": list, "wish": wish, "since_change_ms": since }));
+        }
+        self.pixels.clear();
+    }
+
+    /// Tells where the widgets are, for scripts; `true` if there is more to tell.
+    pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
+        self.events.as_mut().is_some_and(|e| e.widgets(update, scale))
+    }
+
+    /// Whether the widgets are to be described.
+    pub fn is_described(&self) -> bool {
+        self.events.is_some()
+    }
+
+    /// Whether everything wished for is on screen.
+    pub fn settled(&self) -> bool {
+        let shown = |i: usize| {
+            self.wish.slots[i].is_none()
+                || self.slots[i]
+                    .picture
+                    .as_ref()
+                    .is_some_and(|p| !p.preview && p.wish >= self.told.number && self.slots[i].outline.is_some())
+        };
+        shown(0) && shown(1) && self.loading.is_none() && !self.comparing
+    }
+
+    /// The interface of one frame.
+    pub fn ui(&mut self, ui: &mut Ui, textures: &[TextureId]) {
+        self.shortcuts(ui);
+        egui::Panel::top("bar").show(ui, |ui| self.bar(ui));
+        egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
+        if self.has_messages() {
+            egui::Panel::bottom("messages").resizable(true).show(ui, |ui| self.messages(ui));
+        }
+        egui::Panel::left("parameters").default_size(340.0).size_range(180.0..=640.0).show(ui, |ui| self.parameters(ui));
+        egui::Panel::right("right").default_size(320.0).size_range(180.0..=760.0).show(ui, |ui| self.right(ui));
+        egui::CentralPanel::no_frame().show(ui, |ui| self.picture(ui, textures));
+        if self.help {
+            self.help_window(ui);
+        }
+        self.fit_size(ui);
+        let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
+        self.history.note(&self.wish, held);
+        self.tell();
+    }
+
+    /// The picture has the size of the middle, once that has stood still for a moment.
+    fn fit_size(&mut self, ui: &Ui) {
+        let size = self.fixed_size.unwrap_or((self.area[0].max(1), self.area[1].max(1)));
+        if size == self.wish.size || size.0 < 2 || size.1 < 2 {
+            self.resize_since = None;
+            return;
+        }
+        let first = self.wish.size == (0, 0);
+        let since = *self.resize_since.get_or_insert_with(Instant::now);
+        let quiet = Duration::from_millis(120);
+        if first || since.elapsed() >= quiet {
+            self.wish.size = size;
+            self.resize_since = None;
+        } else {
+            ui.ctx().request_repaint_after(quiet);
+        }
+    }
+
+    fn bar(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.strong("conelab");
+            self.experiments_menu(ui);
+            self.scenes_menu(ui);
+            ui.separator();
+            let (undo, redo) = self.history.can();
+            if ui.add_enabled(undo, egui::Button::new("undo")).on_hover_text("Ctrl Z").clicked() {
+                self.history.go(&mut self.wish, true);
+            }
+            if ui.add_enabled(redo, egui::Button::new("redo")).on_hover_text("Ctrl Shift Z").clicked() {
+                self.history.go(&mut self.wish, false);
+            }
+            ui.separator();
+            let mut compare = self.wish.slots[1].is_some();
+            if ui.toggle_value(&mut compare, "A | B").on_hover_text("Put a second experiment beside the first").clicked() {
+                self.wish.slots[1] = if compare { self.wish.slots[0].clone() } else { None };
+                self.panel_slot = usize::from(compare);
+            }
+            self.comparisons(ui);
+            if self.wish.slots[1].is_some() {
+                self.compare_bar(ui);
+            }
+            ui.separator();
+            ui.toggle_value(&mut self.wish.continuous, "keep rendering")
+                .on_hover_text("Render on when nothing changes, to measure");
+            if ui.button("help").on_hover_text("F1").clicked() {
+                self.help = !self.help;
+            }
+        });
+    }
+
+    /// Comparisons that the graph offers: each is one click.
+    fn comparisons(&mut self, ui: &mut Ui) {
+        let Some(outline) = self.slots[0].outline.clone() else { return };
+        for compare in &outline.graph.compare {
+            let button = ui.button(&compare.value.title).on_hover_text(&compare.value.help);
+            if button.clicked() {
+                let base = self.wish.slots[0].clone().unwrap_or_default();
+                let make = |values: &Entries<RawText>| {
+                    let mut slot = base.clone();
+                    for (name, text) in &values.0 {
+                        if let Some(param) = outline.graph.params.list.iter().find(|p| p.name == name.value)
+                            && let Ok(value) = param.parse(&text.value.0)
+                        {
+                            edit::set(&mut slot, param, &value);
+                        }
+                    }
+                    slot
+                };
+                self.wish.slots = [Some(make(&compare.value.a)), Some(make(&compare.value.b))];
+            }
+        }
+    }
+
+    fn experiments_menu(&mut self, ui: &mut Ui) {
+        let mut chosen = None;
+        let response = ui.menu_button(format!("experiment: {}", self.name), |ui| {
+            for path in ron_files(&self.root.join("configs")) {
+                let name = path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
+                ui.horizontal(|ui| {
+                    if ui.button(&name).clicked() {
+                        chosen = Some((path.clone(), 0));
+                        ui.close();
+                    }
+                    if ui.small_button("as B").clicked() {
+                        chosen = Some((path.clone(), 1));
+                        ui.close();
+                    }
+                });
+            }
+        });
+        response.response.on_hover_text("Presets: configs/*.ron");
+        let Some((path, slot)) = chosen else { return };
+        match Experiment::read(&path) {
+            Ok(experiment) if slot == 0 => self.open(&experiment),
+            Ok(experiment) => self.wish.slots[1] = Some(slot_of(&experiment)),
+            Err(errors) => self.slots[slot].errors = errors,
+        }
+    }
+
+    fn scenes_menu(&mut self, ui: &mut Ui) {
+        let mut chosen = None;
+        ui.menu_button(format!("scene: {}", short(&self.wish.scene)), |ui| {
+            for (name, about) in crate::scene::builtin::list() {
+                if ui.button(name).on_hover_text(about).clicked() {
+                    chosen = Some(name.to_string());
+                    ui.close();
+                }
+            }
+            ui.separator();
+            for path in ron_files(&self.root.join("configs/scenes")) {
+                if ui.button(short(&path.to_string_lossy())).clicked() {
+                    chosen = Some(path.to_string_lossy().into_owned());
+                    ui.close();
+                }
+            }
+            ui.weak("Models (.gltf, .glb, .obj) can be dropped on the window");
+        });
+        if let Some(spec) = chosen {
+            self.open_scene(&spec);
+        }
+    }
+
+    fn parameters(&mut self, ui: &mut Ui) {
+        if self.wish.slots[1].is_some() {
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut self.panel_slot, 0, "A");
+                ui.selectable_value(&mut self.panel_slot, 1, "B");
+                if ui.small_button("A to B").clicked() {
+                    self.wish.slots[1] = self.wish.slots[0].clone();
+                }
+                if ui.small_button("B to A").clicked() {
+                    self.wish.slots[0] = self.wish.slots[1].clone();
+                }
+                if ui.small_button("swap").clicked() {
+                    self.wish.slots.swap(0, 1);
+                }
+            });
+        } else {
+            self.panel_slot = 0;
+        }
+        let number = self.panel_slot;
+        let outline = self.slots[number].outline.clone().or(self.slots[0].outline.clone());
+        let Some(outline) = outline else {
+            ui.weak(self.waiting_text());
+            return;
+        };
+        let other = self.wish.slots[1 - number].clone();
+        if let Some(slot) = &mut self.wish.slots[number] {
+            self.panel.show(ui, &outline.graph.params, slot, other.as_ref());
+        }
+    }
+
+    fn right(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.selectable_value(&mut self.tab, Tab::Surroundings, "Scene");
+            ui.selectable_value(&mut self.tab, Tab::Keep, "Keep");
+        });
+        ui.separator();
+        match self.tab {
+            Tab::Surroundings => self.surroundings(ui),
+            Tab::Keep => {}
+        }
+    }
+
+    fn status_line(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            if let Some((what, part)) = self.loading.clone() {
+                ui.add(egui::ProgressBar::new(part).desired_width(160.0).text(what));
+                if ui.small_button("cancel").clicked() {
+                    self.engine.order(Order::CancelLoading);
+                }
+            }
+            if let Some(device) = &self.device {
+                ui.weak(&device.name).on_hover_text(&device.driver);
+            }
+            if let Some(p) = &self.slots[0].picture {
+                ui.weak(format!("{}x{}", p.size[0], p.size[1]));
+                ui.weak(format!("{:.2} ms", p.gpu_ms));
+                if p.preview {
+                    ui.weak("preview, while the passes are built");
+                }
+            }
+            ui.label(&self.status);
+        });
+    }
+
+    fn shortcuts(&mut self, ui: &Ui) {
+        let typing = ui.ctx().egui_wants_keyboard_input();
+        for action in help::pressed(ui, typing) {
+            match action {
+                help::Action::Help => self.help = !self.help,
+                help::Action::Undo => self.history.go(&mut self.wish, true),
+                help::Action::Redo => self.history.go(&mut self.wish, false),
+                help::Action::Play => self.wish.clock.playing = !self.wish.clock.playing,
+                help::Action::Step => {
+                    self.wish.clock.playing = false;
+                    self.wish.clock.steps += 1;
+                }
+                help::Action::Flip => self.view.flipped = !self.view.flipped,
+                help::Action::Unpoint => self.point_at(None),
+                help::Action::RenderDoc => self.engine.order(Order::RenderDoc),
+            }
+        }
+    }
+
+    /// Ends: waits a little for the frame in work. Returns the device's validation messages.
+    pub fn close(self) -> Vec<String> {
+        self.engine.stop(Duration::from_secs(20))
+    }
+}
+
+/// Whether two wishes differ in anything but their number.
+fn wish_differs(a: &Wish, b: &Wish) -> bool {
+    a.slots != b.slots
+        || a.scene != b.scene
+        || a.lights != b.lights
+        || a.camera != b.camera
+        || a.size != b.size
+        || a.clock != b.clock
+        || a.continuous != b.continuous
+        || (a.revision, a.scene_revision) != (b.revision, b.scene_revision)
+        || a.look != b.look
+        || a.table != b.table
+}
+
+fn slot_of(experiment: &Experiment) -> SlotWish {
+    SlotWish {
+        graph: experiment.graph.clone(),
+        params: experiment.params.iter().map(|(name, value)| (name.value.clone(), value.clone())).collect(),
+    }
+}
+
+fn ron_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut list: Vec<PathBuf> =
+        entries.map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "ron") && p.is_file()).collect();
+    list.sort();
+    list
+}
+
+/// A path's stem; a name as it is.
+fn short(spec: &str) -> String {
+    Path::new(spec).file_stem().map_or_else(|| spec.to_string(), |s| s.to_string_lossy().into_owned())
+}

@@ -1,0 +1,151 @@
+//! Camera, lights, sky and time: what is around the method.
+
+use super::Workbench;
+use super::motion;
+use crate::lab::Viewpoint;
+use crate::scene::{Light, LightKind};
+use egui::{DragValue, Ui};
+use glam::Vec3;
+
+fn metres(ui: &mut Ui, label: &str, v: &mut Vec3) {
+    ui.horizontal(|ui| {
+        for x in [&mut v.x, &mut v.y, &mut v.z] {
+            ui.add(DragValue::new(x).speed(0.02).max_decimals(3));
+        }
+        ui.label(label);
+    });
+}
+
+impl Workbench {
+    /// The section.
+    pub(super) fn surroundings(&mut self, ui: &mut Ui) {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.strong("Camera");
+            self.camera(ui);
+            ui.separator();
+            ui.strong("Time");
+            self.time(ui);
+            ui.separator();
+            ui.strong("Lights and sky");
+            self.lights(ui);
+        });
+    }
+
+    fn camera(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut self.view.steering, motion::Mode::Orbit, "orbit")
+                .on_hover_text("Drag turns around the target, the wheel comes nearer");
+            ui.selectable_value(&mut self.view.steering, motion::Mode::Fly, "fly")
+                .on_hover_text("Drag looks around, W A S D Q E move");
+            ui.add(DragValue::new(&mut self.view.speed).range(0.01..=100.0).speed(0.05).prefix("speed x "));
+        });
+        let names: Vec<String> = self.scene.as_ref().map_or(Vec::new(), |s| s.cameras.keys().cloned().collect());
+        if let Some(scene) = self.scene.clone() {
+            ui.horizontal_wrapped(|ui| {
+                ui.label("views:");
+                for name in &names {
+                    if ui.small_button(name).clicked() {
+                        self.wish.camera = scene.cameras.get(name).copied();
+                    }
+                }
+                if ui.small_button("whole scene").clicked() {
+                    self.wish.camera = Some(Viewpoint::around(&scene).camera);
+                }
+            });
+        }
+        if let Some(camera) = &mut self.wish.camera {
+            metres(ui, "eye, m", &mut camera.eye);
+            metres(ui, "target, m", &mut camera.target);
+            ui.add(egui::Slider::new(&mut camera.fov_y, 5.0..=150.0).suffix(" deg").text("field of view"));
+        }
+    }
+
+    fn time(&mut self, ui: &mut Ui) {
+        let clock = &mut self.wish.clock;
+        ui.horizontal(|ui| {
+            let name = if clock.playing { "pause" } else { "play" };
+            if ui.button(name).on_hover_text("Space").clicked() {
+                clock.playing = !clock.playing;
+            }
+            if ui.button("step").on_hover_text("One frame (.)").clicked() {
+                clock.playing = false;
+                clock.steps += 1;
+            }
+            if ui.button("to start").clicked() {
+                clock.at = 0.0;
+                clock.jumps += 1;
+            }
+            ui.label(format!("{:.3} s", self.slots[0].picture.as_ref().map_or(0.0, |p| p.time)));
+        });
+        ui.horizontal(|ui| {
+            let mut fixed = clock.step.is_some();
+            ui.checkbox(&mut fixed, "fixed step").on_hover_text("The same time from frame to frame, however long it takes");
+            clock.step = match (fixed, clock.step) {
+                (true, step) => Some(step.unwrap_or(1.0 / 60.0)),
+                (false, _) => None,
+            };
+            if let Some(step) = &mut clock.step {
+                ui.add(DragValue::new(step).range(0.0001..=10.0).speed(0.001).suffix(" s"));
+            }
+        });
+    }
+
+    fn lights(&mut self, ui: &mut Ui) {
+        let Some(scene) = self.scene.clone() else { return };
+        let (mut lights, mut sky) = self.wish.lights.clone().unwrap_or((scene.lights.clone(), scene.sky));
+        ui.horizontal(|ui| {
+            for x in [&mut sky.x, &mut sky.y, &mut sky.z] {
+                ui.add(DragValue::new(x).range(0.0..=1e6).speed(0.01));
+            }
+            ui.label("sky radiance").on_hover_text("Linear RGB, W/(m² sr)");
+        });
+        for (i, light) in lights.iter_mut().enumerate() {
+            let name = if light.name.is_empty() { format!("light {}", i + 1) } else { light.name.clone() };
+            egui::CollapsingHeader::new(name).id_salt(("light", i)).default_open(i < 3).show(ui, |ui| one(ui, light));
+        }
+        let own = (scene.lights.clone(), scene.sky);
+        let differs = (&lights, sky) != (&own.0, own.1);
+        if ui.add_enabled(differs, egui::Button::new("reset lights")).clicked() {
+            self.wish.lights = None;
+        } else {
+            self.wish.lights = differs.then_some((lights, sky));
+        }
+    }
+}
+
+fn one(ui: &mut Ui, light: &mut Light) {
+    ui.horizontal(|ui| {
+        for x in [&mut light.color.x, &mut light.color.y, &mut light.color.z] {
+            ui.add(DragValue::new(x).range(0.0..=1e7).speed(0.02));
+        }
+        ui.label(match light.kind {
+            LightKind::Directional => "irradiance",
+            _ => "intensity",
+        })
+        .on_hover_text("Linear RGB; W/m² on a facing surface for a sun, W/sr for lamps");
+    });
+    if !matches!(light.kind, LightKind::Directional) {
+        metres(ui, "position, m", &mut light.position);
+    }
+    if !matches!(light.kind, LightKind::Point) {
+        // As angles: easier to set than three numbers of a unit vector.
+        let d = light.direction;
+        let (mut azimuth, mut elevation) = (d.z.atan2(d.x).to_degrees(), (-d.y).clamp(-1.0, 1.0).asin().to_degrees());
+        let before = (azimuth, elevation);
+        ui.add(egui::Slider::new(&mut azimuth, -180.0..=180.0).suffix(" deg").text("azimuth"));
+        ui.add(egui::Slider::new(&mut elevation, -90.0..=90.0).suffix(" deg").text("elevation"));
+        if (azimuth, elevation) != before {
+            let (a, e) = (azimuth.to_radians(), elevation.to_radians());
+            light.direction = Vec3::new(e.cos() * a.cos(), -e.sin(), e.cos() * a.sin());
+        }
+    }
+    if let LightKind::Spot { inner, outer } = &mut light.kind {
+        let (mut i, mut o) = (inner.to_degrees(), outer.to_degrees());
+        let before = (i, o);
+        ui.add(egui::Slider::new(&mut i, 0.0..=89.0).suffix(" deg").text("inner"));
+        ui.add(egui::Slider::new(&mut o, 1.0..=89.0).suffix(" deg").text("outer"));
+        if (i, o) != before {
+            (*inner, *outer) = (i.min(o).to_radians(), o.to_radians());
+        }
+    }
+}

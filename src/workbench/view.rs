@@ -1,0 +1,170 @@
+//! The picture in the middle: A, B, or both, and what the mouse does there.
+
+use super::compare::{MODES, Mode};
+use super::motion;
+use super::{COMPARISON, Workbench};
+use egui::{Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
+
+/// State of the middle.
+pub struct View {
+    /// How A and B are shown.
+    pub mode: Mode,
+    /// Where the line between A and B stands, 0 to 1.
+    pub split: f32,
+    /// Whether B is shown when flipping.
+    pub flipped: bool,
+    /// Multiplies the absolute difference.
+    pub gain: u32,
+    /// Mouse.
+    pub steering: motion::Mode,
+    /// Speed of keys, 1 crosses the scene in ten seconds.
+    pub speed: f32,
+    dragging_split: bool,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        View {
+            mode: Mode::Split,
+            split: 0.5,
+            flipped: false,
+            gain: 8,
+            steering: motion::Mode::Orbit,
+            speed: 1.0,
+            dragging_split: false,
+        }
+    }
+}
+
+const WHOLE: Rect = Rect { min: Pos2::ZERO, max: Pos2 { x: 1.0, y: 1.0 } };
+
+/// The largest rectangle of the picture's shape, never enlarged by less than whole pixels when it is small.
+pub fn fit(area: Rect, size: [u32; 2], scale: f32) -> Rect {
+    let size = Vec2::new(size[0].max(1) as f32, size[1].max(1) as f32) / scale;
+    let factor = (area.width() / size.x).min(area.height() / size.y);
+    let factor = if factor >= 1.0 { factor.floor().min(16.0) } else { factor };
+    Rect::from_center_size(area.center(), size * factor)
+}
+
+impl Workbench {
+    /// The mode of comparison and its controls.
+    pub(super) fn compare_bar(&mut self, ui: &mut Ui) {
+        for (mode, name) in MODES {
+            ui.selectable_value(&mut self.view.mode, mode, name);
+        }
+        match self.view.mode {
+            Mode::Flip => {
+                let name = if self.view.flipped { "showing B (press X)" } else { "showing A (press X)" };
+                if ui.button(name).clicked() {
+                    self.view.flipped = !self.view.flipped;
+                }
+            }
+            Mode::Difference => {
+                ui.add(egui::DragValue::new(&mut self.view.gain).range(1..=255).prefix("x "));
+            }
+            _ => {}
+        }
+        if let Some(text) = self.comparison_text() {
+            ui.label(text);
+        }
+    }
+
+    /// Shows the picture and steers the camera.
+    pub(super) fn picture(&mut self, ui: &mut Ui, textures: &[TextureId]) {
+        let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
+        let area = response.rect;
+        let scale = ui.ctx().pixels_per_point();
+        self.area = [(area.width() * scale) as u32, (area.height() * scale) as u32];
+        painter.rect_filled(area, 0.0, Color32::from_gray(12));
+        let Some(a) = self.slots[0].picture.as_ref().map(|p| p.size) else {
+            painter.text(
+                area.center(),
+                egui::Align2::CENTER_CENTER,
+                self.waiting_text(),
+                egui::FontId::proportional(16.0),
+                Color32::GRAY,
+            );
+            return;
+        };
+        let both = self.wish.slots[1].is_some() && self.slots[1].picture.is_some();
+        let mut shown = fit(area, a, scale);
+        let draw = |number: usize, rect: Rect, clip: Rect| {
+            painter.with_clip_rect(clip.intersect(area)).image(textures[number], rect, WHOLE, Color32::WHITE);
+        };
+        match self.view.mode {
+            _ if !both => draw(0, shown, area),
+            Mode::Split => {
+                let x = shown.left() + shown.width() * self.view.split;
+                draw(0, shown, Rect::from_min_max(area.min, Pos2::new(x, area.max.y)));
+                draw(1, shown, Rect::from_min_max(Pos2::new(x, area.min.y), area.max));
+                painter.vline(x, shown.y_range(), Stroke::new(1.5, Color32::WHITE));
+                badge(&painter, Pos2::new(x - 14.0, shown.top() + 10.0), "A");
+                badge(&painter, Pos2::new(x + 14.0, shown.top() + 10.0), "B");
+            }
+            Mode::Flip => {
+                draw(usize::from(self.view.flipped), shown, area);
+                let name = if self.view.flipped { "B" } else { "A" };
+                badge(&painter, shown.left_top() + Vec2::new(14.0, 10.0), name);
+            }
+            Mode::Side => {
+                let (left, right) = area.split_left_right_at_fraction(0.5);
+                shown = fit(left, a, scale);
+                draw(0, shown, left);
+                draw(1, fit(right, a, scale), right);
+                badge(&painter, shown.left_top() + Vec2::new(14.0, 10.0), "A");
+                badge(&painter, fit(right, a, scale).left_top() + Vec2::new(14.0, 10.0), "B");
+            }
+            Mode::Difference | Mode::Perceived => {
+                if self.comparison.is_some() {
+                    draw(COMPARISON, shown, area);
+                } else {
+                    draw(0, shown, area);
+                }
+            }
+        }
+        if self.stale() {
+            painter.rect_stroke(shown, 0.0, Stroke::new(2.0, Color32::from_rgb(220, 80, 60)), egui::StrokeKind::Inside);
+        }
+        self.mouse(ui, &response, shown, a, both);
+    }
+
+    fn mouse(&mut self, ui: &Ui, response: &egui::Response, shown: Rect, size: [u32; 2], both: bool) {
+        let splitting = both && self.view.mode == Mode::Split;
+        let line = shown.left() + shown.width() * self.view.split;
+        let pointer = response.interact_pointer_pos().or(response.hover_pos());
+        let near = splitting && pointer.is_some_and(|p| (p.x - line).abs() < 6.0);
+        if near || self.view.dragging_split {
+            ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);
+        }
+        if response.drag_started() {
+            let from = ui.input(|i| i.pointer.press_origin());
+            self.view.dragging_split = splitting && from.is_some_and(|p| (p.x - line).abs() < 8.0);
+        }
+        if response.drag_stopped() {
+            self.view.dragging_split = false;
+        }
+        if self.view.dragging_split {
+            if let Some(p) = pointer {
+                self.view.split = ((p.x - shown.left()) / shown.width().max(1.0)).clamp(0.0, 1.0);
+            }
+            return;
+        }
+        if response.clicked()
+            && let Some(p) = response.interact_pointer_pos().filter(|p| shown.contains(*p))
+        {
+            let at = (p - shown.min) / shown.size() * Vec2::new(size[0] as f32, size[1] as f32);
+            self.point_at(Some(at));
+        }
+        if let (Some(camera), Some(scene)) = (&mut self.wish.camera, &self.scene) {
+            let (low, high) = scene.bounds();
+            let diagonal = (high - low).length().max(1e-3);
+            motion::steer(ui, response, camera, self.view.steering, diagonal, self.view.speed);
+        }
+    }
+}
+
+fn badge(painter: &egui::Painter, at: Pos2, text: &str) {
+    let rect = Rect::from_center_size(at, Vec2::splat(16.0));
+    painter.rect_filled(rect, 3.0, Color32::from_black_alpha(160));
+    painter.text(at, egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(12.0), Color32::WHITE);
+}
