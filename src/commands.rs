@@ -103,6 +103,7 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
     let scene = crate::scene::Scene::open(name, &|what, part| {
         bar.set_message(what.to_string());
         bar.set_position((part.clamp(0.0, 1.0) * 1000.0) as u64);
+        std::ops::ControlFlow::Continue(())
     });
     bar.finish_and_clear();
     let scene = scene?;

@@ -320,13 +320,14 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
         command.args([
             "check",
             "passes/vct.ron",
+            "passes/preview.ron",
             "configs/default.ron",
             "configs/thesis.ron",
             "configs/scenes/workshop.ron",
         ]);
         command
     };
-    assert_eq!(succeeds(&mut files()), "checked 4 files, 0 errors\n");
+    assert_eq!(succeeds(&mut files()), "checked 5 files, 0 errors\n");
 
     let out = Out::new();
     for folder in ["passes", "shaders", "configs"] {
@@ -345,7 +346,7 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
     assert_snapshot!(out.tidy(&String::from_utf8_lossy(&output.stdout)), @r#"
     configs/thesis.ron:9:9: error: 'voxel_dim': 8 is outside 16 to 512
         |         "voxel_dim": 8,
-    checked 4 files, 1 errors
+    checked 5 files, 1 errors
     "#);
     edit("shaders/include/cone.glsl", "vec4", "vec5");
     let output = command.output().unwrap();

@@ -174,7 +174,7 @@ impl Bench {
             LabError::Input(list) => list,
             other => panic!("{other}"),
         })?;
-        let scene = Scene::open(&experiment.scene, &|_, _| {}).unwrap();
+        let scene = Scene::open(&experiment.scene, &|_, _| std::ops::ControlFlow::Continue(())).unwrap();
         let env = environment(&scene, experiment.size);
         let wanted = graph.output.iter().chain(&graph.outputs).cloned().collect();
         let input = PlanInput { params: &params, env, wanted, device: &self.device };

@@ -5,7 +5,9 @@ mod common;
 
 use common::{assert_clean, experiment, floats, lab, mean, prepare, root, scene};
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
-use conelab::lab::{Lab, LabError, Session};
+use conelab::graph::plan::{PlanInput, plan};
+use conelab::lab::{Lab, LabError, Session, environment};
+use conelab::vulkan::{DeviceInfo, Features};
 use glam::Vec3;
 use std::collections::BTreeSet;
 
@@ -356,4 +358,22 @@ fn the_thesis_preset_renders() {
         println!("thesis preset: mean {name} {:.4}", mean(&texels));
         assert_picture(&texels, name);
     }
+}
+
+#[test]
+fn the_preview_shows_every_scene_on_the_plainest_device() {
+    let lab = lab(root());
+    for (name, _) in conelab::scene::builtin::list() {
+        let mut experiment = experiment(name, (64, 48), &[]);
+        experiment.graph = "preview.ron".into();
+        let mut session = frames(&lab, &experiment, &["display"], 1);
+        assert_picture(&floats(&mut session, "display", 0), name);
+    }
+    let (graph, linked, warnings) = lab.home.graph("preview.ron").unwrap();
+    assert_eq!(warnings, []);
+    let params = graph.params.clone();
+    let device = DeviceInfo::imaginary(Features::default());
+    let env = environment(&scene("cornell"), (64, 48));
+    let input = PlanInput { params: &params, env, wanted: vec!["display".into()], device: &device };
+    plan(&graph, &linked, &input).unwrap();
 }

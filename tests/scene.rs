@@ -1,7 +1,10 @@
 //! Scenes: every format loads, every kind of bad input is told as such, nothing is lost on the way.
 
+use std::cell::Cell;
 use std::collections::HashMap;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use conelab::scene::{LightKind, Scene, SceneError, TextureFormat, builtin};
 use glam::{DVec3, Mat4, Vec3};
@@ -11,7 +14,35 @@ use tempfile::TempDir;
 const QUAD: &str = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
 
 fn open(spec: impl AsRef<Path>) -> Result<Scene, SceneError> {
-    Scene::open(&spec.as_ref().to_string_lossy(), &|_, _| {})
+    Scene::open(&spec.as_ref().to_string_lossy(), &|_, _| ControlFlow::Continue(()))
+}
+
+#[test]
+fn opening_ends_when_it_is_told_to() {
+    let folder = folder();
+    let atrium = open("atrium").unwrap();
+    for model in ["atrium.glb", "atrium.obj"] {
+        atrium.export(&folder.path().join(model)).unwrap();
+    }
+    let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    for spec in [path("atrium.glb"), path("atrium.obj"), "atrium".into()] {
+        // Before anything, and in the middle of it: they take several times the 20 ms between calls.
+        for calls in [1, 2, 3] {
+            let (count, told) = (Cell::new(0), Cell::new(None));
+            let result = Scene::open(&spec, &|what, done| {
+                assert!(!what.is_empty() && (0.0..=1.0).contains(&done), "{what} {done}");
+                count.set(count.get() + 1);
+                if count.get() < calls {
+                    return ControlFlow::Continue(());
+                }
+                told.set(Some(Instant::now()));
+                ControlFlow::Break(())
+            });
+            assert!(matches!(result, Err(SceneError::Cancelled)), "{spec}, call {calls}");
+            assert_eq!(count.get(), calls, "{spec}: asked again after the end");
+            assert!(told.get().unwrap().elapsed().as_millis() < 500, "{spec}, call {calls}");
+        }
+    }
 }
 
 fn write(folder: &TempDir, name: &str, content: impl AsRef<[u8]>) -> PathBuf {

@@ -1,6 +1,7 @@
 // Voxel cone tracing (thesis, Section 4.5.2 and Listing 4.1). The march runs in world space with lengths
 // in local level-0 cells, so it is the same under every warp. With opacity "stored", step "radius" and no
-// clearance it is the thesis's listing to the letter.
+// clearance it is the thesis's listing to the letter. With CONE_RECORD defined, recordSample is called for
+// each sample.
 #ifndef CONE_GLSL
 #define CONE_GLSL
 #include "volume.glsl"
@@ -70,12 +71,18 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
             else a = remaining * texel.a;
             color += texel.rgb * (a / texel.a);
             alpha += a;
+#ifdef CONE_RECORD
+            recordSample(i, p, s, ds, radius, lod, cell, texel, a, 1.0 - alpha);
+#endif
             if (1.0 - alpha < params.stop_transmittance) {
                 // What is left would hit something too: spread it over what was hit.
                 if (params.cone_renormalize) return vec4(color / alpha, 1.0);
                 break;
             }
         }
+#ifdef CONE_RECORD
+        else recordSample(i, p, s, ds, radius, lod, cell, texel, 0.0, 1.0 - alpha);
+#endif
         if (outside) break;
         s += ds;
     }

@@ -6,6 +6,7 @@ use crate::graph::source::{Severity, Sources};
 use crate::lab::{Home, LabError, params_of};
 use crate::scene::SceneError;
 use clap::Args;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `check`.
@@ -85,7 +86,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
             },
             FileKind::Experiment => check_experiment(&home, file),
             FileKind::Scene => {
-                match crate::scene::Scene::open(&name, &|_, _| {}) {
+                match crate::scene::Scene::open(&name, &|_, _| ControlFlow::Continue(())) {
                     // Models are no part of the program; asked for by name, they must be there.
                     Err(SceneError::SceneFile { message, .. }) if all && message.starts_with("model file") => {
                         say!("{name}: not checked: {message}");

@@ -18,7 +18,7 @@ use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::successor::Parts;
 use crate::scene::{Camera, Scene, SceneError};
 use crate::shader::ShaderCompiler;
-use crate::vulkan::{DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
+use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -151,6 +151,7 @@ pub struct Session {
     /// The scene.
     pub scene: Arc<Scene>,
     scene_gpu: SceneGpu,
+    light_updates: Vec<(Arc<Buffer>, Vec<u8>)>,
     viewpoint: Viewpoint,
     size: (u32, u32),
     time: f64,
@@ -230,6 +231,7 @@ impl Lab {
             program,
             scene,
             scene_gpu,
+            light_updates: Vec::new(),
             viewpoint,
             size: experiment.size,
             time: experiment.time,
@@ -390,6 +392,7 @@ impl Session {
     /// The device was lost.
     pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
         let mut updates = self.scene_gpu.updates(&self.scene, self.time, self.frame == 0);
+        updates.append(&mut self.light_updates);
         let camera = self.viewpoint.uniform(self.size, self.time, self.frame, delta);
         updates.push((self.scene_gpu.camera.clone(), camera));
         if !self.sent_params {
@@ -399,6 +402,19 @@ impl Session {
         self.frame += 1;
         self.time += delta;
         Ok(self.program.run(&updates)?)
+    }
+
+    /// Takes lights and sky from a scene that differs from the session's in these alone, from the next frame on. False,
+    /// and nothing changes, when it has another number of lights or shadow maps: that needs a new session.
+    #[must_use]
+    pub fn set_scene_lights(&mut self, scene: Arc<Scene>) -> bool {
+        let counts = |s: &Scene| (s.lights.len(), view::shadow_view_count(s));
+        if counts(&scene) != counts(&self.scene) {
+            return false;
+        }
+        self.light_updates = self.scene_gpu.set_lights(&scene);
+        self.scene = scene;
+        true
     }
 
     /// Waits for all frames.

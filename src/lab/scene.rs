@@ -67,6 +67,7 @@ pub struct SceneGpu {
     pub camera: Arc<Buffer>,
     /// Bytes of geometry and textures.
     pub bytes: u64,
+    info: SceneInfoBlock,
     instances: Arc<Buffer>,
     sent: Vec<InstanceBlock>,
 }
@@ -89,8 +90,8 @@ impl SceneGpu {
         // One command (VkDrawIndexedIndirectCommand) a draw; the instance number tells the shaders which.
         let commands: Vec<[u32; 5]> =
             (0u32..).zip(&draws).map(|(i, d)| [d.index_count, 1, d.first_index, 0, i]).collect();
-        let (light_blocks, shadow_blocks) = lights(scene);
         let (low, high) = scene.bounds();
+        let (light_blocks, shadow_blocks) = lights(&scene.lights, (low, high));
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let info = SceneInfoBlock {
             bounds_min: low.to_array(),
@@ -163,6 +164,7 @@ impl SceneGpu {
             },
             camera,
             bytes,
+            info,
             instances,
             sent: instance_blocks,
         })
@@ -195,6 +197,21 @@ impl SceneGpu {
         }
         self.sent = now;
         vec![(self.instances.clone(), bytemuck::cast_slice(&self.sent).to_vec())]
+    }
+
+    /// Buffers that change with colours, directions, positions and cone angles of the lights, and with the sky. The
+    /// scene has as many lights and shadow maps as the one that was uploaded, and its geometry.
+    pub fn set_lights(&mut self, scene: &Scene) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+        let bounds = (self.info.bounds_min.into(), self.info.bounds_max.into());
+        let (light_blocks, shadow_blocks) = lights(&scene.lights, bounds);
+        self.info.sky = scene.sky.to_array();
+        let contents: [(&str, &[u8]); 3] = [
+            ("lights", bytemuck::cast_slice(&light_blocks)),
+            ("shadowViews", bytemuck::cast_slice(&shadow_blocks)),
+            ("sceneInfo", bytemuck::bytes_of(&self.info)),
+        ];
+        let buffer = |name: &str| self.resources.buffers.get(name).cloned();
+        contents.iter().filter_map(|(name, bytes)| Some((buffer(name)?, bytes.to_vec()))).collect()
     }
 }
 

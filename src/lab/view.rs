@@ -1,7 +1,7 @@
 //! Cameras and shadow views as the shaders see them.
 
 use crate::experiment::PlacedCamera;
-use crate::scene::{Camera, LightKind, Scene};
+use crate::scene::{Camera, Light, LightKind, Scene};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 
@@ -130,11 +130,10 @@ pub(super) struct ShadowBlock {
     light: u32,
 }
 
-/// The scene's lights and the views of their shadow maps.
-pub(super) fn lights(scene: &Scene) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
+/// Lights of a scene with these bounds, and the views of their shadow maps.
+pub(super) fn lights(lights: &[Light], bounds: (Vec3, Vec3)) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
     let (mut blocks, mut views) = (Vec::new(), Vec::new());
-    let bounds = scene.bounds();
-    for (number, light) in (0u32..).zip(&scene.lights) {
+    for (number, light) in (0u32..).zip(lights) {
         let first = i32::try_from(views.len()).unwrap_or(i32::MAX);
         let (kind, inner, outer) = match light.kind {
             LightKind::Directional => (0, 0.0, 0.0),
@@ -159,7 +158,7 @@ pub(super) fn lights(scene: &Scene) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
     (blocks, views)
 }
 
-fn shadow_views(light: &crate::scene::Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<ShadowBlock> {
+fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<ShadowBlock> {
     let corners: [Vec3; 8] = std::array::from_fn(|i| {
         Vec3::new(
             if i & 1 == 0 { low.x } else { high.x },

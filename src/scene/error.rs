@@ -11,6 +11,9 @@ pub enum SceneError {
     /// A file could not be read.
     #[error("cannot read {}: {source}. {hint}", path.display())]
     Read { path: PathBuf, hint: String, source: std::io::Error },
+    /// The callback of the opening said so.
+    #[error("the opening of the scene was cancelled")]
+    Cancelled,
     /// A model file is not what its name says, or is damaged.
     #[error("cannot load the model {}: {message}", path.display())]
     Model { path: PathBuf, message: String },

@@ -12,6 +12,7 @@ mod gltf;
 mod mesh;
 mod obj;
 mod open;
+mod progress;
 mod resample;
 mod shuffle;
 mod split;

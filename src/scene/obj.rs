@@ -7,39 +7,39 @@ use std::path::{Path, PathBuf};
 use glam::{Mat4, Vec3};
 
 use super::mesh::{RawMesh, prepare_all};
+use super::progress::Progress;
 use super::texture::{Recipe, Requests, Source};
 use super::{Instance, Material, Mesh, Part, Scene, SceneError, Vertex};
 
 /// Geometry, materials and textures of an OBJ file; no lights, cameras or sky.
-pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
+pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let fail = |message: String| SceneError::Model { path: path.into(), message };
-    progress("reading", 0.0);
+    progress.step("reading", 0.0)?;
     let text = read_text(path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let warnings = RefCell::new(Vec::new());
     let lines_read = Cell::new(0);
-    let mut reader = CountLines { inner: Cursor::new(text.as_bytes()), lines: &lines_read };
+    let mut reader = CountLines { inner: Cursor::new(text.as_bytes()), lines: &lines_read, progress };
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let load_mtl = |name: &Path| Ok(load_mtl(folder, name, &warnings));
     let (models, materials) = tobj::load_obj_buf(&mut reader, &options, load_mtl)
         .map_err(|error| fail(format!("{error} at or before line {}. Export it again", lines_read.get())))?;
     let mut warnings = warnings.into_inner();
 
-    progress("materials", 0.4);
+    progress.step("materials", 0.4)?;
     let mut requests = Requests::default();
     let mut materials: Vec<Material> =
         materials.unwrap_or_default().iter().map(|m| material(m, folder, &mut requests)).collect();
     if models.iter().any(|model| model.mesh.material_id.is_none()) {
         materials.push(Material { two_sided: true, ..Material::default() });
     }
-    progress("meshes", 0.5);
-    let raw = merge_objects(models, materials.len().saturating_sub(1) as u32).map_err(fail)?;
-    let (meshes, dropped) = prepare_all(raw, &materials).map_err(fail)?;
+    progress.step("meshes", 0.5)?;
+    let raw = merge_objects(models, materials.len().saturating_sub(1) as u32, progress).map_err(fail)?;
+    let (meshes, dropped) = prepare_all(raw, &materials, progress).map_err(fail)?;
     warnings.extend(dropped.warning(&path.display().to_string()));
-    progress("textures", 0.7);
-    let (textures, texture_warnings) = requests.load();
+    progress.step("textures", 0.7)?;
+    let (textures, texture_warnings) = requests.load(progress)?;
     warnings.extend(texture_warnings);
-    progress("done", 1.0);
 
     let meshes: Vec<Mesh> = meshes.into_iter().filter(|mesh| !mesh.parts.is_empty()).collect();
     let instances = meshes.iter().enumerate().map(|(i, mesh)| Instance {
@@ -97,9 +97,12 @@ impl<M, T, E> Parts for Result<(Vec<T>, M), E> {
 }
 
 /// Joins the pieces that tobj cuts at each `usemtl` into one mesh per object.
-fn merge_objects(models: Vec<tobj::Model>, default_material: u32) -> Result<Vec<RawMesh>, String> {
+fn merge_objects(models: Vec<tobj::Model>, default_material: u32, progress: Progress) -> Result<Vec<RawMesh>, String> {
     let mut meshes: Vec<RawMesh> = Vec::new();
     for tobj::Model { mesh: piece, name } in models {
+        if progress.stopped() {
+            return Err(String::new());
+        }
         let has_normals = !piece.normals.is_empty();
         let fits = |raw: &RawMesh| raw.mesh.name == name && raw.has_normals == has_normals;
         if !meshes.last().is_some_and(fits) {
@@ -209,10 +212,11 @@ fn texture_file(value: &str) -> PathBuf {
     PathBuf::from(rest.replace('\\', "/"))
 }
 
-/// A reader that knows how many lines it gave, for error messages.
+/// A reader that knows how many lines it gave, for error messages, and fails when nobody waits for more.
 struct CountLines<'a, R> {
     inner: R,
     lines: &'a Cell<usize>,
+    progress: Progress<'a>,
 }
 
 impl<R: Read> Read for CountLines<'_, R> {
@@ -229,6 +233,9 @@ impl<R: BufRead> BufRead for CountLines<'_, R> {
         self.inner.consume(amount);
     }
     fn read_line(&mut self, line: &mut String) -> std::io::Result<usize> {
+        if self.progress.stopped() {
+            return Err(std::io::ErrorKind::Other.into());
+        }
         let read = self.inner.read_line(line)?;
         self.lines.set(self.lines.get() + usize::from(read > 0));
         Ok(read)

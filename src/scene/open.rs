@@ -1,43 +1,78 @@
 //! Opening a scene by whatever names it: a built-in, a scene file or a model file.
 
+use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
 
+use super::progress::{Progress, Watch};
 use super::{Scene, SceneError, builtin, defaults, file, gltf, obj};
+
+/// How often the callback is asked while a scene loads.
+const ASK: Duration = Duration::from_millis(20);
 
 impl Scene {
     /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb).
     ///
     /// A model without lights gets a sun and a sky, one without cameras a camera `default`. `progress` is told
-    /// what is being done and the share done, 0 to 1.
-    pub fn open(spec: &str, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
-        if let Some(build) = builtin::find(spec) {
-            progress(spec, 0.0);
-            let scene = build();
-            progress(spec, 1.0);
-            return Ok(scene);
+    /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
+    /// answers `Break`, the opening ends at once with [`SceneError::Cancelled`].
+    pub fn open(spec: &str, progress: &dyn Fn(&str, f32) -> ControlFlow<()>) -> Result<Scene, SceneError> {
+        // Decoders and parsers cannot be interrupted. They run beside; once cancelled, the step that is under way
+        // ends unheard and the next one does not begin.
+        let watch = Arc::new(Watch::default());
+        let (send, result) = mpsc::channel();
+        let worker = std::thread::spawn({
+            let (spec, watch) = (spec.to_owned(), watch.clone());
+            move || drop(send.send(load(&spec, Progress::new(&watch))))
+        });
+        let (mut what, mut done) = (spec.to_owned(), 0.0);
+        loop {
+            if progress(&what, done).is_break() {
+                watch.stop();
+                return Err(SceneError::Cancelled);
+            }
+            match result.recv_timeout(ASK) {
+                Ok(loaded) => return loaded,
+                Err(mpsc::RecvTimeoutError::Timeout) => (what, done) = watch.now(),
+                Err(mpsc::RecvTimeoutError::Disconnected) => break,
+            }
         }
-        let path = Path::new(spec);
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
-            return file::load(path, progress);
+        // It ended without an answer.
+        match worker.join() {
+            Err(panic) => std::panic::resume_unwind(panic),
+            Ok(()) => Err(SceneError::Cancelled),
         }
-        if path.extension().is_none() && !path.exists() {
-            return Err(SceneError::NotFound { spec: spec.into(), hint: builtin::hint(spec) });
-        }
-        let mut scene = load_model(path, progress)?;
-        if scene.lights.is_empty() {
-            scene.lights.push(defaults::sun());
-        }
-        scene.sky = defaults::SKY;
-        if !scene.cameras.contains_key("default") {
-            let camera = defaults::camera(&scene);
-            scene.cameras.shift_insert(0, "default".into(), camera);
-        }
-        Ok(scene)
     }
 }
 
+/// A scene by whatever names it.
+fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
+    if let Some(build) = builtin::find(spec) {
+        progress.step(spec, 0.0)?;
+        return Ok(build());
+    }
+    let path = Path::new(spec);
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
+        return file::load(path, progress);
+    }
+    if path.extension().is_none() && !path.exists() {
+        return Err(SceneError::NotFound { spec: spec.into(), hint: builtin::hint(spec) });
+    }
+    let mut scene = load_model(path, progress)?;
+    if scene.lights.is_empty() {
+        scene.lights.push(defaults::sun());
+    }
+    scene.sky = defaults::SKY;
+    if !scene.cameras.contains_key("default") {
+        let camera = defaults::camera(&scene);
+        scene.cameras.shift_insert(0, "default".into(), camera);
+    }
+    Ok(scene)
+}
+
 /// A model with what its file says and no more.
-pub(super) fn load_model(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
+pub(super) fn load_model(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let mut scene = match extension.as_str() {
         "obj" => obj::load(path, progress)?,
@@ -49,4 +84,34 @@ pub(super) fn load_model(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Sc
     };
     scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(scene)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fmt::Write;
+    use std::time::Instant;
+
+    #[test]
+    fn work_that_nobody_waits_for_ends_early() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large.obj");
+        let mut text = String::new();
+        for i in 0..700_000 {
+            let _ = writeln!(text, "v {} {} {}\nf -1 -2 -3", i % 100, i % 7, i / 100);
+        }
+        std::fs::write(&path, text).unwrap();
+        let spec = path.to_string_lossy().into_owned();
+        let watch = Watch::default();
+        std::thread::scope(|scope| {
+            let worker = scope.spawn(|| load(&spec, Progress::new(&watch)));
+            std::thread::sleep(Duration::from_millis(150));
+            assert!(!worker.is_finished(), "the model is too small for this test");
+            assert_eq!(watch.now().0, "reading");
+            watch.stop();
+            let stopped = Instant::now();
+            assert!(worker.join().unwrap().is_err());
+            assert!(stopped.elapsed() < Duration::from_millis(500), "{:?}", stopped.elapsed());
+        });
+    }
 }

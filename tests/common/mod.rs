@@ -63,7 +63,7 @@ pub fn lab(home: &Path) -> Lab {
 
 /// A built-in scene.
 pub fn scene(name: &str) -> Arc<Scene> {
-    Arc::new(Scene::open(name, &|_, _| {}).unwrap())
+    Arc::new(Scene::open(name, &|_, _| std::ops::ControlFlow::Continue(())).unwrap())
 }
 
 /// An experiment of the repository's method: scene, size and what differs from the defaults.

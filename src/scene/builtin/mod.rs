@@ -13,6 +13,7 @@ mod white_sky;
 use glam::{Mat4, Vec3};
 
 use super::mesh::{RawMesh, prepare_all};
+use super::progress::{Progress, Watch};
 use super::{Camera, Instance, Material, Mesh, Scene, defaults};
 
 type Build = fn() -> Scene;
@@ -52,7 +53,8 @@ pub(super) fn hint(name: &str) -> String {
 /// A scene of meshes at rest, one instance each. Panics on a mistake in a built-in's code.
 fn assemble(name: &str, materials: Vec<Material>, meshes: Vec<Mesh>) -> Scene {
     let raw = meshes.into_iter().map(|mesh| RawMesh { mesh, has_normals: true, has_tangents: false }).collect();
-    let (meshes, _) = prepare_all(raw, &materials).expect("built-in meshes are valid");
+    let watch = Watch::default();
+    let (meshes, _) = prepare_all(raw, &materials, Progress::new(&watch)).expect("built-in meshes are valid");
     let instances = meshes.iter().enumerate().map(|(i, mesh)| Instance {
         name: mesh.name.clone(),
         mesh: i as u32,

@@ -5,11 +5,12 @@ mod format;
 
 use std::path::{Path, PathBuf};
 
+use super::progress::Progress;
 use super::{Scene, SceneError, builtin, defaults, open};
 use format::{ModelEntry, SceneFile};
 
 /// Opens a scene file and everything that it names.
-pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
+pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let text = std::fs::read_to_string(path).map_err(|source| SceneError::Read {
         path: path.into(),
         hint: "Check the path; scene files are UTF-8 text".into(),
@@ -20,9 +21,7 @@ pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, S
     let mut scene = Scene { name: file.name.clone().unwrap_or(name), ..Scene::default() };
     let mut sky = None;
     for (i, entry) in file.models.iter().enumerate() {
-        let model = load_model(entry, path, &text, &|what, done| {
-            progress(what, (i as f32 + done) / file.models.len() as f32);
-        })?;
+        let model = load_model(entry, path, &text, progress.share(i, file.models.len()))?;
         sky = sky.or(Some(model.sky));
         compose::add(&mut scene, model, entry);
     }
@@ -42,13 +41,9 @@ pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, S
     Ok(scene)
 }
 
-fn load_model(
-    entry: &ModelEntry,
-    scene_file: &Path,
-    text: &str,
-    progress: &dyn Fn(&str, f32),
-) -> Result<Scene, SceneError> {
+fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progress) -> Result<Scene, SceneError> {
     if let Some(build) = entry.builtin.as_deref().and_then(builtin::find) {
+        progress.step(entry.builtin.as_deref().unwrap_or_default(), 0.0)?;
         return Ok(build());
     }
     let file = entry.file.as_deref().unwrap_or_default();

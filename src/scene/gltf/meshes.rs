@@ -7,6 +7,7 @@ use glam::Vec2;
 use super::accessors;
 use super::materials::UvSource;
 use crate::scene::mesh::{Dropped, RawMesh, prepare_all};
+use crate::scene::progress::Progress;
 use crate::scene::{Material, Mesh, Part, Vertex};
 
 /// One mesh per mesh of the file, in order.
@@ -16,6 +17,7 @@ pub(super) fn read(
     materials: &[Material],
     uv_sources: &[UvSource],
     warnings: &mut Vec<String>,
+    progress: Progress,
 ) -> Result<(Vec<Mesh>, Dropped), String> {
     let mut owners = Vec::new();
     let mut primitives = Vec::new();
@@ -23,6 +25,9 @@ pub(super) fn read(
     for mesh in document.meshes() {
         let name = mesh.name().map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
         for primitive in mesh.primitives() {
+            if progress.stopped() {
+                return Err(String::new());
+            }
             let default = document.materials().len();
             let material = primitive.material().index().unwrap_or(default);
             let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
@@ -38,7 +43,7 @@ pub(super) fn read(
         }
         meshes.push(Mesh { name, ..Mesh::default() });
     }
-    let (prepared, dropped) = prepare_all(primitives, materials)?;
+    let (prepared, dropped) = prepare_all(primitives, materials, progress)?;
     for (owner, primitive) in owners.into_iter().zip(prepared) {
         append(&mut meshes[owner], primitive)?;
     }

@@ -14,12 +14,13 @@ use std::path::Path;
 
 use ::gltf::json;
 
+use super::progress::Progress;
 use super::{Scene, SceneError};
 
 /// Geometry, materials, textures, lights and cameras of a glTF file; no sky.
-pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, SceneError> {
+pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let fail = |message: String| SceneError::Model { path: path.into(), message };
-    progress("reading", 0.0);
+    progress.step("reading", 0.0)?;
     let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
         path: path.into(),
         hint: "Check the path and its permissions".into(),
@@ -33,24 +34,24 @@ pub(super) fn load(path: &Path, progress: &dyn Fn(&str, f32)) -> Result<Scene, S
     let document = file.document;
     let buffers = buffers::load(&document, file.blob, folder).map_err(fail)?;
 
-    progress("materials", 0.2);
+    progress.step("materials", 0.2)?;
     let mut warnings = Vec::new();
     let (materials, uv_sources, requests) = materials::read(&document, &buffers, folder, &mut warnings);
-    progress("meshes", 0.3);
-    let (meshes, dropped) = meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings).map_err(fail)?;
-    progress("nodes", 0.6);
+    progress.step("meshes", 0.3)?;
+    let (meshes, dropped) =
+        meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings, progress).map_err(fail)?;
+    progress.step("nodes", 0.6)?;
     let tracks = animation::tracks(&document, &buffers, &mut warnings).map_err(fail)?;
     let mut scene = nodes::place(&document, &tracks, &mut warnings).map_err(fail)?;
     // Warnings so far know only parts of the file; each must name the file itself.
     let name = path.display().to_string();
     scene.warnings = warnings.into_iter().map(|warning| format!("{name}: {warning}")).collect();
     scene.warnings.extend(dropped.warning(&name));
-    progress("textures", 0.7);
-    let (textures, texture_warnings) = requests.load();
+    progress.step("textures", 0.7)?;
+    let (textures, texture_warnings) = requests.load(progress)?;
     scene.warnings.extend(texture_warnings);
     (scene.meshes, scene.materials, scene.textures) = (meshes, materials, textures);
     scene.instances.retain(|instance| !scene.meshes[instance.mesh as usize].parts.is_empty());
-    progress("done", 1.0);
     Ok(scene)
 }
 

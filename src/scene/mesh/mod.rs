@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::progress::Progress;
 use super::{Material, Mesh, Vertex};
 
 /// A mesh as read, before repair.
@@ -39,8 +40,13 @@ impl Dropped {
 }
 
 /// Repairs meshes in parallel. Fails on an index outside of its mesh.
-pub(super) fn prepare_all(raw: Vec<RawMesh>, materials: &[Material]) -> Result<(Vec<Mesh>, Dropped), String> {
-    let prepared: Result<Vec<_>, String> = raw.into_par_iter().map(|raw| prepare(raw, materials)).collect();
+pub(super) fn prepare_all(
+    raw: Vec<RawMesh>,
+    materials: &[Material],
+    progress: Progress,
+) -> Result<(Vec<Mesh>, Dropped), String> {
+    let one = |raw| if progress.stopped() { Err(String::new()) } else { prepare(raw, materials) };
+    let prepared: Result<Vec<_>, String> = raw.into_par_iter().map(one).collect();
     let mut total = Dropped::default();
     let mut meshes = Vec::new();
     for (mesh, dropped) in prepared? {

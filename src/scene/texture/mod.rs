@@ -11,7 +11,8 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
-use super::{Texture, TextureFormat};
+use super::progress::Progress;
+use super::{SceneError, Texture, TextureFormat};
 
 pub(super) use decode::first_level_rgba;
 pub(super) use mips::{Filter, texture_from_rgba};
@@ -67,17 +68,19 @@ impl Requests {
     }
 
     /// Decodes everything. What cannot be decoded becomes a visible stand-in and a warning.
-    pub fn load(self) -> (Vec<Texture>, Vec<String>) {
+    pub fn load(self, progress: Progress) -> Result<(Vec<Texture>, Vec<String>), SceneError> {
         let recipes: Vec<(Recipe, String)> = self.recipes.into_iter().collect();
-        let loaded: Vec<(Texture, Vec<String>)> =
-            recipes.par_iter().map(|(recipe, material)| cook(recipe, material)).collect();
+        let one = |(recipe, material): &(Recipe, String)| {
+            if progress.stopped() { Err(SceneError::Cancelled) } else { Ok(cook(recipe, material)) }
+        };
+        let loaded: Vec<(Texture, Vec<String>)> = recipes.par_iter().map(one).collect::<Result<_, _>>()?;
         let mut textures = Vec::new();
         let mut warnings = Vec::new();
         for (texture, more) in loaded {
             textures.push(texture);
             warnings.extend(more);
         }
-        (textures, warnings)
+        Ok((textures, warnings))
     }
 }
 

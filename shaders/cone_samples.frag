@@ -1,0 +1,15 @@
+#version 460
+// Lines with smooth edges; those behind what is seen are faint.
+
+layout(location = 0) flat in vec4 color;
+layout(location = 1) in float across;
+layout(location = 2) flat in float half_width;
+layout(location = 0) out vec4 display;
+
+uniform sampler2D depth;
+
+void main() {
+    float cover = clamp(half_width + 0.5 - abs(across), 0.0, 1.0);
+    bool behind = gl_FragCoord.z > texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r;
+    display = vec4(color.rgb, color.a * cover * (behind ? 0.25 : 1.0));
+}

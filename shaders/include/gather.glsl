@@ -1,0 +1,89 @@
+// The surface under a fragment of forward.vert, and the light that its cones gather (thesis, Section 4.5.2).
+// With CONE_RECORD defined, recordCone(number) is called before each cone: 0 is the specular one, 1 the
+// diffuse one on the normal, then the ring.
+#ifndef GATHER_GLSL
+#define GATHER_GLSL
+#include "scene.glsl"
+#include "materials.glsl"
+#include "brdf.glsl"
+#include "cone.glsl"
+#include "cone_sets.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 tangent;
+layout(location = 3) in vec2 uv;
+layout(location = 4) flat in uint material;
+
+// The triangle's normal on the viewer's side. Has derivatives: call it before anything returns.
+vec3 faceNormal(vec3 v) {
+    vec3 face = cross(dFdx(position), dFdy(position));
+    face = dot(face, face) > 0.0 ? normalize(face) : normalize(normal);
+    return dot(face, v) < 0.0 ? -face : face;
+}
+
+vec3 shadingNormal(Material m, Gradient g, vec3 face) {
+    vec3 n = normalize(normal);
+    float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
+    if (m.normal_texture != NO_TEXTURE) {
+        vec3 t = tangentNormal(m, uv, g);
+        vec3 x = tangent.xyz - n * dot(n, tangent.xyz);
+        if (dot(x, x) > 1e-12) {
+            x = normalize(x);
+            n = normalize(mat3(x, cross(n, x) * tangent.w, n) * t);
+        }
+    }
+    return n * side;
+}
+
+Surface surfaceAt(Material m, Gradient g, vec3 face) {
+    vec2 rm = roughnessMetallic(m, uv, g);
+    return makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y);
+}
+
+// What a cone contributes: its radiance, the sky where it escaped, and the thesis's occlusion factor.
+vec3 coneRadiance(vec4 cone) {
+    vec3 l = cone.rgb;
+    if (params.cone_sky) l += (1.0 - cone.a) * sceneInfo.sky;
+    return params.multiply_occlusion == MULTIPLY_OCCLUSION_NONE ? l : l * (1.0 - cone.a);
+}
+
+// rgb: mean radiance over the hemisphere, cosine-weighted; a: how open it is.
+vec4 diffuseCone(ConeOrigin o, Surface s, vec3 face) {
+    vec3 n = params.cone_normal == CONE_NORMAL_MAPPED ? s.normal : face;
+    ConeSet set = diffuseCones();
+    mat3 frame = frameOf(n);
+    float turn = 0.0;
+    if (params.cone_rotate) // interleaved gradient noise (Jimenez 2014): trades banding for noise
+        turn = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < set.count; i++) {
+        float angle = 2.0 * PI * (float(i) + turn) / float(set.count - 1);
+        vec3 d = i == 0 ? n : frame * vec3(set.sin_tilt * cos(angle), set.sin_tilt * sin(angle), set.cos_tilt);
+        float weight = i == 0 ? set.axial_weight : (1.0 - set.axial_weight) / float(set.count - 1);
+#ifdef CONE_RECORD
+        recordCone(uint(i) + 1u);
+#endif
+        vec4 cone = traceCone(o, d, set.tan_half, params.diffuse_steps);
+        sum += weight * vec4(coneRadiance(cone), 1.0 - cone.a);
+    }
+    return sum;
+}
+
+// Radiance from the mirror direction.
+vec3 specularCone(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    vec3 d = reflect(-v, s.normal);
+    d = normalize(d + face * max(0.02 - dot(d, face), 0.0)); // mapped normals may reflect into the surface
+    // Half of a GGX lobe lies within 2 atan(alpha) of the mirror direction; the thesis takes 0.1 pi roughness
+    // for the whole aperture.
+    float half_angle = params.specular_aperture == SPECULAR_APERTURE_THESIS ? 0.05 * PI * s.roughness
+                                                                            : min(2.0 * atan(s.roughness * s.roughness), PI / 3.0);
+#ifdef CONE_RECORD
+    recordCone(0u);
+#endif
+    vec3 l = coneRadiance(traceCone(o, d, tan(half_angle), params.specular_steps));
+    if (params.specular_weight == SPECULAR_WEIGHT_PLAIN) return l; // as the thesis adds it
+    return l * environmentBrdf(s.f0, s.roughness, max(dot(s.normal, v), 0.0));
+}
+
+#endif

@@ -1,0 +1,60 @@
+//! Word from the thread that loads a scene to the one that waits for it, and back.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+use super::SceneError;
+
+/// What both threads see.
+#[derive(Debug, Default)]
+pub(super) struct Watch {
+    stopped: AtomicBool,
+    now: Mutex<(String, f32)>,
+}
+
+impl Watch {
+    /// What is being done, and the share done.
+    pub fn now(&self) -> (String, f32) {
+        self.now.lock().map_or_else(|e| e.into_inner().clone(), |now| now.clone())
+    }
+
+    /// Nobody waits for the scene any more.
+    pub fn stop(&self) {
+        self.stopped.store(true, Relaxed);
+    }
+}
+
+/// A share of the work.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Progress<'a> {
+    watch: &'a Watch,
+    from: f32,
+    size: f32,
+}
+
+impl<'a> Progress<'a> {
+    /// All of the work.
+    pub fn new(watch: &'a Watch) -> Progress<'a> {
+        Progress { watch, from: 0.0, size: 1.0 }
+    }
+
+    /// One of `count` equal shares of this one.
+    pub fn share(self, index: usize, count: usize) -> Progress<'a> {
+        let size = self.size / count as f32;
+        Progress { from: self.from + index as f32 * size, size, ..self }
+    }
+
+    /// Says what is begun, and how much is done, 0 to 1. An error when nobody waits any more.
+    pub fn step(self, what: &str, done: f32) -> Result<(), SceneError> {
+        if let Ok(mut now) = self.watch.now.lock() {
+            *now = (what.to_owned(), self.from + done * self.size);
+        }
+        if self.stopped() { Err(SceneError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Whether nobody waits any more. Loops ask it and then end with any error: [`Scene::open`](super::Scene::open)
+    /// knows that it was cancelled.
+    pub fn stopped(self) -> bool {
+        self.watch.stopped.load(Relaxed)
+    }
+}
