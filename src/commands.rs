@@ -16,11 +16,13 @@ macro_rules! say_part {
     }};
 }
 
+mod adapt;
 mod check;
 mod graph;
 mod render;
+mod save;
 
-use crate::lab::LabError;
+use crate::lab::{Lab, LabError};
 use crate::vulkan::{GpuOptions, list_devices};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -37,6 +39,8 @@ pub struct Cli {
 enum Command {
     /// Render an experiment to a picture, and its timings to JSON.
     Render(render::RenderArgs),
+    /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
+    Save(save::SaveArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
     Graph(graph::GraphArgs),
     /// Print a scene's counts, bounds, materials and missing files, or write it to another format.
@@ -80,6 +84,7 @@ struct SceneArgs {
 pub fn run(cli: Cli) -> Result<(), LabError> {
     match cli.command {
         Command::Render(args) => render::run(&args),
+        Command::Save(args) => save::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Scene(args) => scene(&args),
@@ -103,6 +108,14 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
         eprintln!("warning: {warning}");
     }
     Ok(scene)
+}
+
+/// Every message of the validation layer is an error.
+fn validated(lab: &Lab) -> Result<(), LabError> {
+    match lab.gpu.messages().len() {
+        0 => Ok(()),
+        n => Err(LabError::Request(format!("the Vulkan validation layer had {n} messages (see above)"))),
+    }
 }
 
 fn scene(args: &SceneArgs) -> Result<(), LabError> {

@@ -7,7 +7,7 @@ mod view;
 pub use scene::SceneGpu;
 pub use view::Viewpoint;
 
-use crate::experiment::{CameraChoice, Experiment};
+use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::expr::{Env, Var};
 use crate::graph::link::{Linked, link};
 use crate::graph::load::{Folders, Graph, load};
@@ -18,6 +18,7 @@ use crate::graph::source::{Diagnostic, nearest};
 use crate::scene::{Scene, SceneError};
 use crate::shader::ShaderCompiler;
 use crate::vulkan::{DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
+use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -83,17 +84,20 @@ impl Home {
         Folders { passes: self.root.join("passes"), shaders: self.root.join("shaders") }
     }
 
+    /// The file of a graph: a bare name is looked up among the graphs, a path is taken as it is.
+    pub fn graph_path(&self, name: &str) -> PathBuf {
+        let given = Path::new(name);
+        let bare = given.components().count() == 1 && !given.is_file();
+        if bare { self.root.join("passes").join(name) } else { given.to_path_buf() }
+    }
+
     /// A graph with its shaders compiled and checked, and warnings; needs no device.
     ///
     /// # Errors
     /// All mistakes.
     pub fn graph(&self, name: &str) -> Result<(Graph, Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
         let folders = self.folders();
-        let given = Path::new(name);
-        // A bare name is looked up among the graphs; a path is taken as it is.
-        let bare = given.components().count() == 1 && !given.is_file();
-        let path = if bare { folders.passes.join(name) } else { given.to_path_buf() };
-        let graph = load(&path, &folders)?;
+        let graph = load(&self.graph_path(name), &folders)?;
         let compiler = ShaderCompiler::new(&folders.shaders, self.cache.as_deref());
         let (linked, warnings) = link(&graph, &compiler, &folders.shaders)?;
         Ok((graph, linked, warnings))
@@ -120,6 +124,7 @@ pub struct Session {
     pub scene: Arc<Scene>,
     scene_gpu: SceneGpu,
     viewpoint: Viewpoint,
+    bounds: (Vec3, Vec3),
     size: (u32, u32),
     time: f64,
     frame: u32,
@@ -172,6 +177,7 @@ impl Lab {
             graph,
             params,
             program,
+            bounds: scene.bounds(),
             scene,
             scene_gpu,
             viewpoint,
@@ -210,14 +216,15 @@ pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
 /// # Errors
 /// Unknown names and wrong values, all of them, with their places.
 pub fn params_of(graph: &Graph, experiment: &Experiment) -> Result<Params, LabError> {
-    let mut params = graph.params.clone();
-    let mut errors = Vec::new();
-    for (name, text) in &experiment.params {
-        if let Err(message) = params.set(&name.value, text) {
-            errors.push(experiment.sources.error(name.at, message));
-        }
-    }
-    if errors.is_empty() { Ok(params) } else { Err(LabError::Input(errors)) }
+    experiment.params_over(&graph.params)
+}
+
+/// The camera of an experiment in its scene.
+///
+/// # Errors
+/// No camera of that name; numbers that are no camera.
+pub fn camera_of(experiment: &Experiment, scene: &Scene) -> Result<PlacedCamera, LabError> {
+    viewpoint_of(experiment, scene).map(|v| PlacedCamera::from(&v.camera))
 }
 
 fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint, LabError> {
@@ -234,12 +241,8 @@ fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint, Lab
             }
         },
         CameraChoice::Placed(placed) => {
-            let ((x, y, z), (u, v, w)) = (placed.eye, placed.target);
-            if [x, y, z, u, v, w, placed.fov_y].iter().all(|n| n.is_finite()) {
-                Ok(Viewpoint::placed(placed, scene))
-            } else {
-                Err(LabError::Request("the camera's numbers must be finite".into()))
-            }
+            placed.check().map_err(LabError::Request)?;
+            Ok(Viewpoint::placed(placed, scene))
         }
     }
 }
@@ -266,6 +269,11 @@ impl Session {
         self.frame += 1;
         self.time += delta;
         Ok(self.program.run(&updates)?)
+    }
+
+    /// Sees the next frames from another camera. The frame before stays known to what compares frames.
+    pub fn look(&mut self, placed: &PlacedCamera) {
+        self.viewpoint.look(placed, self.bounds);
     }
 
     /// Waits for all frames.
