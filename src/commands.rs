@@ -17,9 +17,11 @@ macro_rules! say_part {
 }
 
 mod adapt;
+mod capture;
 mod check;
 mod graph;
 mod render;
+mod replay;
 mod save;
 
 use crate::lab::{Lab, LabError};
@@ -39,6 +41,10 @@ pub struct Cli {
 enum Command {
     /// Render an experiment to a picture, and its timings to JSON.
     Render(render::RenderArgs),
+    /// Render an experiment and keep it: pictures, sources, settings and measurements in captures/NAME.
+    Capture(capture::CaptureArgs),
+    /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
+    Replay(replay::ReplayArgs),
     /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
     Save(save::SaveArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
@@ -84,6 +90,8 @@ struct SceneArgs {
 pub fn run(cli: Cli) -> Result<(), LabError> {
     match cli.command {
         Command::Render(args) => render::run(&args),
+        Command::Capture(args) => capture::run(&args),
+        Command::Replay(args) => replay::run(&args),
         Command::Save(args) => save::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
@@ -108,6 +116,12 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
         eprintln!("warning: {warning}");
     }
     Ok(scene)
+}
+
+/// A path as short as it can be said here.
+fn shown(path: &std::path::Path) -> PathBuf {
+    let here = std::env::current_dir().ok();
+    here.and_then(|h| path.strip_prefix(h).ok()).unwrap_or(path).to_path_buf()
 }
 
 /// Every message of the validation layer is an error.

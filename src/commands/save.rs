@@ -5,7 +5,6 @@ use crate::experiment::{checked_name, write};
 use crate::graph::load::load;
 use crate::lab::{Home, LabError};
 use clap::Args;
-use std::path::Path;
 
 /// Arguments of `save`.
 #[derive(Debug, Args)]
@@ -28,7 +27,6 @@ pub fn run(args: &SaveArgs) -> Result<(), LabError> {
     let graph = load(&home.graph_path(&experiment.graph), &home.folders()).map_err(LabError::Input)?;
     let path = home.root.join("configs").join(format!("{name}.ron"));
     write(&experiment, &graph.params, &path, args.overwrite)?;
-    let shown = std::env::current_dir().ok().and_then(|d| path.strip_prefix(d).ok().map(Path::to_path_buf));
-    say!("wrote {}", shown.unwrap_or(path).display());
+    say!("wrote {}", super::shown(&path).display());
     Ok(())
 }

@@ -72,11 +72,15 @@ impl Home {
                 "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
             )
         })?;
-        let cache = std::env::var_os("CONELAB_CACHE")
+        Ok(Home { root, cache: Home::cache() })
+    }
+
+    /// The folder for compiled shaders and pipelines.
+    pub fn cache() -> Option<PathBuf> {
+        std::env::var_os("CONELAB_CACHE")
             .map(PathBuf::from)
             .or_else(|| std::env::var_os("XDG_CACHE_HOME").map(|p| PathBuf::from(p).join("conelab")))
-            .or_else(|| std::env::var_os("HOME").map(|p| PathBuf::from(p).join(".cache/conelab")));
-        Ok(Home { root, cache })
+            .or_else(|| std::env::var_os("HOME").map(|p| PathBuf::from(p).join(".cache/conelab")))
     }
 
     /// Folders of graphs and shaders.
