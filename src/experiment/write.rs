@@ -10,8 +10,9 @@ use crate::scene::Scene;
 use std::path::{Component, Path, PathBuf};
 
 /// Writes an experiment to `path`: graph, scene, camera, size, what was given of time, sky and lights, and the
-/// parameters that differ from `defaults`. The file is read back before it takes its place. Where a file is replaced,
-/// its comments stay as far as they stand beside what stays.
+/// parameters that differ from `defaults`. The file is read back before it takes its place. A file that is replaced is
+/// edited in place: comments stay, lines that say the same stay, values that changed are replaced where they stand, and
+/// those that became defaults go with their lines.
 ///
 /// # Errors
 /// A file that exists (without `overwrite`), unknown parameters, values that cannot be read back, no permission; the
@@ -25,6 +26,7 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
     let wanted = Wanted {
         scene: scene_text(&experiment.scene, path),
         params: differing.map(|((p, v), _)| (p.name.clone(), value_text(v))).collect(),
+        values: &params,
         experiment,
     };
     let right = |text: &str| read_back(experiment, &params, defaults, path, text);
@@ -63,7 +65,12 @@ pub fn resolved_text(
     let lights = scene.lights.iter().filter(|l| single(&l.name));
     resolved.lights = lights.map(|l| (Loc { value: l.name.clone(), at: At::default() }, change_to(l))).collect();
     let all = params.list.iter().zip(&params.values).map(|(p, v)| (p.name.clone(), value_text(v)));
-    let wanted = Wanted { scene: scene_text(&experiment.scene, path), params: all.collect(), experiment: &resolved };
+    let wanted = Wanted {
+        scene: scene_text(&experiment.scene, path),
+        params: all.collect(),
+        values: &params,
+        experiment: &resolved,
+    };
     let text = fresh(&wanted);
     read_back(&resolved, &params, defaults, path, &text)?;
     Ok(text)
@@ -78,6 +85,7 @@ struct Wanted<'e> {
     experiment: &'e Experiment,
     scene: String,
     params: Vec<(String, String)>,
+    values: &'e Params,
 }
 
 /// Whether a text says the same as an experiment.
@@ -238,7 +246,7 @@ fn edited(wanted: &Wanted, defaults: &Params, path: &Path) -> Option<String> {
     let old = Experiment::read(path).ok()?;
     let text = std::fs::read_to_string(path).ok()?;
     let body = spans::body(&text, 0)?;
-    let old_wanted = Wanted { experiment: &old, scene: String::new(), params: Vec::new() };
+    let old_wanted = Wanted { experiment: &old, scene: String::new(), params: Vec::new(), values: wanted.values };
     let same_scene = same_scene(&old.scene, &wanted.experiment.scene);
     let mut edits = Edits::new();
     let mut lines = Vec::new();
@@ -263,9 +271,18 @@ fn edited(wanted: &Wanted, defaults: &Params, path: &Path) -> Option<String> {
     let same_light = |name: &str, _: &str, new: &str| {
         old.lights.iter().any(|(n, change)| n.value == name && light_text(change) == new)
     };
+    // What the author wrote out although it is the default stays, as long as it is true.
+    let mut params = wanted.params.clone();
+    for (name, text) in &old.params {
+        let param = defaults.index(&name.value).map(|i| (&defaults.list[i], &wanted.values.values[i]));
+        let is_true = param.is_some_and(|(p, now)| p.parse(text).as_ref() == Ok(now));
+        if is_true && !params.iter().any(|p| p.0 == name.value) {
+            params.push((name.value.clone(), text.clone()));
+        }
+    }
     let lights = wanted.lights();
     let maps: [(&str, &[(String, String)], &Same); 2] =
-        [("lights", &lights, &same_light), ("params", &wanted.params, &same_param)];
+        [("lights", &lights, &same_light), ("params", &params, &same_param)];
     for (name, entries, same) in maps {
         match body.entries.iter().find(|e| e.key == name) {
             Some(entry) => {
