@@ -16,12 +16,16 @@ macro_rules! say_part {
     }};
 }
 
+mod adapt;
+mod capture;
 mod check;
 mod graph;
 mod render;
+mod replay;
+mod save;
 mod view;
 
-use crate::lab::LabError;
+use crate::lab::{Lab, LabError};
 use crate::vulkan::{GpuOptions, list_devices};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -40,6 +44,12 @@ enum Command {
     View(view::ViewArgs),
     /// Render an experiment to a picture, and its timings to JSON.
     Render(render::RenderArgs),
+    /// Render an experiment and keep it: pictures, sources, settings and measurements in captures/NAME.
+    Capture(capture::CaptureArgs),
+    /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
+    Replay(replay::ReplayArgs),
+    /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
+    Save(save::SaveArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
     Graph(graph::GraphArgs),
     /// Print a scene's counts, bounds, materials and missing files, or write it to another format.
@@ -87,6 +97,9 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
     match command {
         Command::View(args) => view::run(&args),
         Command::Render(args) => render::run(&args),
+        Command::Capture(args) => capture::run(&args),
+        Command::Replay(args) => replay::run(&args),
+        Command::Save(args) => save::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Scene(args) => scene(&args),
@@ -111,6 +124,20 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
         eprintln!("warning: {warning}");
     }
     Ok(scene)
+}
+
+/// A path as short as it can be said here.
+fn shown(path: &std::path::Path) -> PathBuf {
+    let here = std::env::current_dir().ok();
+    here.and_then(|h| path.strip_prefix(h).ok()).unwrap_or(path).to_path_buf()
+}
+
+/// Every message of the validation layer is an error.
+fn validated(lab: &Lab) -> Result<(), LabError> {
+    match lab.gpu.messages().len() {
+        0 => Ok(()),
+        n => Err(LabError::Request(format!("the Vulkan validation layer had {n} messages (see above)"))),
+    }
 }
 
 fn scene(args: &SceneArgs) -> Result<(), LabError> {

@@ -17,6 +17,24 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 /// # Errors
 /// As [`write_whole`], and those of the closure.
 pub fn write_with(path: &Path, write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> std::io::Result<()> {
+    temporary(path, write)?.persist(path).map_err(|e| e.error)?;
+    Ok(())
+}
+
+/// Writes `bytes` to a file that must not exist, not even when another program makes it at this moment.
+///
+/// # Errors
+/// As [`write_whole`], and `AlreadyExists`.
+pub fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    temporary(path, |file| file.write_all(bytes))?.persist_noclobber(path).map_err(|e| e.error)?;
+    Ok(())
+}
+
+/// A finished file under a temporary name in the folder of `path`.
+fn temporary(
+    path: &Path,
+    write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>,
+) -> std::io::Result<tempfile::NamedTempFile> {
     let folder = match path.parent() {
         Some(p) if !p.as_os_str().is_empty() => p,
         _ => Path::new("."),
@@ -25,8 +43,7 @@ pub fn write_with(path: &Path, write: impl FnOnce(&mut std::fs::File) -> std::io
     let mut file = tempfile::Builder::new().prefix(".conelab-").tempfile_in(folder)?;
     write(file.as_file_mut())?;
     make_readable(file.as_file())?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
+    Ok(file)
 }
 
 /// Temporary files are private to their owner; what is kept should be as readable as any other file.

@@ -2,7 +2,10 @@
 
 use crate::lab::{LabError, Texels};
 use crate::vulkan::format::Channels;
-use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer, LayerAttributes, WritableImage};
+use exr::prelude::{
+    AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer, LayerAttributes, WritableImage,
+    read_first_rgba_layer_from_file,
+};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -59,12 +62,9 @@ fn small_float(word: u32, channel: usize) -> f32 {
 /// # Errors
 /// Another ending, a folder that cannot be written to. The file is whole or absent.
 pub fn write(path: &Path, texels: &Texels) -> Result<(), LabError> {
-    let [width, height, depth] = texels.extent;
-    // Slices of a volume are put below one another.
-    let rows = height * depth;
     let bytes = match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
-        Some("png") => png(width, rows, texels)?,
-        Some("exr") => exr(width, rows, texels)?,
+        Some("png") => png(texels)?,
+        Some("exr") => exr(texels)?,
         _ => {
             let message = format!("'{}': give the output a name that ends in .png or .exr", path.display());
             return Err(LabError::Request(message));
@@ -74,21 +74,42 @@ pub fn write(path: &Path, texels: &Texels) -> Result<(), LabError> {
         .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))
 }
 
-fn png(width: u32, height: u32, texels: &Texels) -> Result<Vec<u8>, LabError> {
+/// Width and height of a file of these texels: slices of a volume are put below one another.
+fn file_size(texels: &Texels) -> (u32, u32) {
+    let [width, height, depth] = texels.extent;
+    (width, height * depth)
+}
+
+/// What a PNG of these texels holds: three bytes a texel.
+pub fn rgb8(texels: &Texels) -> Vec<u8> {
     let rgba: Vec<u8> = if texels.format.name.starts_with("rgba8") {
         texels.bytes.clone()
     } else {
         to_floats(texels).iter().flatten().map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8).collect()
     };
     // Alpha of a picture is not transparency.
-    let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect()
+}
+
+/// Texels as a PNG file (8 bits; floats are clamped, not tone-mapped).
+///
+/// # Errors
+/// A size that PNG does not have.
+pub fn png(texels: &Texels) -> Result<Vec<u8>, LabError> {
+    let (width, height) = file_size(texels);
+    let rgb = rgb8(texels);
     let mut out = Cursor::new(Vec::new());
     image::write_buffer_with_format(&mut out, &rgb, width, height, image::ColorType::Rgb8, image::ImageFormat::Png)
         .map_err(|e| LabError::Request(format!("cannot make the PNG: {e}")))?;
     Ok(out.into_inner())
 }
 
-fn exr(width: u32, height: u32, texels: &Texels) -> Result<Vec<u8>, LabError> {
+/// Texels as an EXR file (32-bit floats).
+///
+/// # Errors
+/// A size that EXR does not have.
+pub fn exr(texels: &Texels) -> Result<Vec<u8>, LabError> {
+    let (width, height) = file_size(texels);
     let floats = to_floats(texels);
     let channel = |name: &str, i: usize| AnyChannel::new(name, FlatSamples::F32(floats.iter().map(|p| p[i]).collect()));
     // EXR keeps channels in alphabetical order.
@@ -102,4 +123,37 @@ fn exr(width: u32, height: u32, texels: &Texels) -> Result<Vec<u8>, LabError> {
         .to_buffered(&mut out)
         .map_err(|e| LabError::Request(format!("cannot make the EXR: {e}")))?;
     Ok(out.into_inner())
+}
+
+/// Reads a picture that must have the given size: three channels (0 to 255) a texel of a PNG, four of an EXR.
+///
+/// # Errors
+/// The text for the user: no such file, another size, a damaged file.
+pub fn read(path: &Path, size: (u32, u32)) -> Result<Vec<f32>, String> {
+    let other = |w: usize, h: usize| format!("its size is {w}x{h}, not {}x{}", size.0, size.1);
+    if path.extension().is_some_and(|e| e == "png") {
+        let open = || image::ImageReader::open(path)?.with_guessed_format();
+        let (w, h) = open().map_err(|e| e.to_string())?.into_dimensions().map_err(|e| e.to_string())?;
+        if (w, h) != size {
+            return Err(other(w as usize, h as usize));
+        }
+        let image = open().map_err(|e| e.to_string())?.decode().map_err(|e| e.to_string())?;
+        return Ok(image.to_rgb8().as_raw().iter().map(|v| f32::from(*v)).collect());
+    }
+    // The header first: its size decides how much memory is taken.
+    let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|e| e.to_string())?;
+    let layer = meta.headers.first().map_or(exr::math::Vec2(0, 0), |h| h.layer_size);
+    if (layer.width(), layer.height()) != (size.0 as usize, size.1 as usize) {
+        return Err(other(layer.width(), layer.height()));
+    }
+    let image = read_first_rgba_layer_from_file(
+        path,
+        |size, _| (size.width(), vec![0.0f32; size.area() * 4]),
+        |(width, texels): &mut (usize, Vec<f32>), at, (r, g, b, a): (f32, f32, f32, f32)| {
+            let start = (at.y() * *width + at.x()) * 4;
+            texels[start..start + 4].copy_from_slice(&[r, g, b, a]);
+        },
+    )
+    .map_err(|e| e.to_string())?;
+    Ok(image.layer_data.channel_data.pixels.1)
 }

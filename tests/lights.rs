@@ -40,13 +40,13 @@ fn changed_lights_give_the_picture_of_a_scene_made_so() {
         let after = Arc::new(after);
         let mut live = session(&lab, &before);
         let first = picture(&lab, &mut live);
-        assert!(live.set_scene_lights(after.clone()));
+        assert!(live.set_lights(&after.lights, after.sky));
         let changed = picture(&lab, &mut live);
         let expected = picture(&lab, &mut session(&lab, &after));
         assert!(first != changed, "change {i} of {name} changes nothing");
         assert!(changed == expected, "change {i} of {name} gives another picture than a scene made so");
         // And back.
-        assert!(live.set_scene_lights(before));
+        assert!(live.set_lights(&before.lights, before.sky));
         assert!(picture(&lab, &mut live) == first, "change {i} of {name} cannot be undone");
     }
 }
@@ -60,7 +60,7 @@ fn other_numbers_of_lights_are_refused() {
     let (mut more, mut cube) = (Scene::clone(&cornell), Scene::clone(&cornell));
     more.lights.push(more.lights[0].clone());
     cube.lights[0].kind = LightKind::Point; // six shadow maps instead of one
-    assert!(!live.set_scene_lights(Arc::new(more)));
-    assert!(!live.set_scene_lights(Arc::new(cube)));
+    assert!(!live.set_lights(&more.lights, more.sky));
+    assert!(!live.set_lights(&cube.lights, cube.sky));
     assert!(picture(&lab, &mut live) == first);
 }

@@ -297,8 +297,7 @@ fn the_volume_that_follows_the_camera_moves_by_whole_voxels() {
     for x in [2.76, 2.80, 3.05] {
         let settings = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), QUICK];
         let mut experiment = experiment("cornell", (48, 32), &settings);
-        experiment.camera =
-            CameraChoice::Placed(PlacedCamera { eye: (x, 2.73, 1.0), target: (2.78, 2.73, 5.0), fov_y: 60.0 });
+        experiment.camera = CameraChoice::Placed(PlacedCamera::new((x, 2.73, 1.0), (2.78, 2.73, 5.0), 60.0));
         let mut session = frames(&lab, &experiment, &["voxelIndex", "radiance"], 2);
         assert_picture(&floats(&mut session, "radiance", 0), "camera volume");
         sets.push(occupied(&mut session));

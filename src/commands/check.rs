@@ -25,9 +25,12 @@ pub enum FileKind {
     Experiment,
     /// A scene.
     Scene,
+    /// A camera path.
+    Path,
 }
 
-/// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights.
+/// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights,
+/// camera paths hold keys.
 pub fn kind(path: &str) -> FileKind {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let has = |field: &str| {
@@ -37,6 +40,8 @@ pub fn kind(path: &str) -> FileKind {
         FileKind::Experiment
     } else if has("models") || has("lights") || has("cameras") {
         FileKind::Scene
+    } else if has("keys") {
+        FileKind::Path
     } else {
         FileKind::Graph
     }
@@ -64,7 +69,7 @@ fn own_files(home: &Home) -> Vec<PathBuf> {
         }
     }
     let mut files: Vec<PathBuf> = graphs.into_iter().filter(|g| !included.contains(g)).collect();
-    files.extend(["configs", "configs/scenes"].iter().flat_map(|f| ron_files(&home.root.join(f))));
+    files.extend(["configs", "configs/scenes", "configs/paths"].iter().flat_map(|f| ron_files(&home.root.join(f))));
     files
 }
 
@@ -84,6 +89,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
                 Ok((_, _, warnings)) => warnings,
                 Err(errors) => errors,
             },
+            FileKind::Path => crate::camera_path::CameraPath::read(file).err().unwrap_or_default(),
             FileKind::Experiment => check_experiment(&home, file),
             FileKind::Scene => {
                 match crate::scene::Scene::open(&name, &|_, _| ControlFlow::Continue(())) {

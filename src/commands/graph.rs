@@ -61,7 +61,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         params.set(name, value).map_err(LabError::Request)?;
     }
     let size = match &args.size {
-        Some(text) => super::render::parse_size(text)?,
+        Some(text) => super::adapt::parse_size(text)?,
         None => experiment.as_ref().map_or((1280, 720), |e| e.size),
     };
     let scene_name = args.scene.clone().or(experiment.as_ref().map(|e| e.scene.clone())).unwrap_or("cornell".into());

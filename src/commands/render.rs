@@ -1,35 +1,21 @@
 //! `conelab render`.
 
 use super::DeviceArgs;
-use crate::experiment::{CameraChoice, Experiment, PlacedCamera, check_size};
+use super::adapt::{self, ExperimentArgs, parse_resource};
+use crate::camera_path::CameraPath;
 use crate::graph::load::Graph;
-use crate::graph::source::{At, Loc};
-use crate::lab::{Home, Lab, LabError};
+use crate::graph::run::FrameTimes;
+use crate::lab::{Home, Lab, LabError, Session};
 use crate::{picture, stats};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// Experiment file, for example configs/default.ron.
-    experiment: PathBuf,
-    /// Another scene: a built-in name, a scene RON, or a model file.
-    #[arg(long)]
-    scene: Option<String>,
-    /// Another camera of the scene, or one written out: "(eye: (0, 1, 5), target: (0, 1, 0), fov_y: 60)".
-    #[arg(long)]
-    camera: Option<String>,
-    /// Picture size.
-    #[arg(long, value_name = "WxH")]
-    size: Option<String>,
-    /// Set a parameter; may be given many times.
-    #[arg(long, value_name = "NAME=VALUE")]
-    set: Vec<String>,
-    /// Time of the first frame, s.
-    #[arg(long)]
-    time: Option<f64>,
+    #[command(flatten)]
+    experiment: ExperimentArgs,
     /// Time from frame to frame, s.
     #[arg(long, default_value_t = 0.0)]
     step: f64,
@@ -39,15 +25,21 @@ pub struct RenderArgs {
     /// Frames to run before timing starts.
     #[arg(long, default_value_t = 0)]
     warmup: usize,
+    /// Move the camera along this path (configs/paths) by each frame's time.
+    #[arg(long, value_name = "FILE")]
+    path: Option<PathBuf>,
+    /// Write every frame to this folder, as frame-00000.png and so on.
+    #[arg(long, value_name = "FOLDER")]
+    sequence: Option<PathBuf>,
     /// Write this texture instead of the picture.
     #[arg(long, value_name = "NAME[:MIP[:LAYER]]")]
     resource: Option<String>,
     /// Reorder the scene's triangles by this seed: results must not depend on the order.
     #[arg(long, value_name = "SEED")]
     shuffle: Option<u64>,
-    /// Output file, .png or .exr.
-    #[arg(short, long)]
-    output: PathBuf,
+    /// Output file, .png or .exr: the last frame.
+    #[arg(short, long, required_unless_present = "sequence")]
+    output: Option<PathBuf>,
     /// Write timings and settings to this JSON file.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -55,55 +47,73 @@ pub struct RenderArgs {
     device: DeviceArgs,
 }
 
-/// Most frames of one run.
-const MAX_FRAMES: usize = 1_000_000;
-
 /// Renders.
 pub fn run(args: &RenderArgs) -> Result<(), LabError> {
-    let mut experiment = Experiment::read(&args.experiment).map_err(LabError::Input)?;
-    adapt(&mut experiment, args)?;
-    let exr = writable(&args.output, &["png", "exr"])? == "exr";
+    let experiment = args.experiment.read()?;
+    adapt::check_frames(args.frames, args.warmup, args.step)?;
+    let exr = match &args.output {
+        Some(output) => writable(output, &["png", "exr"])? == "exr",
+        None => false,
+    };
     if let Some(json) = &args.json {
         writable(json, &["json"])?;
     }
+    if let Some(folder) = &args.sequence {
+        without_frames(folder)?;
+    }
+    let path = args.path.as_deref().map(CameraPath::read).transpose().map_err(LabError::Input)?;
     let home = Home::find()?;
-    let mut scene = super::open_scene(&experiment.scene)?;
+    let mut scene = adapt::open_scene(&experiment)?;
     if let Some(seed) = args.shuffle {
         scene = scene.shuffled(seed);
     }
     let lab = Lab::open(home, args.device.options())?;
     let resource = args.resource.as_deref().map(parse_resource).transpose()?;
-    let mut shown = (String::new(), 0, 0);
+    let (mut shown, mut frames_of) = (None, None);
     let (mut session, warnings) = lab.prepare(&experiment, Arc::new(scene), |graph| {
-        shown = match resource {
-            Some(r) if graph.textures.iter().any(|t| t.0 == r.0) => r,
-            Some(r) => return Err(crate::lab::no_texture(graph, &r.0)),
-            None => (result_name(graph, exr)?, 0, 0),
+        let named = |exr| match &resource {
+            Some(r) if graph.textures.iter().any(|t| t.0 == r.0) => Ok(r.clone()),
+            Some(r) => Err(crate::lab::no_texture(graph, &r.0)),
+            None => Ok((result_name(graph, exr)?, 0, 0)),
         };
-        Ok(vec![shown.0.clone()])
+        shown = args.output.as_ref().map(|path| Ok::<_, LabError>((path, named(exr)?))).transpose()?;
+        frames_of = args.sequence.as_ref().map(|path| Ok::<_, LabError>((path, named(false)?))).transpose()?;
+        Ok(shown.iter().chain(&frames_of).map(|s| s.1.0.clone()).collect())
     })?;
     for warning in warnings {
         eprintln!("{warning}");
     }
     let mut times = Vec::new();
-    let (total, measured) = (args.warmup + args.frames, args.frames);
-    let bar = indicatif::ProgressBar::new(total as u64);
-    for _ in 0..total {
+    let bar = indicatif::ProgressBar::new((args.warmup + args.frames) as u64);
+    for number in 0..args.warmup + args.frames {
+        if let Some(path) = &path {
+            session.look(&path.at(experiment.time + number as f64 * args.step));
+        }
         times.extend(session.frame(args.step)?);
+        if let (Some((folder, shown)), Some(frame)) = (&frames_of, number.checked_sub(args.warmup)) {
+            times.extend(session.finish()?);
+            write_texture(&mut session, &folder.join(format!("frame-{frame:05}.png")), shown)?;
+        }
         bar.inc(1);
     }
     times.extend(session.finish()?);
     bar.finish_and_clear();
-    let times = times.split_off(times.len() - measured);
+    let times: Vec<FrameTimes> = times.split_off(times.len().saturating_sub(args.frames));
     let failed = session.failed_checks()?;
     for message in &failed {
         eprintln!("warning: {message}");
     }
-    let texels = session.texels(&shown.0, shown.1, shown.2)?;
-    picture::write(&args.output, &texels)?;
+    if let Some((path, shown)) = &shown {
+        write_texture(&mut session, path, shown)?;
+    }
     let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, args.warmup, failed);
     say_part!("{}", stats::table(&stats));
-    say!("wrote {}", args.output.display());
+    if let Some((folder, _)) = &frames_of {
+        say!("wrote {} frames to {}", args.frames, folder.display());
+    }
+    if let Some((path, _)) = &shown {
+        say!("wrote {}", path.display());
+    }
     if let Some(path) = &args.json {
         let text = serde_json::to_string_pretty(&stats).map_err(|e| LabError::Request(e.to_string()))?;
         crate::files::write_whole(path, text.as_bytes())
@@ -111,72 +121,29 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         say!("wrote {}", path.display());
     }
     drop(session);
-    match lab.gpu.messages().len() {
-        0 => Ok(()),
-        n => Err(LabError::Request(format!("the Vulkan validation layer had {n} messages (see above)"))),
-    }
+    super::validated(&lab)
 }
 
-/// Applies the command line to the experiment.
-fn adapt(experiment: &mut Experiment, args: &RenderArgs) -> Result<(), LabError> {
-    if let Some(scene) = &args.scene {
-        experiment.scene.clone_from(scene);
-    }
-    if let Some(text) = &args.size {
-        experiment.size = parse_size(text)?;
-    }
-    if let Some(text) = &args.camera {
-        experiment.camera = if text.trim_start().starts_with('(') {
-            let placed: PlacedCamera = crate::graph::source::options().from_str(text).map_err(|e| {
-                LabError::Request(format!(
-                    "--camera: {e}; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)"
-                ))
-            })?;
-            CameraChoice::Placed(placed)
-        } else {
-            CameraChoice::Named(text.clone())
-        };
-    }
-    experiment.time = args.time.unwrap_or(experiment.time);
-    if !experiment.time.is_finite() || !args.step.is_finite() {
-        return Err(LabError::Request("--time and --step must be finite numbers of seconds".into()));
-    }
-    if args.frames == 0 || args.frames.saturating_add(args.warmup) > MAX_FRAMES {
-        return Err(LabError::Request(format!("--frames must be 1 to {MAX_FRAMES}")));
-    }
-    // Later settings win, and messages about them point at the command line.
-    let file = experiment.sources.add("--set".as_ref(), args.set.join("\n"));
-    let mut offset = 0;
-    for setting in &args.set {
-        let Some((name, value)) = setting.split_once('=') else {
-            return Err(LabError::Request(format!("--set {setting}: expected NAME=VALUE")));
-        };
-        experiment.params.push((Loc { value: name.trim().into(), at: At { file, offset } }, value.into()));
-        offset += u32::try_from(setting.len() + 1).unwrap_or(0);
+fn write_texture(session: &mut Session, path: &Path, shown: &(String, u32, u32)) -> Result<(), LabError> {
+    picture::write(path, &session.texels(&shown.0, shown.1, shown.2)?)
+}
+
+/// Makes the folder of a sequence, unless it has frames: two sequences in one would look like one.
+fn without_frames(folder: &Path) -> Result<(), LabError> {
+    let fail = |why: String| LabError::Request(format!("cannot write frames to '{}': {why}", folder.display()));
+    std::fs::create_dir_all(folder).map_err(|e| fail(e.to_string()))?;
+    let is_frame = |name: &str| name.starts_with("frame-") && name.to_lowercase().ends_with(".png");
+    for entry in std::fs::read_dir(folder).map_err(|e| fail(e.to_string()))?.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if is_frame(&name) {
+            return Err(fail(format!("it has '{name}'; choose an empty folder")));
+        }
     }
     Ok(())
 }
 
-pub(super) fn parse_size(text: &str) -> Result<(u32, u32), LabError> {
-    let wrong = || LabError::Request(format!("--size {text}: expected WIDTHxHEIGHT, for example 1280x720"));
-    let (w, h) = text.split_once('x').ok_or_else(wrong)?;
-    let size = (w.trim().parse().map_err(|_| wrong())?, h.trim().parse().map_err(|_| wrong())?);
-    check_size(size).map_err(LabError::Request)?;
-    Ok(size)
-}
-
-fn parse_resource(text: &str) -> Result<(String, u32, u32), LabError> {
-    let mut parts = text.split(':');
-    let name = parts.next().unwrap_or("").to_string();
-    let mut number = |what: &str| match parts.next() {
-        None => Ok(0),
-        Some(n) => n.parse().map_err(|_| LabError::Request(format!("--resource {text}: '{n}' is no {what}"))),
-    };
-    Ok((name, number("mip")?, number("layer")?))
-}
-
 /// The ending, after checking that the folder can be written to before any work is done.
-fn writable(path: &std::path::Path, endings: &[&str]) -> Result<String, LabError> {
+fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
     let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
     if !endings.contains(&ending.as_str()) {
         let message = format!("'{}': give it a name that ends in .{}", path.display(), endings.join(" or ."));
@@ -184,7 +151,7 @@ fn writable(path: &std::path::Path, endings: &[&str]) -> Result<String, LabError
     }
     let folder = match path.parent() {
         Some(p) if !p.as_os_str().is_empty() => p,
-        _ => std::path::Path::new("."),
+        _ => Path::new("."),
     };
     if path.is_dir() {
         return Err(LabError::Request(format!("cannot write '{}': it is a folder", path.display())));

@@ -35,11 +35,11 @@ pub struct ViewArgs {
 /// Opens the window.
 pub fn run(args: &ViewArgs) -> Result<(), LabError> {
     let home = Home::find()?;
-    let size = args.size.as_deref().map(super::render::parse_size).transpose()?;
+    let size = args.size.as_deref().map(super::adapt::parse_size).transpose()?;
     let gpu = args.device.options();
     let window = WindowOptions {
         gpu: GpuOptions { device: args.window_device.clone().or(gpu.device.clone()), ..gpu.clone() },
-        size: super::render::parse_size(&args.window)?,
+        size: super::adapt::parse_size(&args.window)?,
     };
     let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
     let options = Options { home, gpu, experiment, scene: args.scene.clone(), size, events: args.events.clone() };

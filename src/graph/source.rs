@@ -156,6 +156,11 @@ impl Sources {
         self.files.iter().map(|(p, _)| p.as_path())
     }
 
+    /// Path and text of all files read.
+    pub fn texts(&self) -> impl Iterator<Item = (&Path, &str)> {
+        self.files.iter().map(|(p, t)| (p.as_path(), t.as_str()))
+    }
+
     /// Line and column of an offset.
     pub fn place(&self, at: At) -> Place {
         let Some((file, text)) = self.files.get(at.file as usize) else { return Place::default() };

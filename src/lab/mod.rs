@@ -7,7 +7,7 @@ mod view;
 pub use scene::SceneGpu;
 pub use view::Viewpoint;
 
-use crate::experiment::{CameraChoice, Experiment};
+use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::expr::{Env, Var};
 use crate::graph::link::{Linked, link};
 use crate::graph::load::{Folders, Graph, load};
@@ -16,9 +16,10 @@ use crate::graph::plan::{Plan, PlanInput, plan};
 use crate::graph::run::{FrameTimes, Program};
 use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::successor::Parts;
-use crate::scene::{Camera, Scene, SceneError};
+use crate::scene::{Camera, Light, Scene, SceneError};
 use crate::shader::ShaderCompiler;
 use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
+use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -72,11 +73,15 @@ impl Home {
                 "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
             )
         })?;
-        let cache = std::env::var_os("CONELAB_CACHE")
+        Ok(Home { root, cache: Home::cache() })
+    }
+
+    /// The folder for compiled shaders and pipelines.
+    pub fn cache() -> Option<PathBuf> {
+        std::env::var_os("CONELAB_CACHE")
             .map(PathBuf::from)
             .or_else(|| std::env::var_os("XDG_CACHE_HOME").map(|p| PathBuf::from(p).join("conelab")))
-            .or_else(|| std::env::var_os("HOME").map(|p| PathBuf::from(p).join(".cache/conelab")));
-        Ok(Home { root, cache })
+            .or_else(|| std::env::var_os("HOME").map(|p| PathBuf::from(p).join(".cache/conelab")))
     }
 
     /// Folders of graphs and shaders.
@@ -93,17 +98,20 @@ impl Home {
         Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
     }
 
+    /// The file of a graph: a bare name is looked up among the graphs, a path is taken as it is.
+    pub fn graph_path(&self, name: &str) -> PathBuf {
+        let given = Path::new(name);
+        let bare = given.components().count() == 1 && !given.is_file();
+        if bare { self.root.join("passes").join(name) } else { given.to_path_buf() }
+    }
+
     /// A graph with its shaders compiled and checked, and warnings; needs no device.
     ///
     /// # Errors
     /// All mistakes.
     pub fn graph(&self, name: &str) -> Result<(Graph, Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
         let folders = self.folders();
-        let given = Path::new(name);
-        // A bare name is looked up among the graphs; a path is taken as it is.
-        let bare = given.components().count() == 1 && !given.is_file();
-        let path = if bare { folders.passes.join(name) } else { given.to_path_buf() };
-        let graph = load(&path, &folders)?;
+        let graph = load(&self.graph_path(name), &folders)?;
         let compiler = ShaderCompiler::new(&folders.shaders, self.cache.as_deref());
         let (linked, warnings) = link(&graph, &compiler, &folders.shaders)?;
         Ok((graph, linked, warnings))
@@ -153,6 +161,7 @@ pub struct Session {
     scene_gpu: SceneGpu,
     light_updates: Vec<(Arc<Buffer>, Vec<u8>)>,
     viewpoint: Viewpoint,
+    bounds: (Vec3, Vec3),
     size: (u32, u32),
     time: f64,
     frame: u32,
@@ -229,6 +238,7 @@ impl Lab {
             wanted,
             params,
             program,
+            bounds: scene.bounds(),
             scene,
             scene_gpu,
             light_updates: Vec::new(),
@@ -264,7 +274,7 @@ pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
     };
     put("width", f64::from(size.0));
     put("height", f64::from(size.1));
-    put("shadow_views", f64::from(view::shadow_view_count(scene)));
+    put("shadow_views", f64::from(view::shadow_view_count(&scene.lights)));
     put("light_count", scene.lights.len() as f64);
     put("triangle_count", scene.triangle_count() as f64);
     put("scene_size", f64::from(extent.max_element()));
@@ -280,14 +290,15 @@ pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
 /// # Errors
 /// Unknown names and wrong values, all of them, with their places.
 pub fn params_of(graph: &Graph, experiment: &Experiment) -> Result<Params, LabError> {
-    let mut params = graph.params.clone();
-    let mut errors = Vec::new();
-    for (name, text) in &experiment.params {
-        if let Err(message) = params.set(&name.value, text) {
-            errors.push(experiment.sources.error(name.at, message));
-        }
-    }
-    if errors.is_empty() { Ok(params) } else { Err(LabError::Input(errors)) }
+    experiment.params_over(&graph.params)
+}
+
+/// The camera of an experiment in its scene.
+///
+/// # Errors
+/// No camera of that name; numbers that are no camera.
+pub fn camera_of(experiment: &Experiment, scene: &Scene) -> Result<PlacedCamera, LabError> {
+    viewpoint_of(experiment, scene).map(|v| PlacedCamera::from(&v.camera))
 }
 
 /// The camera of an experiment in a scene.
@@ -308,12 +319,8 @@ pub fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint,
             }
         },
         CameraChoice::Placed(placed) => {
-            let ((x, y, z), (u, v, w)) = (placed.eye, placed.target);
-            if [x, y, z, u, v, w, placed.fov_y].iter().all(|n| n.is_finite()) {
-                Ok(Viewpoint::placed(placed, scene))
-            } else {
-                Err(LabError::Request("the camera's numbers must be finite".into()))
-            }
+            placed.check().map_err(LabError::Request)?;
+            Ok(Viewpoint::placed(placed, scene))
         }
     }
 }
@@ -367,7 +374,7 @@ impl Session {
     }
 
     /// Looks through a camera from the next frame on.
-    pub fn look(&mut self, camera: &Camera) {
+    pub fn set_camera(&mut self, camera: &Camera) {
         self.viewpoint.camera = *camera;
     }
 
@@ -404,17 +411,20 @@ impl Session {
         Ok(self.program.run(&updates)?)
     }
 
-    /// Takes lights and sky from a scene that differs from the session's in these alone, from the next frame on. False,
-    /// and nothing changes, when it has another number of lights or shadow maps: that needs a new session.
-    #[must_use]
-    pub fn set_scene_lights(&mut self, scene: Arc<Scene>) -> bool {
-        let counts = |s: &Scene| (s.lights.len(), view::shadow_view_count(s));
-        if counts(&scene) != counts(&self.scene) {
-            return false;
+    /// Changes the colours, places and directions of the scene's lights, and its sky, from the next frame on. False, and
+    /// nothing changes, with another number of lights or shadow maps: that needs a new session.
+    pub fn set_lights(&mut self, lights: &[Light], sky: Vec3) -> bool {
+        let same = lights.len() == self.scene.lights.len()
+            && view::shadow_view_count(lights) == view::shadow_view_count(&self.scene.lights);
+        if same {
+            self.light_updates = self.scene_gpu.set_lights(lights, sky);
         }
-        self.light_updates = self.scene_gpu.set_lights(&scene);
-        self.scene = scene;
-        true
+        same
+    }
+
+    /// Sees the next frames from another camera. The frame before stays known to what compares frames.
+    pub fn look(&mut self, placed: &PlacedCamera) {
+        self.viewpoint.look(placed, self.bounds);
     }
 
     /// Waits for all frames.

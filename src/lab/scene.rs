@@ -3,10 +3,10 @@
 use super::materials::{self, NO_TEXTURE};
 use super::view::{lights, shadow_view_count};
 use crate::graph::run::{Geometry, SceneResources};
-use crate::scene::Scene;
+use crate::scene::{Light, Scene};
 use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, VulkanError, vk};
 use bytemuck::{Pod, Zeroable};
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -97,7 +97,7 @@ impl SceneGpu {
             bounds_min: low.to_array(),
             light_count: count(light_blocks.len()),
             bounds_max: high.to_array(),
-            shadow_views: shadow_view_count(scene),
+            shadow_views: shadow_view_count(&scene.lights),
             sky: scene.sky.to_array(),
             triangle_count: count(draws.iter().map(|d| d.index_count as usize / 3).sum()),
             draw_count: count(draws.len()),
@@ -181,11 +181,21 @@ impl SceneGpu {
         let sent = instances(scene, 0.0, None);
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let instances = upload.buffer("instances", bytemuck::cast_slice(&sent), storage)?;
-        let camera = upload.buffer("camera", &[0; CAMERA_BYTES], vk::BufferUsageFlags::UNIFORM_BUFFER)?;
+        let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
+        let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
+        let bounds = (self.info.bounds_min.into(), self.info.bounds_max.into());
+        let info = SceneInfoBlock { sky: scene.sky.to_array(), ..self.info };
+        let (light_blocks, shadow_blocks) = lights(&scene.lights, bounds);
+        let own = [
+            ("instances", instances.clone()),
+            ("camera", camera.clone()),
+            ("sceneInfo", upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?),
+            ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
+            ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
+        ];
         upload.finish()?;
-        resources.buffers.insert("instances", instances.clone());
-        resources.buffers.insert("camera", camera.clone());
-        Ok(SceneGpu { resources, camera, bytes: self.bytes, instances, sent })
+        resources.buffers.extend(own);
+        Ok(SceneGpu { resources, camera, bytes: self.bytes, info, instances, sent })
     }
 
     /// Buffers that change with time: the poses of animated instances, when they moved.
@@ -201,10 +211,10 @@ impl SceneGpu {
 
     /// Buffers that change with colours, directions, positions and cone angles of the lights, and with the sky. The
     /// scene has as many lights and shadow maps as the one that was uploaded, and its geometry.
-    pub fn set_lights(&mut self, scene: &Scene) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+    pub fn set_lights(&mut self, list: &[Light], sky: Vec3) -> Vec<(Arc<Buffer>, Vec<u8>)> {
         let bounds = (self.info.bounds_min.into(), self.info.bounds_max.into());
-        let (light_blocks, shadow_blocks) = lights(&scene.lights, bounds);
-        self.info.sky = scene.sky.to_array();
+        let (light_blocks, shadow_blocks) = lights(list, bounds);
+        self.info.sky = sky.to_array();
         let contents: [(&str, &[u8]); 3] = [
             ("lights", bytemuck::cast_slice(&light_blocks)),
             ("shadowViews", bytemuck::cast_slice(&shadow_blocks)),

@@ -41,19 +41,14 @@ impl Viewpoint {
         Viewpoint { camera: *camera, previous: None }
     }
 
-    /// A camera written out in an experiment; near and far from the scene's size.
+    /// A camera written out in an experiment; what it leaves out of near and far is from the scene's size.
     pub fn placed(placed: &PlacedCamera, scene: &Scene) -> Viewpoint {
-        let (low, high) = scene.bounds();
-        let diagonal = (high - low).length().max(1.0);
-        let eye = Vec3::from(placed.eye);
-        Viewpoint::new(&Camera {
-            eye,
-            target: placed.target.into(),
-            up: Vec3::Y,
-            fov_y: placed.fov_y,
-            near: (0.001 * diagonal).max(0.01),
-            far: eye.distance((low + high) * 0.5) + diagonal,
-        })
+        Viewpoint::new(&camera(placed, scene.bounds()))
+    }
+
+    /// Another camera, in a scene of these bounds; what was seen in the frame before stays known.
+    pub fn look(&mut self, placed: &PlacedCamera, bounds: (Vec3, Vec3)) {
+        self.camera = camera(placed, bounds);
     }
 
     /// A camera that sees the whole of a scene that has none.
@@ -61,7 +56,7 @@ impl Viewpoint {
         let (low, high) = scene.bounds();
         let (centre, size) = ((low + high) * 0.5, (high - low).length().max(1.0));
         let eye = centre + Vec3::new(0.6, 0.4, 0.8) * size;
-        Viewpoint::placed(&PlacedCamera { eye: eye.into(), target: centre.into(), fov_y: 50.0 }, scene)
+        Viewpoint::placed(&PlacedCamera::new(eye.into(), centre.into(), 50.0), scene)
     }
 
     /// The content of the block `camera`, and on to the next frame.
@@ -96,6 +91,20 @@ impl Viewpoint {
             delta_time: delta as f32,
         })
         .to_vec()
+    }
+}
+
+/// A written-out camera in a scene of these bounds.
+fn camera(placed: &PlacedCamera, (low, high): (Vec3, Vec3)) -> Camera {
+    let diagonal = (high - low).length().max(1.0);
+    let eye = Vec3::from(placed.eye);
+    Camera {
+        eye,
+        target: placed.target.into(),
+        up: placed.up.into(),
+        fov_y: placed.fov_y,
+        near: placed.near.unwrap_or((0.001 * diagonal).max(0.01)),
+        far: placed.far.unwrap_or(eye.distance((low + high) * 0.5) + diagonal),
     }
 }
 
@@ -212,6 +221,6 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
 }
 
 /// How many shadow maps a scene needs: one a directional or spot light, six a point light.
-pub fn shadow_view_count(scene: &Scene) -> u32 {
-    scene.lights.iter().filter(|l| l.shadow).map(|l| if matches!(l.kind, LightKind::Point) { 6 } else { 1 }).sum()
+pub fn shadow_view_count(lights: &[Light]) -> u32 {
+    lights.iter().filter(|l| l.shadow).map(|l| if matches!(l.kind, LightKind::Point) { 6 } else { 1 }).sum()
 }

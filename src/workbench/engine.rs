@@ -5,6 +5,7 @@
 //! or kills its device takes nothing else with it.
 
 use super::builder::{self, Done, Job, Key};
+use super::keep;
 use super::report::{DeviceReport, Outline, PictureReport, Report};
 use super::wish::{Look, SlotWish, Wish};
 use crate::graph::run::FrameTimes;
@@ -15,6 +16,7 @@ use crate::scene::{Scene, SceneError};
 use crate::vulkan::{GpuOptions, VulkanError};
 use crossbeam_channel::{Receiver, Sender, select, unbounded};
 use std::collections::VecDeque;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -342,7 +344,7 @@ impl Run<'_> {
             let last = Mutex::new(Instant::now());
             let scene = Scene::open(&key.0, &|what, part| {
                 if cancel.load(Ordering::Relaxed) {
-                    return;
+                    return ControlFlow::Break(());
                 }
                 // The window need not hear of every texture.
                 if let Ok(mut last) = last.lock()
@@ -351,9 +353,10 @@ impl Run<'_> {
                     *last = Instant::now();
                     out.send(Report::Loading(what.to_string(), part));
                 }
+                ControlFlow::Continue(())
             });
             // A load that was replaced by another has nobody to tell.
-            if !cancel.load(Ordering::Relaxed) {
+            if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
                 let _ = loaded.send(scene.map(Arc::new));
             }
         });
@@ -370,6 +373,13 @@ impl Run<'_> {
                     self.approach(i)?;
                 }
                 self.disturb(1);
+            }
+            Err(SceneError::Cancelled) => {
+                // Cancelled for another scene, the other is being loaded by now.
+                if self.loading.as_ref().is_some_and(|c| c.load(Ordering::Relaxed)) {
+                    self.loading = None;
+                    self.out.send(Report::LoadFailed("loading was cancelled".into()));
+                }
             }
             Err(e) => {
                 self.loading = None;
@@ -564,12 +574,12 @@ impl Run<'_> {
         let slot = &mut self.slots[number];
         let Some(session) = &mut slot.session else { return Ok(()) };
         if let Some(camera) = &self.wish.camera {
-            session.look(camera);
+            session.set_camera(camera);
         }
         if std::mem::take(&mut slot.lights)
             && let Some((lights, sky)) = &self.wish.lights
         {
-            let _ = (lights, sky);
+            session.set_lights(lights, *sky);
         }
         session.set_time(self.clock.now);
         slot.frame += 1;
@@ -661,17 +671,16 @@ impl Run<'_> {
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
     fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
         let (Some(wish), Some(scene)) = (self.wish.slots[number].clone(), self.scene.clone()) else { return };
-        let mut experiment = self.wish.experiment(&wish);
-        experiment.time = self.clock.now;
+        let experiment = keep::experiment(&self.wish, &wish, &name, self.clock.now, Some(&scene));
         let remembers = self.slots[number]
             .session
             .as_ref()
             .is_some_and(|s| s.program.plan.textures.iter().any(|t| t.history));
         let frames = if remembers { 16 } else { 1 };
-        let lights = self.wish.lights.clone();
         let (lab, out) = (self.lab.clone(), self.out.clone());
+        let folder = lab.home.root.join("captures");
         std::thread::spawn(move || {
-            let result = super::keep::capture(&lab, experiment, &scene, lights, &name, resources, frames);
+            let result = keep::take(&lab, &experiment, scene, &folder, resources, frames);
             out.send(Report::Captured(result.map_err(|e| e.to_string())));
         });
     }

@@ -1,24 +1,71 @@
-//! Saving: experiments and captures.
+//! Saving: experiments and captures, as the window's state says.
 
-use crate::experiment::Experiment;
+use super::wish::{SlotWish, Wish};
+use crate::capture::{self, Resource, What};
+use crate::experiment::{Experiment, LightChange};
+use crate::graph::source::{At, Loc};
 use crate::lab::{Lab, LabError};
-use crate::scene::{Light, Scene};
+use crate::scene::{Light, LightKind, Scene};
 use glam::Vec3;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Captures an experiment into `captures/NAME`.
+/// A slot as an experiment of its own, with what differs from the scene's light.
+pub fn experiment(wish: &Wish, slot: &SlotWish, name: &str, time: f64, scene: Option<&Scene>) -> Experiment {
+    let mut experiment = Experiment { name: name.into(), time, ..wish.experiment(slot) };
+    if let (Some((lights, sky)), Some(scene)) = (&wish.lights, scene) {
+        experiment.sky = (*sky != scene.sky).then(|| (*sky).into());
+        experiment.lights = lights
+            .iter()
+            .zip(&scene.lights)
+            .filter(|(light, own)| light != own)
+            .map(|(light, own)| (Loc { value: own.name.clone(), at: At::default() }, change(light, own)))
+            .collect();
+    }
+    experiment
+}
+
+fn change(light: &Light, own: &Light) -> LightChange {
+    let angles = |kind: LightKind| match kind {
+        LightKind::Spot { inner, outer } => Some((f64::from(inner).to_degrees(), f64::from(outer).to_degrees())),
+        _ => None,
+    };
+    let differing = angles(light.kind).filter(|_| light.kind != own.kind);
+    LightChange {
+        color: (light.color != own.color).then(|| light.color.into()),
+        direction: (light.direction != own.direction).then(|| light.direction.into()),
+        position: (light.position != own.position).then(|| light.position.into()),
+        inner: differing.map(|a| a.0),
+        outer: differing.map(|a| a.1),
+    }
+}
+
+/// Lights and sky of a scene as an experiment has them, if they are not the scene's own.
+///
+/// # Errors
+/// The experiment changes a light that the scene does not have.
+pub fn lights(experiment: &Experiment, scene: &Arc<Scene>) -> Result<Option<(Vec<Light>, Vec3)>, LabError> {
+    if experiment.sky.is_none() && experiment.lights.is_empty() {
+        return Ok(None);
+    }
+    let adapted = experiment.adapted(scene.clone())?;
+    Ok(Some((adapted.lights.clone(), adapted.sky)))
+}
+
+/// Captures an experiment into `folder/NAME`, or the next name that is free.
 ///
 /// # Errors
 /// Those of rendering and writing.
-pub fn capture(
-    _lab: &Lab,
-    _experiment: Experiment,
-    _scene: &Arc<Scene>,
-    _lights: Option<(Vec<Light>, Vec3)>,
-    _name: &str,
-    _resources: Vec<String>,
-    _frames: usize,
+pub fn take(
+    lab: &Lab,
+    experiment: &Experiment,
+    scene: Arc<Scene>,
+    folder: &Path,
+    resources: Vec<String>,
+    frames: usize,
 ) -> Result<PathBuf, LabError> {
-    Err(LabError::Request("not merged yet".into()))
+    let resources = resources.into_iter().map(|name| Resource { name, mip: 0, layer: 0 }).collect();
+    let what = What { resources, frames, step: 0.0 };
+    let name = capture::free_name(folder, &experiment.name);
+    capture::take(lab, experiment, scene, &what, folder, &name)
 }

@@ -245,6 +245,7 @@ impl Workbench {
         if self.wish.scene == experiment.scene {
             if let Some(scene) = &self.scene {
                 self.wish.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
+                self.wish.lights = keep::lights(experiment, scene).unwrap_or_default();
             }
         } else {
             self.open_scene(&experiment.scene);
@@ -353,6 +354,10 @@ impl Workbench {
         if !same || self.experiment.is_some() {
             let fallback = Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
             let experiment = self.experiment.take().unwrap_or(fallback);
+            match keep::lights(&experiment, &scene) {
+                Ok(lights) => self.wish.lights = lights,
+                Err(e) => self.trouble = Some(e.to_string()),
+            }
             match viewpoint_of(&experiment, &scene) {
                 Ok(v) => self.wish.camera = Some(v.camera),
                 Err(e) => {

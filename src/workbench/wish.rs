@@ -91,16 +91,13 @@ impl Wish {
             name: "workbench".into(),
             graph: slot.graph.clone(),
             scene: self.scene.clone(),
-            camera: self.camera.map_or(CameraChoice::Named("default".into()), |c| CameraChoice::Placed(placed(&c))),
+            camera: self.camera.map_or(CameraChoice::Named("default".into()), |c| CameraChoice::Placed(PlacedCamera::from(&c))),
             size: self.size,
             time: self.clock.at,
+            sky: None,
+            lights: Vec::new(),
             params,
             sources,
         }
     }
-}
-
-/// A camera as an experiment writes it.
-pub fn placed(camera: &Camera) -> PlacedCamera {
-    PlacedCamera { eye: camera.eye.into(), target: camera.target.into(), fov_y: camera.fov_y }
 }

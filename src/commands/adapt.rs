@@ -1,0 +1,112 @@
+//! What several commands let the command line change of an experiment.
+
+use crate::experiment::{CameraChoice, Experiment, PlacedCamera, check_size};
+use crate::graph::source::{At, Loc};
+use crate::lab::LabError;
+use crate::scene::Scene;
+use clap::Args;
+use std::path::PathBuf;
+
+/// An experiment, and what is different this time.
+#[derive(Debug, Args)]
+pub struct ExperimentArgs {
+    /// Experiment file, for example configs/default.ron.
+    experiment: PathBuf,
+    /// Another scene: a built-in name, a scene RON, or a model file.
+    #[arg(long)]
+    scene: Option<String>,
+    /// Another camera of the scene, or one written out: "(eye: (0, 1, 5), target: (0, 1, 0), fov_y: 60)".
+    #[arg(long)]
+    camera: Option<String>,
+    /// Picture size.
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
+    /// Set a parameter; may be given many times.
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Time of the first frame, s.
+    #[arg(long)]
+    time: Option<f64>,
+}
+
+impl ExperimentArgs {
+    /// The experiment with the command line's changes.
+    pub fn read(&self) -> Result<Experiment, LabError> {
+        let mut experiment = Experiment::read(&self.experiment).map_err(LabError::Input)?;
+        if let Some(scene) = &self.scene {
+            experiment.scene.clone_from(scene);
+        }
+        if let Some(text) = &self.size {
+            experiment.size = parse_size(text)?;
+        }
+        if let Some(text) = &self.camera {
+            experiment.camera = parse_camera(text)?;
+        }
+        experiment.time = self.time.unwrap_or(experiment.time);
+        if !experiment.time.is_finite() {
+            return Err(LabError::Request("--time must be a finite number of seconds".into()));
+        }
+        // Later settings win, and messages about them point at the command line.
+        let file = experiment.sources.add("--set".as_ref(), self.set.join("\n"));
+        let mut offset = 0;
+        for setting in &self.set {
+            let Some((name, value)) = setting.split_once('=') else {
+                return Err(LabError::Request(format!("--set {setting}: expected NAME=VALUE")));
+            };
+            experiment.params.push((Loc { value: name.trim().into(), at: At { file, offset } }, value.into()));
+            offset += u32::try_from(setting.len() + 1).unwrap_or(0);
+        }
+        Ok(experiment)
+    }
+}
+
+/// The experiment's scene, lit as the experiment says.
+pub fn open_scene(experiment: &Experiment) -> Result<Scene, LabError> {
+    let mut scene = super::open_scene(&experiment.scene)?;
+    experiment.adapt_scene(&mut scene)?;
+    Ok(scene)
+}
+
+/// A picture's size, `WIDTHxHEIGHT`.
+pub fn parse_size(text: &str) -> Result<(u32, u32), LabError> {
+    let wrong = || LabError::Request(format!("--size {text}: expected WIDTHxHEIGHT, for example 1280x720"));
+    let (w, h) = text.split_once('x').ok_or_else(wrong)?;
+    let size = (w.trim().parse().map_err(|_| wrong())?, h.trim().parse().map_err(|_| wrong())?);
+    check_size(size).map_err(LabError::Request)?;
+    Ok(size)
+}
+
+fn parse_camera(text: &str) -> Result<CameraChoice, LabError> {
+    if !text.trim_start().starts_with('(') {
+        return Ok(CameraChoice::Named(text.into()));
+    }
+    let placed: PlacedCamera = crate::graph::source::options().from_str(text).map_err(|e| {
+        LabError::Request(format!("--camera: {e}; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)"))
+    })?;
+    Ok(CameraChoice::Placed(placed))
+}
+
+/// A texture with its mip and layer, `NAME[:MIP[:LAYER]]`.
+pub fn parse_resource(text: &str) -> Result<(String, u32, u32), LabError> {
+    let mut parts = text.split(':');
+    let name = parts.next().unwrap_or("").to_string();
+    let mut number = |what: &str| match parts.next() {
+        None => Ok(0),
+        Some(n) => n.parse().map_err(|_| LabError::Request(format!("--resource {text}: '{n}' is no {what}"))),
+    };
+    Ok((name, number("mip")?, number("layer")?))
+}
+
+/// Most frames of one run.
+const MAX_FRAMES: usize = 1_000_000;
+
+/// Whether so many frames can be run, and so far apart.
+pub fn check_frames(frames: usize, warmup: usize, step: f64) -> Result<(), LabError> {
+    if !step.is_finite() {
+        return Err(LabError::Request("--step must be a finite number of seconds".into()));
+    }
+    if frames == 0 || frames.saturating_add(warmup) > MAX_FRAMES {
+        return Err(LabError::Request(format!("--frames must be 1 to {MAX_FRAMES}")));
+    }
+    Ok(())
+}

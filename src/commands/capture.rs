@@ -1,0 +1,53 @@
+//! `conelab capture`.
+
+use super::DeviceArgs;
+use super::adapt::{self, ExperimentArgs, parse_resource};
+use crate::capture::{Resource, What, free_name, sweep_partials, take};
+use crate::experiment::checked_name;
+use crate::lab::{Home, Lab, LabError};
+use clap::Args;
+use std::sync::Arc;
+
+/// Arguments of `capture`.
+#[derive(Debug, Args)]
+pub struct CaptureArgs {
+    #[command(flatten)]
+    experiment: ExperimentArgs,
+    /// Name of the capture; the experiment's, with a number where that is taken, when absent.
+    #[arg(long)]
+    name: Option<String>,
+    /// Keep this texture too; may be given many times.
+    #[arg(long, value_name = "NAME[:MIP[:LAYER]]")]
+    resource: Vec<String>,
+    /// Frames to run; the last is kept.
+    #[arg(long, default_value_t = 1)]
+    frames: usize,
+    /// Time from frame to frame, s.
+    #[arg(long, default_value_t = 0.0)]
+    step: f64,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Takes a capture.
+pub fn run(args: &CaptureArgs) -> Result<(), LabError> {
+    let experiment = args.experiment.read()?;
+    adapt::check_frames(args.frames, 0, args.step)?;
+    let resources = args.resource.iter().map(|text| {
+        let (name, mip, layer) = parse_resource(text)?;
+        Ok(Resource { name, mip, layer })
+    });
+    let what = What { resources: resources.collect::<Result<_, LabError>>()?, frames: args.frames, step: args.step };
+    let home = Home::find()?;
+    let folder = home.root.join("captures");
+    let name = match &args.name {
+        Some(name) => checked_name(name)?,
+        None => free_name(&folder, &checked_name(&experiment.name)?),
+    };
+    sweep_partials(&folder);
+    let scene = adapt::open_scene(&experiment)?;
+    let lab = Lab::open(home, args.device.options())?;
+    let path = take(&lab, &experiment, Arc::new(scene), &what, &folder, &name)?;
+    say!("wrote {}", super::shown(&path).display());
+    super::validated(&lab)
+}

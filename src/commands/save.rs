@@ -1,0 +1,32 @@
+//! `conelab save`.
+
+use super::adapt::ExperimentArgs;
+use crate::experiment::{checked_name, write};
+use crate::graph::load::load;
+use crate::lab::{Home, LabError};
+use clap::Args;
+
+/// Arguments of `save`.
+#[derive(Debug, Args)]
+pub struct SaveArgs {
+    #[command(flatten)]
+    experiment: ExperimentArgs,
+    /// Name of the new experiment: configs/NAME.ron is written.
+    #[arg(long)]
+    name: String,
+    /// Replace the experiment of that name, keeping its comments.
+    #[arg(long)]
+    overwrite: bool,
+}
+
+/// Saves an experiment with what the command line changes.
+pub fn run(args: &SaveArgs) -> Result<(), LabError> {
+    let name = checked_name(&args.name)?;
+    let experiment = args.experiment.read()?;
+    let home = Home::find()?;
+    let graph = load(&home.graph_path(&experiment.graph), &home.folders()).map_err(LabError::Input)?;
+    let path = home.root.join("configs").join(format!("{name}.ron"));
+    write(&experiment, &graph.params, &path, args.overwrite)?;
+    say!("wrote {}", super::shown(&path).display());
+    Ok(())
+}

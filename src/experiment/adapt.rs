@@ -1,0 +1,106 @@
+//! An experiment's changes to the light of its scene.
+
+use super::{Experiment, LightChange};
+use crate::graph::source::{Diagnostic, Loc};
+use crate::lab::LabError;
+use crate::scene::{Light, LightKind, Scene};
+use glam::Vec3;
+use std::sync::Arc;
+
+impl Experiment {
+    /// Changes sky and lights of the scene as the experiment says. Doing it twice changes nothing more.
+    ///
+    /// # Errors
+    /// Lights that the scene does not have, and fields that a light of that kind does not have, with their places.
+    pub fn adapt_scene(&self, scene: &mut Scene) -> Result<(), LabError> {
+        let mut errors = Vec::new();
+        for (name, change) in &self.lights {
+            let mut known = false;
+            for light in scene.lights.iter_mut().filter(|l| l.name == name.value) {
+                known = true;
+                if let Err(message) = apply(change, light) {
+                    errors.push(self.sources.error(name.at, format!("light '{}' {message}", name.value)));
+                    break;
+                }
+            }
+            if !known {
+                errors.push(self.no_light(name, scene));
+            }
+        }
+        if !errors.is_empty() {
+            return Err(LabError::Input(errors));
+        }
+        scene.sky = self.sky.map_or(scene.sky, Vec3::from);
+        Ok(())
+    }
+
+    /// Like [`Experiment::adapt_scene`] for a scene that others share: it is copied only if something changes.
+    ///
+    /// # Errors
+    /// As [`Experiment::adapt_scene`].
+    pub fn adapted(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, LabError> {
+        let name = scene.name.clone();
+        let mut light = Scene { name, lights: scene.lights.clone(), sky: scene.sky, ..Scene::default() };
+        self.adapt_scene(&mut light)?;
+        if light.lights == scene.lights && light.sky == scene.sky {
+            return Ok(scene);
+        }
+        let mut scene = scene;
+        let changed = Arc::make_mut(&mut scene);
+        (changed.lights, changed.sky) = (light.lights, light.sky);
+        Ok(scene)
+    }
+
+    fn no_light(&self, name: &Loc<String>, scene: &Scene) -> Diagnostic {
+        let message = format!("scene '{}' has no light '{}'", scene.name, name.value);
+        self.sources.error(name.at, message).nearest(&name.value, scene.lights.iter().map(|l| l.name.as_str()))
+    }
+}
+
+/// The change that makes any light of that kind and name like this one.
+pub(super) fn change_to(light: &Light) -> LightChange {
+    let directed = !matches!(light.kind, LightKind::Point);
+    let placed = !matches!(light.kind, LightKind::Directional);
+    let angles = match light.kind {
+        LightKind::Spot { inner, outer } => Some((f64::from(inner).to_degrees(), f64::from(outer).to_degrees())),
+        _ => None,
+    };
+    LightChange {
+        color: Some(light.color.into()),
+        direction: directed.then(|| light.direction.into()),
+        position: placed.then(|| light.position.into()),
+        inner: angles.map(|a| a.0),
+        outer: angles.map(|a| a.1),
+    }
+}
+
+fn apply(change: &LightChange, light: &mut Light) -> Result<(), String> {
+    light.color = change.color.map_or(light.color, Vec3::from);
+    match (change.position, light.kind) {
+        (Some(_), LightKind::Directional) => return Err("is directional and has no position".into()),
+        (Some(position), _) => light.position = position.into(),
+        (None, _) => {}
+    }
+    match (change.direction, light.kind) {
+        (Some(_), LightKind::Point) => return Err("is a point and has no direction".into()),
+        (Some(direction), _) => light.direction = unit(direction.into()),
+        (None, _) => {}
+    }
+    if change.inner.is_none() && change.outer.is_none() {
+        return Ok(());
+    }
+    let LightKind::Spot { inner, outer } = &mut light.kind else {
+        return Err("is no spot and has no angles".into());
+    };
+    *inner = change.inner.map_or(*inner, |a| a.to_radians() as f32);
+    *outer = change.outer.map_or(*outer, |a| a.to_radians() as f32);
+    if *inner >= *outer {
+        return Err("needs an inner angle that is less than its outer one".into());
+    }
+    Ok(())
+}
+
+/// What is a unit vector already keeps its bits, so that a direction that was written out is read as it was.
+fn unit(v: Vec3) -> Vec3 {
+    if v.is_normalized() { v } else { v.try_normalize().unwrap_or(Vec3::NEG_Y) }
+}

@@ -1,0 +1,188 @@
+//! Experiments: graph, scene, camera, size, time, changes to the light, and the parameter values that differ from the
+//! defaults.
+
+mod adapt;
+mod read;
+mod spans;
+mod write;
+
+pub(crate) use write::placed_text;
+pub use write::{resolved_text, write};
+
+use crate::graph::param::Params;
+use crate::graph::source::{Loc, Sources};
+use crate::lab::LabError;
+use crate::scene::Camera;
+use glam::Vec3;
+use serde::Deserialize;
+
+/// Where a picture is taken from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CameraChoice {
+    /// A camera of the scene.
+    Named(String),
+    /// Written out.
+    Placed(PlacedCamera),
+}
+
+/// A camera written out.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct PlacedCamera {
+    /// Position, m.
+    pub eye: (f32, f32, f32),
+    /// The point it looks at, m.
+    pub target: (f32, f32, f32),
+    /// What is up in the picture; need not be at right angles to the view.
+    #[serde(default = "y_up")]
+    pub up: (f32, f32, f32),
+    /// Vertical field of view, degrees.
+    pub fov_y: f32,
+    /// Distance of the near plane, m; from the scene's size when absent.
+    #[serde(default)]
+    pub near: Option<f32>,
+    /// Distance of the far plane, m; from the scene's size when absent.
+    #[serde(default)]
+    pub far: Option<f32>,
+}
+
+fn y_up() -> (f32, f32, f32) {
+    (0.0, 1.0, 0.0)
+}
+
+impl PlacedCamera {
+    /// A camera that stands upright, with clip planes from the scene's size.
+    pub fn new(eye: (f32, f32, f32), target: (f32, f32, f32), fov_y: f32) -> PlacedCamera {
+        PlacedCamera { eye, target, up: y_up(), fov_y, near: None, far: None }
+    }
+
+    /// What is wrong with its numbers.
+    ///
+    /// # Errors
+    /// The text for the user.
+    pub fn check(&self) -> Result<(), String> {
+        let numbers = [self.eye, self.target, self.up].map(|v| Vec3::from(v).is_finite());
+        if numbers.contains(&false) || !self.fov_y.is_finite() {
+            return Err("the camera's numbers must be finite".into());
+        }
+        let (near, far) = (self.near.unwrap_or(f32::MIN_POSITIVE), self.far.unwrap_or(f32::MAX));
+        if !(near > 0.0 && far > near && far.is_finite()) {
+            return Err("the camera's planes must obey 0 < near < far".into());
+        }
+        Ok(())
+    }
+}
+
+impl From<&Camera> for PlacedCamera {
+    fn from(c: &Camera) -> PlacedCamera {
+        PlacedCamera {
+            eye: c.eye.into(),
+            target: c.target.into(),
+            up: c.up.into(),
+            fov_y: c.fov_y,
+            near: Some(c.near),
+            // Models may say that there is no far plane.
+            far: Some(c.far).filter(|f| f.is_finite()),
+        }
+    }
+}
+
+/// What an experiment changes of a light; what is absent stays as the scene has it.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct LightChange {
+    /// Irradiance (directional) or radiant intensity, 0 or more.
+    pub color: Option<(f32, f32, f32)>,
+    /// The way the light travels, of any length but 0.
+    pub direction: Option<(f32, f32, f32)>,
+    /// Position, m.
+    pub position: Option<(f32, f32, f32)>,
+    /// Half-angle of a spot's full strength, degrees.
+    pub inner: Option<f64>,
+    /// Half-angle of a spot's end, degrees.
+    pub outer: Option<f64>,
+}
+
+/// An experiment.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    /// Name: the file's stem.
+    pub name: String,
+    /// Graph file in the passes folder.
+    pub graph: String,
+    /// Built-in name, or a path.
+    pub scene: String,
+    /// Camera.
+    pub camera: CameraChoice,
+    /// Width and height in pixels.
+    pub size: (u32, u32),
+    /// Seconds.
+    pub time: f64,
+    /// Radiance of the sky, instead of the scene's.
+    pub sky: Option<(f32, f32, f32)>,
+    /// Changes to the scene's lights, by name.
+    pub lights: Vec<(Loc<String>, LightChange)>,
+    /// (name, value as RON, where it stands).
+    pub params: Vec<(Loc<String>, String)>,
+    /// The file, for messages.
+    pub sources: Sources,
+}
+
+/// Largest picture, pixels a side.
+pub const MAX_SIZE: u32 = 16384;
+
+/// Size of a picture when nothing else is said.
+const DEFAULT_SIZE: (u32, u32) = (1280, 720);
+
+/// Name of the camera when nothing else is said.
+const DEFAULT_CAMERA: &str = "default";
+
+impl Experiment {
+    /// The values of all parameters: `defaults`, then what the experiment sets.
+    ///
+    /// # Errors
+    /// Unknown names and wrong values, all of them, with their places.
+    pub fn params_over(&self, defaults: &Params) -> Result<Params, LabError> {
+        let mut params = defaults.clone();
+        let mut errors = Vec::new();
+        for (name, text) in &self.params {
+            if let Err(message) = params.set(&name.value, text) {
+                errors.push(self.sources.error(name.at, message));
+            }
+        }
+        if errors.is_empty() { Ok(params) } else { Err(LabError::Input(errors)) }
+    }
+}
+
+/// Whether pictures of that size can be made.
+///
+/// # Errors
+/// The text for the user.
+pub fn check_size((width, height): (u32, u32)) -> Result<(), String> {
+    if width == 0 || height == 0 || width > MAX_SIZE || height > MAX_SIZE {
+        return Err(format!("a picture of {width}x{height} cannot be made: each side is 1 to {MAX_SIZE} pixels"));
+    }
+    Ok(())
+}
+
+/// Longest name of an experiment or capture, bytes.
+const MAX_NAME: usize = 64;
+
+/// A name for a new file or folder: letters, digits, `-` and `_`; spaces become `-`.
+///
+/// # Errors
+/// Empty, more than 64 bytes, or another character: the text for the user.
+pub fn checked_name(name: &str) -> Result<String, LabError> {
+    let name = name.trim().replace(' ', "-");
+    let wrong = |why: &str| LabError::Request(format!("'{name}' cannot be a name: {why}"));
+    if name.is_empty() {
+        return Err(wrong("it is empty"));
+    }
+    if name.len() > MAX_NAME {
+        return Err(wrong(&format!("it has more than {MAX_NAME} bytes")));
+    }
+    match name.chars().find(|c| !c.is_alphanumeric() && !"-_".contains(*c)) {
+        Some(c) => Err(wrong(&format!("{c:?} is not allowed; use letters, digits, - and _"))),
+        None => Ok(name),
+    }
+}

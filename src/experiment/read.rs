@@ -1,0 +1,148 @@
+//! Reading experiments.
+
+use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, Experiment, LightChange, PlacedCamera, check_size};
+use crate::graph::source::{Diagnostic, Entries, Loc, Severity, Sources};
+use glam::Vec3;
+use serde::Deserialize;
+use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
+use std::path::{Path, PathBuf};
+
+impl<'de> Deserialize<'de> for CameraChoice {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct V;
+        impl<'de> Visitor<'de> for V {
+            type Value = CameraChoice;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a camera's name, or (eye: (x, y, z), target: (x, y, z), fov_y: degrees)")
+            }
+            fn visit_str<E>(self, name: &str) -> Result<CameraChoice, E> {
+                Ok(CameraChoice::Named(name.into()))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<CameraChoice, A::Error> {
+                PlacedCamera::deserialize(MapAccessDeserializer::new(map)).map(CameraChoice::Placed)
+            }
+        }
+        deserializer.deserialize_any(V)
+    }
+}
+
+/// A RON value kept as text, to be read by the parameter it is for.
+#[derive(Clone, Debug)]
+struct RawText(String);
+
+impl<'de> Deserialize<'de> for RawText {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+        Ok(RawText(raw.trim().get_ron().to_string()))
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ExperimentFile {
+    graph: Loc<String>,
+    scene: Loc<String>,
+    #[serde(default)]
+    camera: Option<Loc<CameraChoice>>,
+    #[serde(default)]
+    size: Option<Loc<(u32, u32)>>,
+    #[serde(default)]
+    time: Option<Loc<f64>>,
+    #[serde(default)]
+    sky: Option<Loc<(f32, f32, f32)>>,
+    #[serde(default)]
+    lights: Entries<LightChange>,
+    #[serde(default)]
+    params: Entries<RawText>,
+}
+
+impl Experiment {
+    /// Reads an experiment. Relative scene paths are relative to its folder.
+    ///
+    /// # Errors
+    /// All mistakes of the file.
+    pub fn read(path: &Path) -> Result<Experiment, Vec<Diagnostic>> {
+        let mut sources = Sources::default();
+        let file = sources.read(path).map_err(|e| {
+            vec![e.help(Some("give the path of an experiment, for example configs/default.ron".into()))]
+        })?;
+        parse(path, sources, file)
+    }
+
+    /// Reads an experiment from text, as if it stood in the file `path`.
+    ///
+    /// # Errors
+    /// As [`Experiment::read`].
+    pub fn from_text(path: &Path, text: &str) -> Result<Experiment, Vec<Diagnostic>> {
+        let mut sources = Sources::default();
+        let file = sources.add(path, text.to_string());
+        parse(path, sources, file)
+    }
+}
+
+fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Diagnostic>> {
+    let mut errors = Vec::new();
+    let parsed = sources.parse::<ExperimentFile>(file, &mut errors, &mut Vec::new());
+    let Some(parsed) = parsed.filter(|_| !errors.iter().any(|e| e.severity == Severity::Error)) else {
+        return Err(errors);
+    };
+    let size = parsed.size.as_ref().map_or(DEFAULT_SIZE, |s| s.value);
+    if let Err(message) = check_size(size) {
+        let at = parsed.size.as_ref().map_or(parsed.graph.at, |s| s.at);
+        errors.push(sources.error(at, message));
+    }
+    if let Some(time) = parsed.time.as_ref().filter(|t| !t.value.is_finite()) {
+        errors.push(sources.error(time.at, "the time must be a finite number of seconds"));
+    }
+    if let Some(sky) = parsed.sky.as_ref().filter(|s| !is_colour(s.value)) {
+        errors.push(sources.error(sky.at, "the sky's radiance must be finite and not negative"));
+    }
+    for (name, change) in &parsed.lights.0 {
+        if let Err(message) = check_light(&change.value) {
+            errors.push(sources.error(change.at, format!("light '{}': {message}", name.value)));
+        }
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let folder = path.parent().unwrap_or(Path::new("."));
+    Ok(Experiment {
+        name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
+        graph: parsed.graph.value,
+        scene: scene_path(folder, &parsed.scene.value),
+        camera: parsed.camera.map_or(CameraChoice::Named(DEFAULT_CAMERA.into()), |c| c.value),
+        size,
+        time: parsed.time.map_or(0.0, |t| t.value),
+        sky: parsed.sky.map(|s| s.value),
+        lights: parsed.lights.0.into_iter().map(|(name, change)| (name, change.value)).collect(),
+        params: parsed.params.0.into_iter().map(|(name, value)| (name, value.value.0)).collect(),
+        sources,
+    })
+}
+
+fn is_colour(c: (f32, f32, f32)) -> bool {
+    let c = Vec3::from(c);
+    c.is_finite() && c.min_element() >= 0.0
+}
+
+fn check_light(change: &LightChange) -> Result<(), String> {
+    if change.color.is_some_and(|c| !is_colour(c)) {
+        return Err("its color must be finite and not negative".into());
+    }
+    if change.position.is_some_and(|p| !Vec3::from(p).is_finite()) {
+        return Err("its position must be finite".into());
+    }
+    if change.direction.is_some_and(|d| Vec3::from(d).try_normalize().is_none()) {
+        return Err("its direction must be finite and not zero".into());
+    }
+    if [change.inner, change.outer].iter().flatten().any(|a| !(0.0..=89.0).contains(a)) {
+        return Err("its angles must be 0 to 89 degrees".into());
+    }
+    Ok(())
+}
+
+/// Names stay; files are looked up beside the experiment first.
+fn scene_path(folder: &Path, scene: &str) -> String {
+    let beside: PathBuf = folder.join(scene);
+    if scene.contains('.') && beside.is_file() { beside.to_string_lossy().into_owned() } else { scene.to_string() }
+}

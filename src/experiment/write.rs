@@ -1,0 +1,319 @@
+//! Writing experiments: only what differs from the defaults, and with the comments of a file that is replaced.
+
+use super::adapt::change_to;
+use super::spans::{self, Body, Edits};
+use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, Experiment, LightChange, PlacedCamera};
+use crate::graph::param::{Params, Value};
+use crate::graph::source::{At, Diagnostic, Loc};
+use crate::lab::LabError;
+use crate::scene::Scene;
+use std::path::{Component, Path, PathBuf};
+
+/// Writes an experiment to `path`: graph, scene, camera, size, what was given of time, sky and lights, and the
+/// parameters that differ from `defaults`. The file is read back before it takes its place. A file that is replaced is
+/// edited in place: comments stay, lines that say the same stay, values that changed are replaced where they stand, and
+/// those that became defaults go with their lines.
+///
+/// # Errors
+/// A file that exists (without `overwrite`), unknown parameters, values that cannot be read back, no permission; the
+/// old file is untouched then.
+pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite: bool) -> Result<(), LabError> {
+    if !overwrite && path.exists() {
+        return Err(exists(path));
+    }
+    let params = experiment.params_over(defaults)?;
+    let differing = params.list.iter().zip(&params.values).zip(&defaults.values).filter(|((_, v), d)| v != d);
+    let wanted = Wanted {
+        scene: scene_text(&experiment.scene, path),
+        params: differing.map(|((p, v), _)| (p.name.clone(), value_text(v))).collect(),
+        values: &params,
+        experiment,
+    };
+    let right = |text: &str| read_back(experiment, &params, defaults, path, text);
+    let edited = if overwrite { edited(&wanted, defaults, path).filter(|text| right(text).is_ok()) } else { None };
+    let text = edited.unwrap_or_else(|| fresh(&wanted));
+    right(&text)?;
+    let written = if overwrite {
+        crate::files::write_whole(path, text.as_bytes())
+    } else {
+        crate::files::write_new(path, text.as_bytes())
+    };
+    written.map_err(|e| match e.kind() {
+        std::io::ErrorKind::AlreadyExists => exists(path),
+        _ => LabError::Request(format!("cannot write '{}': {e}", path.display())),
+    })
+}
+
+/// The text of an experiment that depends on no defaults: every parameter, the camera, the sky and the lights are
+/// written out. It is for the file `path`, which decides how a scene file is named.
+///
+/// # Errors
+/// Unknown parameters; values that cannot be read back.
+pub fn resolved_text(
+    experiment: &Experiment,
+    defaults: &Params,
+    camera: &PlacedCamera,
+    scene: &Scene,
+    path: &Path,
+) -> Result<String, LabError> {
+    let params = experiment.params_over(defaults)?;
+    let mut resolved = experiment.clone();
+    resolved.camera = CameraChoice::Placed(*camera);
+    resolved.sky = Some(scene.sky.into());
+    // A change is for all lights of a name: only a name of one light can be written out.
+    let single = |name: &str| !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1;
+    let lights = scene.lights.iter().filter(|l| single(&l.name));
+    resolved.lights = lights.map(|l| (Loc { value: l.name.clone(), at: At::default() }, change_to(l))).collect();
+    let all = params.list.iter().zip(&params.values).map(|(p, v)| (p.name.clone(), value_text(v)));
+    let wanted = Wanted {
+        scene: scene_text(&experiment.scene, path),
+        params: all.collect(),
+        values: &params,
+        experiment: &resolved,
+    };
+    let text = fresh(&wanted);
+    read_back(&resolved, &params, defaults, path, &text)?;
+    Ok(text)
+}
+
+fn exists(path: &Path) -> LabError {
+    LabError::Request(format!("'{}' exists: choose another name, or ask for it to be overwritten", path.display()))
+}
+
+/// What the text must say.
+struct Wanted<'e> {
+    experiment: &'e Experiment,
+    scene: String,
+    params: Vec<(String, String)>,
+    values: &'e Params,
+}
+
+/// Whether a text says the same as an experiment.
+fn read_back(
+    experiment: &Experiment,
+    params: &Params,
+    defaults: &Params,
+    path: &Path,
+    text: &str,
+) -> Result<(), LabError> {
+    let wrong = |why: String| {
+        LabError::Request(format!("'{}' cannot be written: it would not read back as it is: {why}", path.display()))
+    };
+    let told = |list: &[Diagnostic]| list.first().map_or(String::new(), |d| d.message.clone());
+    let found = Experiment::from_text(path, text).map_err(|e| wrong(told(&e)))?;
+    let values = match found.params_over(defaults) {
+        Ok(params) => params.values,
+        Err(LabError::Input(list)) => return Err(wrong(told(&list))),
+        Err(e) => return Err(e),
+    };
+    let checks = [
+        ("graph", found.graph == experiment.graph),
+        ("scene", same_scene(&found.scene, &experiment.scene)),
+        ("camera", found.camera == experiment.camera),
+        ("size", found.size == experiment.size),
+        ("time", found.time == experiment.time),
+        ("sky", found.sky == experiment.sky),
+        ("lights", changes(&found) == changes(experiment)),
+        ("params", values == params.values),
+    ];
+    match checks.iter().find(|c| !c.1) {
+        Some((field, _)) => Err(wrong(format!("`{field}` differs"))),
+        None => Ok(()),
+    }
+}
+
+fn changes(experiment: &Experiment) -> Vec<(&str, LightChange)> {
+    let mut list: Vec<_> = experiment.lights.iter().map(|(name, change)| (name.value.as_str(), *change)).collect();
+    list.sort_by_key(|l| l.0);
+    list
+}
+
+fn same_scene(a: &str, b: &str) -> bool {
+    let real = |name: &str| Path::new(name).canonicalize().ok();
+    a == b || real(a).is_some_and(|found| real(b) == Some(found))
+}
+
+/// How a scene is named in the file `path`: files of the project relative to its folder, everything else as it is.
+fn scene_text(scene: &str, path: &Path) -> String {
+    let relative = || {
+        let file = Path::new(scene).canonicalize().ok().filter(|p| p.is_file())?;
+        let folder = std::path::absolute(path).ok()?.parent()?.to_path_buf();
+        // Folders that are still to be made have no canonical name.
+        let made = folder.ancestors().find(|p| p.exists())?;
+        let folder = made.canonicalize().ok()?.join(folder.strip_prefix(made).ok()?);
+        let project = folder.ancestors().find(|p| p.join("passes").is_dir() && p.join("shaders").is_dir())?;
+        file.starts_with(project).then(|| between(&folder, &file))?.to_str().map(String::from)
+    };
+    relative().unwrap_or_else(|| scene.to_string())
+}
+
+/// The way from a folder to a file, both absolute.
+fn between(folder: &Path, file: &Path) -> PathBuf {
+    let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
+    let up = folder.components().skip(common).map(|_| Component::ParentDir);
+    up.chain(file.components().skip(common)).collect()
+}
+
+fn value_text(value: &Value) -> String {
+    match value {
+        Value::Choice(name) => quoted(name),
+        other => other.to_string(),
+    }
+}
+
+fn quoted(text: &str) -> String {
+    format!("{text:?}")
+}
+
+fn vector((x, y, z): (f32, f32, f32)) -> String {
+    format!("({x:?}, {y:?}, {z:?})")
+}
+
+/// A written-out camera as RON.
+pub(crate) fn placed_text(c: &PlacedCamera) -> String {
+    let mut out = format!("(eye: {}, target: {}", vector(c.eye), vector(c.target));
+    if c.up != super::y_up() {
+        out += &format!(", up: {}", vector(c.up));
+    }
+    out += &format!(", fov_y: {:?}", c.fov_y);
+    for (name, value) in [("near", c.near), ("far", c.far)] {
+        out += &value.map_or(String::new(), |v| format!(", {name}: {v:?}"));
+    }
+    out + ")"
+}
+
+fn camera_text(camera: &CameraChoice) -> String {
+    match camera {
+        CameraChoice::Named(name) => quoted(name),
+        CameraChoice::Placed(placed) => placed_text(placed),
+    }
+}
+
+fn light_text(change: &LightChange) -> String {
+    let vectors = [("color", change.color), ("direction", change.direction), ("position", change.position)];
+    let angles = [("inner", change.inner), ("outer", change.outer)];
+    let parts = vectors.iter().filter_map(|(n, v)| v.map(|v| format!("{n}: {}", vector(v))));
+    let parts = parts.chain(angles.iter().filter_map(|(n, a)| a.map(|a| format!("{n}: {a:?}"))));
+    format!("({})", parts.collect::<Vec<_>>().join(", "))
+}
+
+impl Wanted<'_> {
+    fn lights(&self) -> Vec<(String, String)> {
+        self.experiment.lights.iter().map(|(name, change)| (name.value.clone(), light_text(change))).collect()
+    }
+
+    /// Every field but the maps: name, text, and whether leaving it out says the same.
+    fn fields(&self) -> [(&'static str, String, bool); 6] {
+        let e = self.experiment;
+        [
+            ("graph", quoted(&e.graph), false),
+            ("scene", quoted(&self.scene), false),
+            ("camera", camera_text(&e.camera), e.camera == CameraChoice::Named(DEFAULT_CAMERA.into())),
+            ("size", format!("({}, {})", e.size.0, e.size.1), e.size == DEFAULT_SIZE),
+            ("time", format!("{:?}", e.time), e.time == 0.0),
+            ("sky", e.sky.map_or(String::new(), vector), e.sky.is_none()),
+        ]
+    }
+}
+
+fn fresh(wanted: &Wanted) -> String {
+    let mut out = String::from("(\n");
+    for (name, text, absent) in wanted.fields() {
+        // Camera and size are always said, so that nobody has to look up what they are.
+        if !absent || name == "camera" || name == "size" {
+            out += &format!("    {name}: {text},\n");
+        }
+    }
+    let lights = wanted.lights();
+    if !lights.is_empty() {
+        out += &format!("    {},\n", map_text("lights", &lights).replace('\n', "\n    "));
+    }
+    out += &format!("    {},\n)\n", map_text("params", &wanted.params).replace('\n', "\n    "));
+    out
+}
+
+fn map_text(name: &str, entries: &[(String, String)]) -> String {
+    if entries.is_empty() {
+        return format!("{name}: {{}}");
+    }
+    let lines: Vec<String> = entries.iter().map(|(k, v)| format!("    {}: {v},\n", quoted(k))).collect();
+    format!("{name}: {{\n{}}}", lines.concat())
+}
+
+/// The text of the file at `path`, with the values that differ changed where they stand. `None` when it cannot be
+/// edited: it is no experiment, or written in a way that [`spans`] does not know.
+fn edited(wanted: &Wanted, defaults: &Params, path: &Path) -> Option<String> {
+    let old = Experiment::read(path).ok()?;
+    let text = std::fs::read_to_string(path).ok()?;
+    let body = spans::body(&text, 0)?;
+    let old_wanted = Wanted { experiment: &old, scene: String::new(), params: Vec::new(), values: wanted.values };
+    let same_scene = same_scene(&old.scene, &wanted.experiment.scene);
+    let mut edits = Edits::new();
+    let mut lines = Vec::new();
+    let mut keeps_last = true;
+    for ((name, new, absent), (_, before, _)) in wanted.fields().into_iter().zip(old_wanted.fields()) {
+        let same = if name == "scene" { same_scene } else { new == before };
+        match body.entries.iter().enumerate().find(|(_, e)| e.key == name) {
+            Some(_) if same => {}
+            Some((i, entry)) if new.is_empty() => {
+                keeps_last &= i + 1 < body.entries.len();
+                edits.push(spans::remove(&text, entry));
+            }
+            Some((_, entry)) => edits.push((entry.value.clone(), new)),
+            None if absent => {}
+            None => lines.push(format!("{name}: {new},")),
+        }
+    }
+    let same_param = |name: &str, old: &str, new: &str| {
+        let param = defaults.index(name).map(|i| &defaults.list[i]);
+        param.is_some_and(|p| p.parse(old).is_ok_and(|v| Ok(v) == p.parse(new)))
+    };
+    let same_light = |name: &str, _: &str, new: &str| {
+        old.lights.iter().any(|(n, change)| n.value == name && light_text(change) == new)
+    };
+    // What the author wrote out although it is the default stays, as long as it is true.
+    let mut params = wanted.params.clone();
+    for (name, text) in &old.params {
+        let param = defaults.index(&name.value).map(|i| (&defaults.list[i], &wanted.values.values[i]));
+        let is_true = param.is_some_and(|(p, now)| p.parse(text).as_ref() == Ok(now));
+        if is_true && !params.iter().any(|p| p.0 == name.value) {
+            params.push((name.value.clone(), text.clone()));
+        }
+    }
+    let lights = wanted.lights();
+    let maps: [(&str, &[(String, String)], &Same); 2] =
+        [("lights", &lights, &same_light), ("params", &params, &same_param)];
+    for (name, entries, same) in maps {
+        match body.entries.iter().find(|e| e.key == name) {
+            Some(entry) => {
+                let inner = spans::body(&text, entry.value.start)?;
+                edit_map(&text, &inner, entries, same, &mut edits);
+            }
+            None if entries.is_empty() => {}
+            None => lines.push(map_text(name, entries) + ","),
+        }
+    }
+    spans::append(&text, &body, keeps_last, &lines, &mut edits);
+    Some(spans::apply(&text, edits))
+}
+
+/// Whether an entry (name, old text, new text) says the same.
+type Same<'a> = dyn Fn(&str, &str, &str) -> bool + 'a;
+
+fn edit_map(text: &str, body: &Body, wanted: &[(String, String)], same: &Same, edits: &mut Edits) {
+    let mut keeps_last = false;
+    for entry in &body.entries {
+        let new = wanted.iter().find(|(name, _)| *name == entry.key);
+        keeps_last = new.is_some();
+        match new {
+            None => edits.push(spans::remove(text, entry)),
+            Some((name, new)) if !same(name, &text[entry.value.clone()], new) => {
+                edits.push((entry.value.clone(), new.clone()));
+            }
+            Some(_) => {}
+        }
+    }
+    let added = wanted.iter().filter(|(name, _)| !body.entries.iter().any(|e| e.key == *name));
+    let lines: Vec<String> = added.map(|(name, value)| format!("{}: {value},", quoted(name))).collect();
+    spans::append(text, body, keeps_last, &lines, edits);
+}
