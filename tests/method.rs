@@ -376,3 +376,15 @@ fn the_preview_shows_every_scene_on_the_plainest_device() {
     let input = PlanInput { params: &params, env, wanted: vec!["display".into()], device: &device };
     plan(&graph, &linked, &input).unwrap();
 }
+
+/// A lamp whose plane goes through voxels: the shadow lookup there must not divide by zero.
+#[test]
+fn no_voxel_is_lit_by_not_a_number() {
+    let lab = lab(root());
+    let (experiment, scene) = (experiment("cornell", (16, 12), &[("voxel_dim", "128")]), scene("cornell"));
+    let (mut session, _) = lab.prepare(&experiment, scene, |_| Ok(vec!["voxelRadiance".into()])).unwrap();
+    session.frame(0.0).unwrap();
+    let texels = session.texels("voxelRadiance", 0, 0).unwrap();
+    let wrong = conelab::picture::to_floats(&texels).iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
+    assert_eq!(wrong, 0, "voxels whose radiance is not finite");
+}

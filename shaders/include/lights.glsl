@@ -73,7 +73,7 @@ float shadowTexel(int view, Light light, vec3 p) {
 // xy: shadow-map coordinates in [0,1]; z: depth.
 vec3 shadowPosition(int view, vec3 p) {
     vec4 c = shadowViews.views[view].view_projection * vec4(p, 1.0);
-    vec3 q = c.xyz / c.w;
+    vec3 q = c.xyz / max(c.w, 1e-6); // a spot light's plane has w = 0; behind it no light arrives
     return vec3(q.xy * 0.5 + 0.5, clamp(q.z, 0.0, 1.0));
 }
 

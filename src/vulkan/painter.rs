@@ -280,7 +280,8 @@ impl Painter {
         for slot in &mut self.slots {
             slot.commands.wait()?;
         }
-        let format = vk::Format::R8G8B8A8_UNORM;
+        // The renderer decodes what it samples and encodes what it writes.
+        let format = vk::Format::R8G8B8A8_SRGB;
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let (image, view) = plain_image(&self.gpu, "picture", p.size, format, usage, vk::ImageUsageFlags::SAMPLED)?;
         let info = [vk::DescriptorImageInfo::default()

@@ -322,8 +322,8 @@ impl Run<'_> {
     /// Frames are due: as many as it takes until those with a memory have settled.
     fn disturb(&mut self, least: u32) {
         for slot in &mut self.slots {
-            let remembers = slot.session.as_ref().is_some_and(|s| s.program.plan.textures.iter().any(|t| t.history));
-            slot.due = slot.due.max(if remembers { least.max(16) } else { least });
+            let settle = if slot.session.as_ref().is_some_and(|s| remembers(s)) { SETTLE } else { 1 };
+            slot.due = slot.due.max(least.max(settle));
         }
     }
 
@@ -672,11 +672,8 @@ impl Run<'_> {
     fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
         let (Some(wish), Some(scene)) = (self.wish.slots[number].clone(), self.scene.clone()) else { return };
         let experiment = keep::experiment(&self.wish, &wish, &name, self.clock.now, Some(&scene));
-        let remembers = self.slots[number]
-            .session
-            .as_ref()
-            .is_some_and(|s| s.program.plan.textures.iter().any(|t| t.history));
-        let frames = if remembers { 16 } else { 1 };
+        let settle = self.slots[number].session.as_ref().is_some_and(|s| remembers(s));
+        let frames = if settle { SETTLE as usize } else { 1 };
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");
         std::thread::spawn(move || {
@@ -684,6 +681,14 @@ impl Run<'_> {
             out.send(Report::Captured(result.map_err(|e| e.to_string())));
         });
     }
+}
+
+/// Frames until what is gathered over time has settled.
+const SETTLE: u32 = 16;
+
+/// Whether a frame uses what the frame before left.
+fn remembers(session: &Session) -> bool {
+    session.program.plan.textures.iter().any(|t| t.history && !t.usage.is_empty())
 }
 
 fn outline(session: &Session, loaded: &Loaded) -> Outline {

@@ -20,7 +20,8 @@ const CHANGED: Color32 = Color32::from_rgb(255, 196, 84);
 impl Panel {
     /// Shows the parameters of a slot; edits go into it. `other` is the slot it is compared with.
     pub fn show(&mut self, ui: &mut Ui, params: &Params, slot: &mut SlotWish, other: Option<&SlotWish>) {
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center).with_main_wrap(false), |ui| {
+        let top = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(top, egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let reset = egui::Button::new(RichText::new("reset all")).small();
             if ui.add_enabled(!slot.params.is_empty(), reset).clicked() {
                 slot.params.clear();
