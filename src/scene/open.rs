@@ -105,7 +105,7 @@ mod tests {
         let watch = Watch::default();
         std::thread::scope(|scope| {
             let worker = scope.spawn(|| load(&spec, Progress::new(&watch)));
-            std::thread::sleep(Duration::from_millis(150));
+            std::thread::sleep(Duration::from_millis(40));
             assert!(!worker.is_finished(), "the model is too small for this test");
             assert_eq!(watch.now().0, "reading");
             watch.stop();
