@@ -12,7 +12,6 @@ void main() {
     uint count = min(voxelCounter.allocated, uint(params.voxel_capacity));
     voxelCounter.count = count;
     voxelCounter.list_groups = uvec3(min((count + 127) / 128, 65535u), 1, 1);
-    voxelCounter.draw = uvec4(36, count, 0, 0);
     uint fragments = min(voxelCounter.fragments, voxelFragments.list.length());
     voxelCounter.overflow = voxelCounter.fragments - fragments;
     voxelCounter.merge_groups = uvec3(min((fragments + 127) / 128 + 1, 32768u), 1, 1);

@@ -21,10 +21,13 @@ fn picture(lab: &Lab, session: &mut Session) -> Vec<u8> {
     session.texels("radiance", 0, 0).unwrap().bytes
 }
 
+/// A scene, and what changes in it.
+type Change = (&'static str, fn(&mut Scene));
+
 #[test]
 fn changed_lights_give_the_picture_of_a_scene_made_so() {
     let lab = lab(root());
-    let changes: [(&str, fn(&mut Scene)); 4] = [
+    let changes: [Change; 4] = [
         ("atrium", |s| s.lights[0].direction = Vec3::new(0.4, -0.9, -0.3).normalize()),
         ("atrium", |s| s.sky = Vec3::new(0.3, 0.1, 0.0)),
         ("cornell", |s| s.lights[0].position.x += 0.7),

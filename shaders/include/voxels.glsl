@@ -30,7 +30,6 @@ layout(std430) COUNTER_ACCESS buffer VoxelCounter {
     uint dim; // that the list was built with
     uvec3 clear_groups; // indirect dispatch that clears last frame's list
     uint clear_count;
-    uvec4 draw; // indirect draw of a cube a slot
     uint clear_all; // 1: the list does not name every set cell, clear them all
     uint temporal; // that the list was built with
     uint fragments; // fragments stored, this frame

@@ -20,21 +20,21 @@ impl Scene {
     pub fn open(spec: &str, progress: &dyn Fn(&str, f32) -> ControlFlow<()>) -> Result<Scene, SceneError> {
         // Decoders and parsers cannot be interrupted. They run beside; once cancelled, the step that is under way
         // ends unheard and the next one does not begin.
-        let watch = Arc::new(Watch::default());
+        let watch = Arc::new(Watch::new(spec));
         let (send, result) = mpsc::channel();
         let worker = std::thread::spawn({
             let (spec, watch) = (spec.to_owned(), watch.clone());
             move || drop(send.send(load(&spec, Progress::new(&watch))))
         });
-        let (mut what, mut done) = (spec.to_owned(), 0.0);
         loop {
+            let (what, done) = watch.now();
             if progress(&what, done).is_break() {
                 watch.stop();
                 return Err(SceneError::Cancelled);
             }
             match result.recv_timeout(ASK) {
                 Ok(loaded) => return loaded,
-                Err(mpsc::RecvTimeoutError::Timeout) => (what, done) = watch.now(),
+                Err(mpsc::RecvTimeoutError::Timeout) => {}
                 Err(mpsc::RecvTimeoutError::Disconnected) => break,
             }
         }
@@ -102,10 +102,10 @@ mod tests {
         }
         std::fs::write(&path, text).unwrap();
         let spec = path.to_string_lossy().into_owned();
-        let watch = Watch::default();
+        let watch = Watch::new(&spec);
         std::thread::scope(|scope| {
             let worker = scope.spawn(|| load(&spec, Progress::new(&watch)));
-            std::thread::sleep(Duration::from_millis(150));
+            std::thread::sleep(Duration::from_millis(40));
             assert!(!worker.is_finished(), "the model is too small for this test");
             assert_eq!(watch.now().0, "reading");
             watch.stop();

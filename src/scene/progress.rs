@@ -6,13 +6,18 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use super::SceneError;
 
 /// What both threads see.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Watch {
     stopped: AtomicBool,
     now: Mutex<(String, f32)>,
 }
 
 impl Watch {
+    /// Before anything was done.
+    pub fn new(what: &str) -> Watch {
+        Watch { stopped: AtomicBool::new(false), now: Mutex::new((what.to_owned(), 0.0)) }
+    }
+
     /// What is being done, and the share done.
     pub fn now(&self) -> (String, f32) {
         self.now.lock().map_or_else(|e| e.into_inner().clone(), |now| now.clone())

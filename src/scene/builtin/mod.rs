@@ -53,7 +53,7 @@ pub(super) fn hint(name: &str) -> String {
 /// A scene of meshes at rest, one instance each. Panics on a mistake in a built-in's code.
 fn assemble(name: &str, materials: Vec<Material>, meshes: Vec<Mesh>) -> Scene {
     let raw = meshes.into_iter().map(|mesh| RawMesh { mesh, has_normals: true, has_tangents: false }).collect();
-    let watch = Watch::default();
+    let watch = Watch::new(name);
     let (meshes, _) = prepare_all(raw, &materials, Progress::new(&watch)).expect("built-in meshes are valid");
     let instances = meshes.iter().enumerate().map(|(i, mesh)| Instance {
         name: mesh.name.clone(),
