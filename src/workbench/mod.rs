@@ -7,14 +7,19 @@ pub mod compare;
 pub mod edit;
 pub mod engine;
 pub mod events;
+mod gallery;
 mod help;
+mod inspector;
 mod keep;
 mod messages;
 mod motion;
 mod panel;
+mod paths;
 mod renderdoc;
 pub mod report;
 mod surroundings;
+mod tables;
+mod times;
 mod view;
 mod watch;
 pub mod wish;
@@ -61,7 +66,11 @@ struct Slot {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Tab {
     Surroundings,
-    Keep,
+    Times,
+    Inspector,
+    Tables,
+    Paths,
+    Gallery,
 }
 
 /// How to open the workbench.
@@ -98,6 +107,11 @@ pub struct Workbench {
     panel_slot: usize,
     view: view::View,
     tab: Tab,
+    times: times::Times,
+    inspector: inspector::Inspector,
+    tables: tables::Tables,
+    paths: paths::Paths,
+    gallery: gallery::Gallery,
     help: bool,
     /// What was said last, and since when.
     status: String,
@@ -156,6 +170,11 @@ impl Workbench {
             panel_slot: 0,
             view: view::View::default(),
             tab: Tab::Surroundings,
+            times: times::Times::default(),
+            inspector: inspector::Inspector::default(),
+            tables: tables::Tables::default(),
+            paths: paths::Paths::default(),
+            gallery: gallery::Gallery::default(),
             help: false,
             status: String::new(),
             trouble,
@@ -313,7 +332,8 @@ impl Workbench {
                 self.event("load failed", json!({ "why": why }));
                 self.trouble = Some(why);
             }
-            Report::Texels(..) | Report::Table(..) => {}
+            Report::Texels(look, texels) => self.inspector.note(look, *texels),
+            Report::Table(table, bytes) => self.tables.note(table, bytes),
             Report::Checks(slot, failed) => self.slots[slot].checks = failed,
             Report::Captured(result) => {
                 let ok = result.is_ok();
@@ -332,6 +352,7 @@ impl Workbench {
     }
 
     fn picture_came(&mut self, picture: PictureReport) {
+        self.times.note(&picture);
         let number = picture.slot;
         self.pixels.retain(|p| p.0 != number);
         self.pixels.push((number, picture.size, picture.bytes.clone()));
@@ -654,13 +675,25 @@ impl Workbench {
 
     fn right(&mut self, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| {
-            ui.selectable_value(&mut self.tab, Tab::Surroundings, "Scene");
-            ui.selectable_value(&mut self.tab, Tab::Keep, "Keep");
+            for (tab, name) in [
+                (Tab::Surroundings, "Scene"),
+                (Tab::Times, "Time"),
+                (Tab::Inspector, "Inspect"),
+                (Tab::Tables, "Tables"),
+                (Tab::Paths, "Motion"),
+                (Tab::Gallery, "Keep"),
+            ] {
+                ui.selectable_value(&mut self.tab, tab, name);
+            }
         });
         ui.separator();
         match self.tab {
             Tab::Surroundings => self.surroundings(ui),
-            Tab::Keep => {}
+            Tab::Times => self.times_tab(ui),
+            Tab::Inspector => self.inspector_tab(ui),
+            Tab::Tables => self.tables_tab(ui),
+            Tab::Paths => self.paths_tab(ui),
+            Tab::Gallery => self.gallery_tab(ui),
         }
     }
 
