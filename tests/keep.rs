@@ -466,6 +466,10 @@ fn the_method_is_captured_and_replayed() {
     let told = capture::take(&lab, &experiment, scene("cornell"), &what, folder.path(), "box").unwrap_err().to_string();
     assert!(told.ends_with("box': there is a capture of that name; choose another"), "{told}");
     assert_eq!(capture::free_name(folder.path(), "box"), "box-2");
+    let none = capture::What { frames: 0, ..capture::What::default() };
+    let told =
+        capture::take(&lab, &experiment, scene("cornell"), &none, folder.path(), "none").unwrap_err().to_string();
+    assert_eq!(told, "frames must be 1 to 1000000, and the step finite");
     let manifest = capture::Manifest::read(&path).unwrap();
     let open = |name: &str| Ok((*scene(name)).clone());
     let result = capture::replay(&lab, &path, &manifest, open, None).unwrap();
