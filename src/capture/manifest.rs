@@ -97,9 +97,7 @@ impl Manifest {
             return Err(format!("its schema is '{}', this program reads '{SCHEMA}'", self.schema));
         }
         check_size((self.size[0], self.size[1]))?;
-        if self.frames == 0 || self.frames > MAX_FRAMES || !self.step.is_finite() {
-            return Err(format!("frames must be 1 to {MAX_FRAMES}, and the step finite"));
-        }
+        check_frames(self.frames, self.step)?;
         if self.files.len() > MAX_FILES || self.images.is_empty() || self.images.len() > MAX_FILES {
             return Err(format!("it must name 1 to {MAX_FILES} pictures and at most {MAX_FILES} files"));
         }
@@ -119,6 +117,14 @@ impl Manifest {
         }
         Ok(())
     }
+}
+
+/// Whether a capture can be of so many frames, so far apart.
+pub(super) fn check_frames(frames: usize, step: f64) -> Result<(), String> {
+    if frames == 0 || frames > MAX_FRAMES || !step.is_finite() {
+        return Err(format!("frames must be 1 to {MAX_FRAMES}, and the step finite"));
+    }
+    Ok(())
 }
 
 /// Whether a path stays in the folder, links followed.

@@ -1,6 +1,6 @@
 //! Taking a capture.
 
-use super::manifest::{files_below, hash_file, rfc3339};
+use super::manifest::{check_frames, files_below, hash_file, rfc3339};
 use super::{
     EXPERIMENT, Image, MANIFEST, Manifest, SCHEMA, SOURCES, SceneRecord, experiment_of, failed, render, scene_hash,
 };
@@ -63,6 +63,7 @@ pub fn take(
     name: &str,
 ) -> Result<PathBuf, LabError> {
     let name = checked_name(name)?;
+    check_frames(what.frames, what.step).map_err(LabError::Request)?;
     let target = folder.join(&name);
     if target.exists() {
         return Err(exists(&target));

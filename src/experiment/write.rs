@@ -22,6 +22,10 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
         return Err(exists(path));
     }
     let params = experiment.params_over(defaults)?;
+    // A scene file is named from this folder, and looked up from it when the text is read back.
+    let folder = path.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)
+        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
     let differing = params.list.iter().zip(&params.values).zip(&defaults.values).filter(|((_, v), d)| v != d);
     let wanted = Wanted {
         scene: scene_text(&experiment.scene, path),
@@ -137,10 +141,7 @@ fn same_scene(a: &str, b: &str) -> bool {
 fn scene_text(scene: &str, path: &Path) -> String {
     let relative = || {
         let file = Path::new(scene).canonicalize().ok().filter(|p| p.is_file())?;
-        let folder = std::path::absolute(path).ok()?.parent()?.to_path_buf();
-        // Folders that are still to be made have no canonical name.
-        let made = folder.ancestors().find(|p| p.exists())?;
-        let folder = made.canonicalize().ok()?.join(folder.strip_prefix(made).ok()?);
+        let folder = std::path::absolute(path).ok()?.parent()?.canonicalize().ok()?;
         let project = folder.ancestors().find(|p| p.join("passes").is_dir() && p.join("shaders").is_dir())?;
         file.starts_with(project).then(|| between(&folder, &file))?.to_str().map(String::from)
     };
@@ -281,8 +282,7 @@ fn edited(wanted: &Wanted, defaults: &Params, path: &Path) -> Option<String> {
         }
     }
     let lights = wanted.lights();
-    let maps: [(&str, &[(String, String)], &Same); 2] =
-        [("lights", &lights, &same_light), ("params", &params, &same_param)];
+    let maps = [("lights", &lights, &same_light as &Same), ("params", &params, &same_param as &Same)];
     for (name, entries, same) in maps {
         match body.entries.iter().find(|e| e.key == name) {
             Some(entry) => {
