@@ -23,6 +23,7 @@ mod graph;
 mod render;
 mod replay;
 mod save;
+mod screenshot;
 mod view;
 
 use crate::lab::{Lab, LabError};
@@ -42,6 +43,8 @@ pub struct Cli {
 enum Command {
     /// Open the workbench in a window (the same as no command at all).
     View(view::ViewArgs),
+    /// Paint the workbench into a picture, without a window.
+    Screenshot(screenshot::ScreenshotArgs),
     /// Render an experiment to a picture, and its timings to JSON.
     Render(render::RenderArgs),
     /// Render an experiment and keep it: pictures, sources, settings and measurements in captures/NAME.
@@ -96,6 +99,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
     };
     match command {
         Command::View(args) => view::run(&args),
+        Command::Screenshot(args) => screenshot::run(&args),
         Command::Render(args) => render::run(&args),
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),

@@ -11,6 +11,7 @@ pub mod graph;
 pub mod lab;
 pub mod picture;
 pub mod scene;
+pub mod screenshot;
 pub mod shader;
 pub mod stats;
 pub mod vulkan;

@@ -174,6 +174,13 @@ impl Program {
         for layout in self.resting.iter_mut().flatten().flatten().filter(|l| **l == vk::ImageLayout::UNDEFINED) {
             *layout = dst;
         }
+        // A submission waits for the frames that run: nothing is submitted for nothing.
+        let images = self.images.iter().flatten().flatten();
+        if self.buffers.iter().flatten().all(|b| parts.holds_buffer(b))
+            && images.into_iter().all(|i| parts.holds_image(i))
+        {
+            return Ok(());
+        }
         Commands::once(&self.gpu, |commands| {
             for buffer in self.buffers.iter().flatten().filter(|b| !parts.holds_buffer(b)) {
                 commands.fill(buffer, 0);
@@ -401,7 +408,9 @@ impl Program {
 
     /// Remembers the layouts that a frame of this parity leaves behind.
     fn rest(&mut self, parity: usize) {
-        for (now, end) in self.resting.iter_mut().flatten().flatten().zip(self.schedule.ends[parity].iter().flatten().flatten()) {
+        for (now, end) in
+            self.resting.iter_mut().flatten().flatten().zip(self.schedule.ends[parity].iter().flatten().flatten())
+        {
             if *end != vk::ImageLayout::UNDEFINED {
                 *now = *end;
             }
@@ -697,7 +706,12 @@ fn copy_out(
     commands.full_barrier();
 }
 
-pub(super) fn relayout(image: &Image, from: vk::ImageLayout, to: vk::ImageLayout, mip: u32) -> vk::ImageMemoryBarrier2<'static> {
+pub(super) fn relayout(
+    image: &Image,
+    from: vk::ImageLayout,
+    to: vk::ImageLayout,
+    mip: u32,
+) -> vk::ImageMemoryBarrier2<'static> {
     let all = vk::PipelineStageFlags2::ALL_COMMANDS;
     let access = vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE;
     vk::ImageMemoryBarrier2::default()

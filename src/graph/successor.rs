@@ -65,6 +65,11 @@ impl Program {
         }
     }
 
+    /// The parts that another program may use at the same time.
+    pub fn shared_parts(&self) -> Parts {
+        Parts { pipelines: self.pipelines.clone(), ..Parts::default() }
+    }
+
     /// Takes the place of the program that this one was made from: waits for its frames, goes on with its count of
     /// frames (so that what was last frame's stays last frame's) and brings images into the layouts of its own frames.
     ///
@@ -84,25 +89,25 @@ impl Program {
                 }
             }
         }
-        Commands::once(self.gpu(), |commands| {
-            for (t, copies) in self.images.iter().enumerate() {
-                for (c, image) in copies.iter().enumerate() {
-                    let Some(image) = image else { continue };
-                    let mut barriers = Vec::new();
-                    for (mip, (from, to)) in (0u32..).zip(from[t][c].iter().zip(&mut wanted[t][c])) {
-                        if *to == vk::ImageLayout::UNDEFINED {
-                            *to = *from;
-                        } else if to != from {
-                            barriers.push((&**image, relayout(image, *from, *to, mip)));
-                        }
-                    }
-                    if !barriers.is_empty() {
-                        commands.barrier(None, &barriers);
+        let mut barriers = Vec::new();
+        for (t, copies) in self.images.iter().enumerate() {
+            for (c, image) in copies.iter().enumerate() {
+                let Some(image) = image else { continue };
+                for (mip, (from, to)) in (0u32..).zip(from[t][c].iter().zip(&mut wanted[t][c])) {
+                    if *to == vk::ImageLayout::UNDEFINED {
+                        *to = *from;
+                    } else if to != from {
+                        barriers.push((&**image, relayout(image, *from, *to, mip)));
                     }
                 }
             }
-            commands.full_barrier();
-        })?;
+        }
+        if !barriers.is_empty() {
+            Commands::once(self.gpu(), |commands| {
+                commands.barrier(None, &barriers);
+                commands.full_barrier();
+            })?;
+        }
         self.resting = wanted;
         Ok(())
     }

@@ -144,6 +144,8 @@ pub struct Seed {
     scene: Arc<Scene>,
     max_edge: Option<f64>,
     scene_gpu: SceneGpu,
+    /// Whether the session goes on beside the one that is made.
+    beside: bool,
 }
 
 /// A graph on a scene, ready to make frames.
@@ -223,7 +225,8 @@ impl Lab {
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
         let scene_gpu = match seed.filter(|s| Arc::ptr_eq(&s.scene, &scene) && s.max_edge == plan.max_edge) {
-            Some(seed) => seed.scene_gpu.fork(&self.gpu, &scene)?,
+            Some(seed) if seed.beside => seed.scene_gpu.fork(&self.gpu, &scene)?,
+            Some(seed) => seed.scene_gpu.clone(),
             None => {
                 let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
                 SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene))?
@@ -339,7 +342,13 @@ impl Session {
             scene: self.scene.clone(),
             max_edge: self.program.plan.max_edge,
             scene_gpu: self.scene_gpu.clone(),
+            beside: false,
         }
+    }
+
+    /// What a session that runs beside this one can share: pipelines, geometry and textures of the scene.
+    pub fn lend(&self) -> Seed {
+        Seed { parts: self.program.shared_parts(), beside: true, ..self.seed() }
     }
 
     /// Takes the place of the session that this one was made from, at a frame's border: textures keep their content,

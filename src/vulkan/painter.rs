@@ -7,6 +7,7 @@ use egui_ash_renderer::allocator::DefaultAllocator;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, vulkan};
 use gpu_allocator::MemoryLocation;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Where the painter's pixels go.
 enum Target {
@@ -57,6 +58,8 @@ pub struct Painter {
     gpu: Arc<Gpu>,
     /// Milliseconds on the GPU of the last frame known.
     pub gpu_ms: f64,
+    /// Milliseconds that the last frame waited for an earlier one to finish on the GPU.
+    pub waited_ms: f64,
 }
 
 fn renderer_error(e: egui_ash_renderer::RendererError) -> VulkanError {
@@ -114,6 +117,7 @@ impl Painter {
             format,
             gpu: gpu.clone(),
             gpu_ms: 0.0,
+            waited_ms: 0.0,
         };
         let count = u32::try_from(pictures).unwrap_or(u32::MAX).max(1);
         // SAFETY: plain creations; `drop` destroys what was made.
@@ -124,10 +128,8 @@ impl Painter {
                 .queue_family_index(gpu.family)
                 .flags(vk::CommandPoolCreateFlags::TRANSIENT);
             painter.upload_pool = d.create_command_pool(&info, None).map_err(at())?;
-            let sizes = [vk::DescriptorPoolSize {
-                ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-                descriptor_count: count,
-            }];
+            let sizes =
+                [vk::DescriptorPoolSize { ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER, descriptor_count: count }];
             let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
             painter.pool = d.create_descriptor_pool(&info, None).map_err(at())?;
             for _ in 0..SLOTS {
@@ -155,8 +157,8 @@ impl Painter {
             let layouts = [self.layout];
             let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(self.pool).set_layouts(&layouts);
             // SAFETY: pool and layout are alive.
-            let set = unsafe { gpu.device.allocate_descriptor_sets(&info) }
-                .map_err(VulkanError::at("prepare to paint"))?[0];
+            let set =
+                unsafe { gpu.device.allocate_descriptor_sets(&info) }.map_err(VulkanError::at("prepare to paint"))?[0];
             let id = renderer.add_user_texture(set);
             self.pictures.push(Picture { image: None, set, id });
         }
@@ -190,7 +192,10 @@ impl Painter {
         pixels: &[Pixels<'_>],
     ) -> Result<bool> {
         let slot = self.frame % SLOTS;
-        if let Some(ticks) = self.slots[slot].commands.wait()?
+        let begun = Instant::now();
+        let ticks = self.slots[slot].commands.wait()?;
+        self.waited_ms = begun.elapsed().as_secs_f64() * 1e3;
+        if let Some(ticks) = ticks
             && let [a, b] = ticks[..]
         {
             self.gpu_ms = b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
@@ -232,11 +237,7 @@ impl Painter {
             result = renderer.cmd_draw(commands.handle, extent, scale, primitives);
             // SAFETY: as above.
             unsafe { gpu.device.cmd_end_rendering(commands.handle) };
-            let end = if to_present {
-                vk::ImageLayout::PRESENT_SRC_KHR
-            } else {
-                vk::ImageLayout::TRANSFER_SRC_OPTIMAL
-            };
+            let end = if to_present { vk::ImageLayout::PRESENT_SRC_KHR } else { vk::ImageLayout::TRANSFER_SRC_OPTIMAL };
             commands.attach(image, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, end);
             commands.timestamp();
         })?;
@@ -357,9 +358,8 @@ impl Painter {
                     // A window that is hidden may give no image for long: the program must not stand still.
                     let timeout = 100_000_000;
                     // SAFETY: the semaphore is unused: its last frame has been waited for.
-                    let next = unsafe {
-                        chain.loader.acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null())
-                    };
+                    let next =
+                        unsafe { chain.loader.acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null()) };
                     match next {
                         Ok((index, suboptimal)) => {
                             *stale = suboptimal;

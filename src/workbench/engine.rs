@@ -306,6 +306,11 @@ impl Run<'_> {
                 slot.lights = true;
             }
         }
+        // Files, parameters and sizes disturb a slot when what they lead to has been built.
+        let seen = |w: &Wish| (w.camera, w.clock, w.continuous, w.look.clone(), w.table);
+        if seen(&self.wish) != seen(&old) || self.wish.lights != old.lights || self.wish.path != old.path {
+            self.disturb(1);
+        }
         for i in 0..2 {
             if self.wish.slots[i].is_none() {
                 self.slots[i] = Slot { building: self.slots[i].building, ..Slot::default() };
@@ -315,7 +320,6 @@ impl Run<'_> {
         for i in 0..2 {
             self.approach(i)?;
         }
-        self.disturb(1);
         Ok(())
     }
 
@@ -372,7 +376,6 @@ impl Run<'_> {
                 for i in 0..2 {
                     self.approach(i)?;
                 }
-                self.disturb(1);
             }
             Err(SceneError::Cancelled) => {
                 // Cancelled for another scene, the other is being loaded by now.
@@ -441,6 +444,7 @@ impl Run<'_> {
                     slot.key = Some(key);
                     slot.failed = None;
                     self.out.send(Report::Set { slot: number, params });
+                    self.disturb(1);
                     return Ok(());
                 }
                 Ok(None) => {}
@@ -450,6 +454,9 @@ impl Run<'_> {
                 }
             }
         }
+        // B starts with what it can share with A, and the other way round.
+        let beside = self.slots[1 - number].session.as_ref().filter(|_| self.slots[number].session.is_none());
+        let lent = beside.map(|s| s.lend());
         let preview_exists = self.lab.home.folders().passes.join("preview.ron").is_file();
         let slot = &mut self.slots[number];
         if slot.building {
@@ -463,7 +470,7 @@ impl Run<'_> {
             experiment.params.clear();
         }
         let loaded = slot.loaded.clone().filter(|_| !slot.preview && slot.key.as_ref().is_some_and(same_files));
-        let seed = slot.session.as_ref().map(|s| s.seed());
+        let seed = slot.session.as_ref().map(|s| s.seed()).or(lent);
         slot.building = true;
         let lab = self.lab.clone();
         let _ = self.jobs.send(Job { slot: number, key, experiment, scene, seed, loaded, preview, lab });
@@ -576,10 +583,13 @@ impl Run<'_> {
         if let Some(camera) = &self.wish.camera {
             session.set_camera(camera);
         }
-        if std::mem::take(&mut slot.lights)
-            && let Some((lights, sky)) = &self.wish.lights
-        {
-            session.set_lights(lights, *sky);
+        if let Some(path) = &self.wish.path {
+            session.look(&path.at(self.clock.now));
+        }
+        if std::mem::take(&mut slot.lights) {
+            let own = session.scene.clone();
+            let (lights, sky) = self.wish.lights.as_ref().map_or((&own.lights, own.sky), |(l, s)| (l, *s));
+            session.set_lights(lights, sky);
         }
         session.set_time(self.clock.now);
         slot.frame += 1;
@@ -723,4 +733,3 @@ fn outline(session: &Session, loaded: &Loaded) -> Outline {
         warnings: loaded.warnings.clone(),
     }
 }
-

@@ -13,11 +13,13 @@ pub enum Action {
     Step,
     Flip,
     Unpoint,
+    Save,
+    Capture,
     RenderDoc,
 }
 
 /// Longer combinations first: Ctrl Z is also pressed when Ctrl Shift Z is.
-const KEYS: [(Action, KeyboardShortcut, &str); 9] = [
+const KEYS: [(Action, KeyboardShortcut, &str); 11] = [
     (Action::Help, KeyboardShortcut::new(Modifiers::NONE, Key::F1), "these keys"),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), "redo"),
     (Action::Undo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Z), "undo the last edit of parameters or lights"),
@@ -26,6 +28,12 @@ const KEYS: [(Action, KeyboardShortcut, &str); 9] = [
     (Action::Step, KeyboardShortcut::new(Modifiers::NONE, Key::Period), "one frame on"),
     (Action::Flip, KeyboardShortcut::new(Modifiers::NONE, Key::X), "A or B, when comparing by flipping"),
     (Action::Unpoint, KeyboardShortcut::new(Modifiers::NONE, Key::Escape), "forget the point clicked on"),
+    (
+        Action::Save,
+        KeyboardShortcut::new(Modifiers::COMMAND, Key::S),
+        "save the experiment, under its name on the Keep tab",
+    ),
+    (Action::Capture, KeyboardShortcut::new(Modifiers::NONE, Key::F12), "capture what is shown to captures/"),
     (Action::RenderDoc, KeyboardShortcut::new(Modifiers::NONE, Key::F11), "capture a frame with RenderDoc"),
 ];
 
@@ -41,7 +49,7 @@ const MOUSE: [(&str, &str); 6] = [
 /// Actions whose keys were pressed; keys without Ctrl do nothing while text is typed.
 pub fn pressed(ui: &Ui, typing: bool) -> Vec<Action> {
     let allowed = |shortcut: &KeyboardShortcut| {
-        !typing || shortcut.modifiers.any() || matches!(shortcut.logical_key, Key::F1 | Key::F11)
+        !typing || shortcut.modifiers.any() || matches!(shortcut.logical_key, Key::F1 | Key::F11 | Key::F12)
     };
     let list = KEYS.iter().filter(|k| allowed(&k.1));
     list.filter(|k| ui.ctx().input_mut(|i| i.consume_shortcut(&k.1))).map(|k| k.0).collect()

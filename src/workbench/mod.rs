@@ -338,7 +338,10 @@ impl Workbench {
             Report::Captured(result) => {
                 let ok = result.is_ok();
                 let text = match result {
-                    Ok(path) => format!("captured {}", path.display()),
+                    Ok(path) => {
+                        self.gallery.forget();
+                        format!("captured {}", path.display())
+                    }
                     Err(why) => format!("not captured: {why}"),
                 };
                 self.event("captured", json!({ "ok": ok, "text": text }));
@@ -373,7 +376,8 @@ impl Workbench {
         self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
         let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
         if !same || self.experiment.is_some() {
-            let fallback = Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
+            let fallback =
+                Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
             let experiment = self.experiment.take().unwrap_or(fallback);
             match keep::lights(&experiment, &scene) {
                 Ok(lights) => self.wish.lights = lights,
@@ -408,11 +412,7 @@ impl Workbench {
         self.comparing = true;
         let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
         std::thread::spawn(move || {
-            let map = if mode == Mode::Difference {
-                compare::difference(&a, &b, gain)
-            } else {
-                compare::flip(&a, &b)
-            };
+            let map = if mode == Mode::Difference { compare::difference(&a, &b, gain) } else { compare::flip(&a, &b) };
             let _ = out.send((mode, map));
             wake();
         });
@@ -509,7 +509,10 @@ impl Workbench {
         if self.has_messages() {
             egui::Panel::bottom("messages").resizable(true).show(ui, |ui| self.messages(ui));
         }
-        egui::Panel::left("parameters").default_size(340.0).size_range(180.0..=640.0).show(ui, |ui| self.parameters(ui));
+        egui::Panel::left("parameters")
+            .default_size(340.0)
+            .size_range(180.0..=640.0)
+            .show(ui, |ui| self.parameters(ui));
         egui::Panel::right("right").default_size(320.0).size_range(180.0..=760.0).show(ui, |ui| self.right(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.picture(ui, textures));
         if self.help {
@@ -554,7 +557,11 @@ impl Workbench {
             }
             ui.separator();
             let mut compare = self.wish.slots[1].is_some();
-            if ui.toggle_value(&mut compare, "A | B").on_hover_text("Put a second experiment beside the first").clicked() {
+            if ui
+                .toggle_value(&mut compare, "A | B")
+                .on_hover_text("Put a second experiment beside the first")
+                .clicked()
+            {
                 self.wish.slots[1] = if compare { self.wish.slots[0].clone() } else { None };
                 self.panel_slot = usize::from(compare);
             }
@@ -644,6 +651,8 @@ impl Workbench {
     }
 
     fn parameters(&mut self, ui: &mut Ui) {
+        // A panel that shrinks to what is in it stays small.
+        ui.take_available_width();
         if self.wish.slots[1].is_some() {
             ui.horizontal(|ui| {
                 ui.selectable_value(&mut self.panel_slot, 0, "A");
@@ -733,6 +742,8 @@ impl Workbench {
                 }
                 help::Action::Flip => self.view.flipped = !self.view.flipped,
                 help::Action::Unpoint => self.point_at(None),
+                help::Action::Save => self.save(false),
+                help::Action::Capture => self.capture(),
                 help::Action::RenderDoc => self.engine.order(Order::RenderDoc),
             }
         }
@@ -750,6 +761,7 @@ fn wish_differs(a: &Wish, b: &Wish) -> bool {
         || a.scene != b.scene
         || a.lights != b.lights
         || a.camera != b.camera
+        || a.path != b.path
         || a.size != b.size
         || a.clock != b.clock
         || a.continuous != b.continuous

@@ -1,15 +1,215 @@
-//! Camera paths and image sequences.
+//! Camera paths: keys recorded, edited, played, saved; and image sequences.
 
-use super::Workbench;
-use egui::Ui;
+use super::{Workbench, ron_files, short};
+use crate::camera_path::{self, CameraPath, Key};
+use crate::experiment::{PlacedCamera, checked_name};
+use crate::lab::{LabError, Viewpoint};
+use crossbeam_channel::{Receiver, Sender, unbounded};
+use egui::{DragValue, Ui};
+use std::path::PathBuf;
 
 /// State of this tab.
-#[derive(Default)]
-pub struct Paths {}
+pub struct Paths {
+    /// The path as it is edited.
+    pub path: CameraPath,
+    name: String,
+    /// Whether the camera follows the path.
+    pub follow: bool,
+    taken: bool,
+    frames: usize,
+    rate: f64,
+    sequence: String,
+    made: (Sender<String>, Receiver<String>),
+}
+
+impl Default for Paths {
+    fn default() -> Self {
+        Paths {
+            path: CameraPath::default(),
+            name: "path".into(),
+            follow: false,
+            taken: false,
+            frames: 60,
+            rate: 30.0,
+            sequence: "captures/sequence".into(),
+            made: unbounded(),
+        }
+    }
+}
 
 impl Workbench {
     /// The tab.
     pub(super) fn paths_tab(&mut self, ui: &mut Ui) {
-        ui.weak("nothing here yet");
+        while let Ok(text) = self.paths.made.1.try_recv() {
+            self.event("sequence", serde_json::json!({ "text": text }));
+            self.status = text;
+        }
+        ui.strong("Camera path");
+        self.path_files(ui);
+        self.path_keys(ui);
+        ui.separator();
+        ui.strong("Image sequence");
+        self.sequence(ui);
+    }
+
+    fn path_files(&mut self, ui: &mut Ui) {
+        let folder = self.root.join("configs/paths");
+        ui.horizontal(|ui| {
+            ui.menu_button("open", |ui| {
+                for file in ron_files(&folder) {
+                    if ui.button(short(&file.to_string_lossy())).clicked() {
+                        match CameraPath::read(&file) {
+                            Ok(path) => {
+                                self.paths.path = path;
+                                self.paths.name = short(&file.to_string_lossy());
+                                self.paths.taken = false;
+                            }
+                            Err(errors) => self.slots[0].errors = errors,
+                        }
+                        ui.close();
+                    }
+                }
+            });
+            let edit = ui.add(egui::TextEdit::singleline(&mut self.paths.name).desired_width(100.0));
+            edit.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "path name"));
+            if edit.changed() {
+                self.paths.taken = false;
+            }
+            let text = if self.paths.taken { "replace it" } else { "save path" };
+            if ui.add_enabled(!self.paths.path.keys.is_empty(), egui::Button::new(text)).clicked() {
+                match self.save_path(self.paths.taken) {
+                    Ok(file) => {
+                        self.status = format!("saved {}", file.display());
+                        self.event("saved", serde_json::json!({ "path": file.display().to_string() }));
+                        self.paths.taken = false;
+                    }
+                    Err(e) => {
+                        self.paths.taken = true;
+                        self.status = e.to_string();
+                    }
+                }
+            }
+        });
+    }
+
+    fn path_file(&self) -> Result<PathBuf, LabError> {
+        Ok(self.root.join("configs/paths").join(format!("{}.ron", checked_name(&self.paths.name)?)))
+    }
+
+    fn save_path(&self, replace: bool) -> Result<PathBuf, LabError> {
+        let file = self.path_file()?;
+        camera_path::write(&self.paths.path, &file, replace)?;
+        Ok(file)
+    }
+
+    fn path_keys(&mut self, ui: &mut Ui) {
+        let now = self.slots[0].picture.as_ref().map_or(0.0, |p| p.time);
+        ui.horizontal(|ui| {
+            let add = ui.button("add key").on_hover_text("The camera as it stands now, a second after the last key");
+            if let Some(camera) = self.wish.camera.as_ref().filter(|_| add.clicked()) {
+                let time = self.paths.path.keys.last().map_or(0.0, |k| k.time + 1.0);
+                let key = Key::new(time, &PlacedCamera::from(camera));
+                if let Err(e) = camera_path::insert(&mut self.paths.path, key) {
+                    self.status = e.to_string();
+                }
+            }
+            let can = !self.paths.path.keys.is_empty();
+            let follow = ui.add_enabled(can, egui::Checkbox::new(&mut self.paths.follow, "follow"));
+            follow.on_hover_text("The camera follows the path in the scene's time; play starts it");
+            ui.checkbox(&mut self.paths.path.repeat, "repeat");
+            ui.weak(format!("{now:.2} s"));
+        });
+        let mut remove = None;
+        let mut moved = None;
+        let mut go = None;
+        egui::ScrollArea::vertical().max_height(240.0).show(ui, |ui| {
+            for (i, key) in self.paths.path.keys.iter().enumerate() {
+                ui.horizontal(|ui| {
+                    let mut time = key.time;
+                    if ui.add(DragValue::new(&mut time).speed(0.05).suffix(" s")).changed() {
+                        moved = Some((i, time));
+                    }
+                    let (x, y, z) = key.eye;
+                    ui.weak(format!("{x:.2} {y:.2} {z:.2}"));
+                    if ui.small_button("go").clicked() {
+                        go = Some(*key);
+                    }
+                    if ui.small_button("remove").clicked() {
+                        remove = Some(i);
+                    }
+                });
+            }
+        });
+        if let Some((i, time)) = moved
+            && let Err(e) = camera_path::move_key(&mut self.paths.path, i, time)
+        {
+            self.status = e.to_string();
+        }
+        if let Some(i) = remove {
+            camera_path::remove(&mut self.paths.path, i);
+            self.paths.follow &= !self.paths.path.keys.is_empty();
+        }
+        if let (Some(key), Some(scene)) = (go, &self.scene) {
+            let placed = PlacedCamera { up: key.up, ..PlacedCamera::new(key.eye, key.target, key.fov_y) };
+            self.wish.camera = Some(Viewpoint::placed(&placed, scene).camera);
+        }
+        self.wish.path = (self.paths.follow && !self.paths.path.keys.is_empty()).then(|| self.paths.path.clone());
+    }
+
+    fn sequence(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            ui.add(DragValue::new(&mut self.paths.frames).range(1..=100_000).suffix(" frames"));
+            ui.add(DragValue::new(&mut self.paths.rate).range(1.0..=240.0).suffix(" a second"));
+        });
+        ui.horizontal(|ui| {
+            ui.add(egui::TextEdit::singleline(&mut self.paths.sequence).desired_width(160.0))
+                .on_hover_text("Folder for frame-00000.png and so on");
+            if ui.button("render").clicked() {
+                match self.start_sequence() {
+                    Ok(()) => self.status = "rendering the sequence".into(),
+                    Err(e) => self.status = e.to_string(),
+                }
+            }
+        });
+    }
+
+    /// Renders the sequence by the program's own command, beside the window, from files of its own.
+    fn start_sequence(&mut self) -> Result<(), LabError> {
+        let (Some(slot), Some(outline)) = (&self.wish.slots[0], &self.slots[0].outline) else {
+            return Err(LabError::Request("no graph has been built yet".into()));
+        };
+        let failed = |e: std::io::Error| LabError::Request(format!("cannot write the sequence's settings: {e}"));
+        let folder = tempfile::Builder::new().prefix("conelab-sequence-").tempdir().map_err(failed)?;
+        let mut experiment = super::keep::experiment(&self.wish, slot, "sequence", 0.0, self.scene.as_deref());
+        let scene = PathBuf::from(&experiment.scene);
+        if scene.is_file() {
+            experiment.scene = scene.canonicalize().map_err(failed)?.to_string_lossy().into_owned();
+        }
+        let file = folder.path().join("sequence.ron");
+        crate::experiment::write(&experiment, &outline.graph.params, &file, false)?;
+        let mut command = std::process::Command::new(std::env::current_exe().map_err(failed)?);
+        command.current_dir(&self.root).env("CONELAB_HOME", &self.root);
+        command.arg("render").arg(&file).arg("--sequence").arg(&self.paths.sequence);
+        command.args(["--frames", &self.paths.frames.to_string(), "--step", &(1.0 / self.paths.rate).to_string()]);
+        if !self.paths.path.keys.is_empty() {
+            let path = folder.path().join("path.ron");
+            camera_path::write(&self.paths.path, &path, false)?;
+            command.arg("--path").arg(path);
+        }
+        if let Some(device) = &self.device {
+            command.arg("--device").arg(&device.name);
+        }
+        let (out, wake) = (self.paths.made.0.clone(), self.wake.clone());
+        std::thread::spawn(move || {
+            let text = match command.output() {
+                Ok(o) if o.status.success() => String::from_utf8_lossy(&o.stdout).trim().to_string(),
+                Ok(o) => String::from_utf8_lossy(&o.stderr).trim().to_string(),
+                Err(e) => format!("cannot render the sequence: {e}"),
+            };
+            drop(folder);
+            let _ = out.send(text.lines().last().unwrap_or_default().to_string());
+            wake();
+        });
+        Ok(())
     }
 }

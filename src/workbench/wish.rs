@@ -1,5 +1,6 @@
 //! What the window wants to see; the engine always works towards the latest wish.
 
+use crate::camera_path::CameraPath;
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::source::{At, Loc, Sources};
 use crate::scene::{Camera, Light};
@@ -57,6 +58,8 @@ pub struct Wish {
     pub lights: Option<(Vec<Light>, Vec3)>,
     /// The camera; the scene's own until it is known.
     pub camera: Option<Camera>,
+    /// A path that the camera follows in the scene's time.
+    pub path: Option<CameraPath>,
     /// Picture size.
     pub size: (u32, u32),
     /// Time.
@@ -91,7 +94,9 @@ impl Wish {
             name: "workbench".into(),
             graph: slot.graph.clone(),
             scene: self.scene.clone(),
-            camera: self.camera.map_or(CameraChoice::Named("default".into()), |c| CameraChoice::Placed(PlacedCamera::from(&c))),
+            camera: self
+                .camera
+                .map_or(CameraChoice::Named("default".into()), |c| CameraChoice::Placed(PlacedCamera::from(&c))),
             size: self.size,
             time: self.clock.at,
             sky: None,

@@ -1,0 +1,85 @@
+//! `conelab screenshot`.
+
+use super::DeviceArgs;
+use super::adapt::parse_size;
+use crate::lab::{Home, LabError};
+use crate::screenshot::{Script, take};
+use crate::workbench::Options;
+use clap::Args;
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Arguments of `screenshot`.
+#[derive(Debug, Args)]
+pub struct ScreenshotArgs {
+    /// Experiment file; configs/default.ron when absent.
+    experiment: Option<PathBuf>,
+    /// Another scene: a built-in name, a scene RON, or a model file.
+    #[arg(long)]
+    scene: Option<String>,
+    /// Size of the picture in the middle, pixels; as large as fits when absent.
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
+    /// Size of the whole interface, pixels.
+    #[arg(long, value_name = "WxH", default_value = "1600x900")]
+    window: String,
+    /// Pixels a point.
+    #[arg(long, default_value_t = 1.0)]
+    scale: f32,
+    /// Click on the widget with this label, or at X,Y; may be given many times.
+    #[arg(long, value_name = "LABEL")]
+    click: Vec<String>,
+    /// Measure so many frames of the interface and print what they cost.
+    #[arg(long, default_value_t = 0)]
+    measure: usize,
+    /// Seconds to wait for the picture after each click.
+    #[arg(long, default_value_t = 120)]
+    patience: u64,
+    /// Output file, .png or .jpg.
+    #[arg(short, long)]
+    output: PathBuf,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Takes the picture.
+pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
+    let home = Home::find()?;
+    let format = image::ImageFormat::from_path(&args.output)
+        .ok()
+        .filter(|f| matches!(f, image::ImageFormat::Png | image::ImageFormat::Jpeg))
+        .ok_or_else(|| LabError::Request(format!("'{}': give it the ending .png or .jpg", args.output.display())))?;
+    if !(0.25..=8.0).contains(&args.scale) {
+        return Err(LabError::Request("--scale must be .25 to 8".into()));
+    }
+    let gpu = args.device.options();
+    let script = Script {
+        size: parse_size(&args.window)?,
+        scale: args.scale,
+        clicks: args.click.clone(),
+        measure: args.measure,
+        patience: Duration::from_secs(args.patience),
+    };
+    let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
+    let size = args.size.as_deref().map(parse_size).transpose()?;
+    let options = Options { home, gpu: gpu.clone(), experiment, scene: args.scene.clone(), size, events: None };
+    let shot = take(options, &gpu, script)?;
+    let rgb: Vec<u8> = shot.bytes.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    let mut file = Cursor::new(Vec::new());
+    let [width, height] = shot.size;
+    image::write_buffer_with_format(&mut file, &rgb, width, height, image::ColorType::Rgb8, format)
+        .map_err(|e| LabError::Request(format!("cannot make the picture: {e}")))?;
+    crate::files::write_whole(&args.output, file.get_ref())
+        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", args.output.display())))?;
+    if args.measure > 0 {
+        let row = |name: &str, s: &crate::stats::Spread| {
+            say!("{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);
+        };
+        say!("{:<28}{:>10}{:>10}{:>10}", "interface, ms", "min", "median", "p95");
+        row("CPU", &shot.cpu_ms);
+        row("GPU", &shot.gpu_ms);
+    }
+    say!("wrote {}", super::shown(&args.output).display());
+    Ok(())
+}
