@@ -1,0 +1,183 @@
+//! Reload: a session takes the place of another, keeps what fits, and makes the picture that a fresh one would make.
+
+mod common;
+
+use common::{assert_clean, experiment, floats, lab, root, scene};
+use conelab::experiment::Experiment;
+use conelab::graph::successor::Change;
+use conelab::lab::{Lab, LabError, Session};
+use conelab::scene::Scene;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A texture that counts frames and one that is sized by a parameter.
+const GRAPH: &str = r#"(
+    params: [
+        Int(name: "side", default: 8, range: (1, 64), help: "Edge."),
+        Int(name: "step", default: 1, range: (0, 9), help: "What a frame adds."),
+    ],
+    textures: {
+        "count": (size: (4, 4), format: "r32f", history: true),
+        "sized": (size: ("side", "side"), format: "r32f"),
+    },
+    passes: [
+        (name: "count", shaders: ["count.comp"], dispatch: Cover("count"), bind: { "last": (of: "count", history: true) }),
+        (name: "fill", shaders: ["fill.comp"], dispatch: Cover("sized")),
+    ],
+    outputs: ["count", "sized"],
+)"#;
+
+const COUNT: &str = "#version 460
+#extension GL_GOOGLE_include_directive : require
+#include \"params.glsl\"
+layout(local_size_x = 4, local_size_y = 4) in;
+layout(r32f) uniform readonly image2D last;
+layout(r32f) uniform writeonly image2D count;
+void main() {
+    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+    imageStore(count, p, imageLoad(last, p) + float(params.step));
+}";
+
+const FILL: &str = "#version 460
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(r32f) uniform writeonly image2D sized;
+void main() { imageStore(sized, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }";
+
+fn write(folder: &Path, name: &str, text: &str) {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(path, text).unwrap();
+}
+
+struct Bench {
+    folder: tempfile::TempDir,
+    lab: Lab,
+    scene: Arc<Scene>,
+}
+
+impl Bench {
+    fn new() -> Bench {
+        let folder = tempfile::tempdir().unwrap();
+        write(folder.path(), "passes/graph.ron", GRAPH);
+        write(folder.path(), "shaders/count.comp", COUNT);
+        write(folder.path(), "shaders/fill.comp", FILL);
+        let lab = lab(folder.path());
+        Bench { folder, lab, scene: scene("triangles") }
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        write(self.folder.path(), name, text);
+    }
+
+    fn session(&self, params: &str, old: Option<&Session>) -> Result<Session, LabError> {
+        let text = format!("(graph: \"graph.ron\", scene: \"triangles\", size: (16, 16), params: {{{params}}})");
+        let experiment = Experiment::from_text(&self.folder.path().join("run.ron"), &text).unwrap();
+        let loaded = self.lab.home.load(&experiment.graph).map_err(LabError::Input)?;
+        let wanted = vec!["count".into(), "sized".into()];
+        self.lab.build(&experiment, &loaded, self.scene.clone(), wanted, old.map(Session::seed).as_ref())
+    }
+
+    fn reload(&self, params: &str, old: &mut Session) -> Session {
+        let mut new = self.session(params, Some(old)).unwrap();
+        new.succeed(old).unwrap();
+        new
+    }
+}
+
+fn frames(session: &mut Session, count: usize) {
+    for _ in 0..count {
+        session.frame(0.0).unwrap();
+    }
+    session.finish().unwrap();
+}
+
+#[test]
+fn textures_that_did_not_change_keep_their_content() {
+    let bench = Bench::new();
+    let mut session = bench.session("", None).unwrap();
+    frames(&mut session, 3);
+    assert_eq!(floats(&mut session, "count", 0)[5][0], 3.0);
+
+    // Another shader of another pass: its pipeline is made anew, nothing else. After odd and even frames alike.
+    for (round, value) in [(1, "2.0"), (2, "3.0"), (3, "4.0")] {
+        bench.write("shaders/fill.comp", &FILL.replace("vec4(1.0)", &format!("vec4({value})")));
+        session = bench.reload("", &mut session);
+        assert_eq!(session.program.change, Change { kept: 1, built: 1, resized: 0 });
+        frames(&mut session, 1);
+        assert_eq!(floats(&mut session, "count", 0)[5][0], 3.0 + round as f32);
+        assert_eq!(floats(&mut session, "sized", 0)[0][0].to_string(), value.trim_end_matches(".0"));
+    }
+
+    // Another size: only the texture that has it is made anew.
+    session = bench.reload("\"side\": 16", &mut session);
+    assert_eq!(session.program.change, Change { kept: 2, built: 0, resized: 1 });
+    frames(&mut session, 1);
+    assert_eq!(floats(&mut session, "count", 0)[5][0], 7.0);
+    assert_eq!(floats(&mut session, "sized", 0).len(), 256);
+    assert_clean(&bench.lab);
+}
+
+#[test]
+fn a_build_that_fails_leaves_the_old_session_whole() {
+    let bench = Bench::new();
+    let mut session = bench.session("", None).unwrap();
+    frames(&mut session, 1);
+    bench.write("shaders/count.comp", &COUNT.replace("params.step", "params.stop"));
+    let Err(LabError::Input(found)) = bench.session("", Some(&session)) else { panic!("it must not build") };
+    assert!(found[0].place.file.ends_with("count.comp") && found[0].place.line == 9, "{found:?}");
+    frames(&mut session, 2);
+    assert_eq!(floats(&mut session, "count", 0)[5][0], 3.0);
+    assert_clean(&bench.lab);
+}
+
+#[test]
+fn a_parameter_that_changes_no_plan_is_a_buffer_write() {
+    let bench = Bench::new();
+    let mut session = bench.session("", None).unwrap();
+    frames(&mut session, 1);
+    let mut params = session.params.clone();
+    params.set("step", "5").unwrap();
+    assert!(session.set_params(&bench.lab, &params).unwrap());
+    frames(&mut session, 1);
+    assert_eq!(floats(&mut session, "count", 0)[5][0], 6.0);
+    params.set("side", "9").unwrap();
+    assert!(!session.set_params(&bench.lab, &params).unwrap(), "another size needs other textures");
+}
+
+/// What the window does all day, with the method itself: every switch of a plan, one after the other on one session.
+#[test]
+fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
+    let lab = lab(root());
+    let cornell = scene("cornell");
+    let small = [("voxel_dim", "32"), ("shadow_dim", "256"), ("diffuse_steps", "16"), ("specular_steps", "16")];
+    let steps: [&[(&str, &str)]; 7] = [
+        &[],
+        &[("voxel_dim", "48")],
+        &[("opacity", "stored")],
+        &[("temporal", "true")],
+        &[("view", "normal")],
+        &[("warp", "spline")],
+        &[],
+    ];
+    let mut live: Option<Session> = None;
+    for step in steps {
+        let experiment = experiment("cornell", (64, 48), &[&small[..], step].concat());
+        let loaded = lab.home.load(&experiment.graph).unwrap();
+        let wanted = vec!["display".to_string()];
+        let seed = live.as_ref().map(Session::seed);
+        let mut next = lab.build(&experiment, &loaded, cornell.clone(), wanted.clone(), seed.as_ref()).unwrap();
+        drop(seed);
+        if let Some(old) = &mut live {
+            next.succeed(old).unwrap();
+        }
+        frames(&mut next, 1);
+        if !step.contains(&("temporal", "true")) {
+            let mut fresh = lab.build(&experiment, &loaded, cornell.clone(), wanted, None).unwrap();
+            frames(&mut fresh, 1);
+            let (a, b) = (next.texels("display", 0, 0).unwrap().bytes, fresh.texels("display", 0, 0).unwrap().bytes);
+            assert!(a == b, "after {step:?} the picture is not that of a fresh start");
+        }
+        live = Some(next);
+        assert_clean(&lab);
+    }
+}
