@@ -15,7 +15,7 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 CONELAB := cargo run --quiet --release --locked --
 OUT := captures/demo
 
-.PHONY: help demo test check fmt dist setup clean
+.PHONY: help demo view shot test check fmt dist setup clean
 
 help: ## Say what there is
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1	\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -32,6 +32,16 @@ demo: ## Render the built-in atrium, lit by voxel cones, on any Vulkan device
 		'$(OUT)/atrium.png   the atrium by direct light and voxel cones' \
 		'$(OUT)/voxels.png   the voxels that stand for the scene, coloured by albedo' \
 		'$(OUT)/stats.json   times of every pass, memory of every resource, all settings'
+
+view: ## Open the workbench
+	@scripts/setup.sh build run
+	@cargo build --release --locked
+	@$(CONELAB) view $(ARGS)
+
+shot: ## Take the README's picture of the workbench
+	@scripts/setup.sh build run
+	@$(CONELAB) screenshot configs/default.ron --scene atrium --window 1600x900 \
+		--click "raster | tessellated" --click Time $(ARGS) -o docs/workbench.jpg
 
 test: ## Run all tests
 	@scripts/setup.sh build run test
