@@ -124,10 +124,8 @@ impl Painter {
                 .queue_family_index(gpu.family)
                 .flags(vk::CommandPoolCreateFlags::TRANSIENT);
             painter.upload_pool = d.create_command_pool(&info, None).map_err(at())?;
-            let sizes = [vk::DescriptorPoolSize {
-                ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-                descriptor_count: count,
-            }];
+            let sizes =
+                [vk::DescriptorPoolSize { ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER, descriptor_count: count }];
             let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
             painter.pool = d.create_descriptor_pool(&info, None).map_err(at())?;
             for _ in 0..SLOTS {
@@ -155,8 +153,8 @@ impl Painter {
             let layouts = [self.layout];
             let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(self.pool).set_layouts(&layouts);
             // SAFETY: pool and layout are alive.
-            let set = unsafe { gpu.device.allocate_descriptor_sets(&info) }
-                .map_err(VulkanError::at("prepare to paint"))?[0];
+            let set =
+                unsafe { gpu.device.allocate_descriptor_sets(&info) }.map_err(VulkanError::at("prepare to paint"))?[0];
             let id = renderer.add_user_texture(set);
             self.pictures.push(Picture { image: None, set, id });
         }
@@ -232,11 +230,7 @@ impl Painter {
             result = renderer.cmd_draw(commands.handle, extent, scale, primitives);
             // SAFETY: as above.
             unsafe { gpu.device.cmd_end_rendering(commands.handle) };
-            let end = if to_present {
-                vk::ImageLayout::PRESENT_SRC_KHR
-            } else {
-                vk::ImageLayout::TRANSFER_SRC_OPTIMAL
-            };
+            let end = if to_present { vk::ImageLayout::PRESENT_SRC_KHR } else { vk::ImageLayout::TRANSFER_SRC_OPTIMAL };
             commands.attach(image, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, end);
             commands.timestamp();
         })?;
@@ -357,9 +351,8 @@ impl Painter {
                     // A window that is hidden may give no image for long: the program must not stand still.
                     let timeout = 100_000_000;
                     // SAFETY: the semaphore is unused: its last frame has been waited for.
-                    let next = unsafe {
-                        chain.loader.acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null())
-                    };
+                    let next =
+                        unsafe { chain.loader.acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null()) };
                     match next {
                         Ok((index, suboptimal)) => {
                             *stale = suboptimal;

@@ -723,4 +723,3 @@ fn outline(session: &Session, loaded: &Loaded) -> Outline {
         warnings: loaded.warnings.clone(),
     }
 }
-

@@ -10,6 +10,9 @@ use egui::Ui;
 pub struct Inspector {}
 
 impl Inspector {
+    /// Chooses a texture.
+    pub fn open(&mut self, _slot: usize, _texture: String) {}
+
     /// Takes in the texels that were asked for.
     pub fn note(&mut self, _look: Look, _texels: Texels) {}
 }

@@ -311,6 +311,7 @@ impl Workbench {
                         "revision": revision }),
                 );
                 self.slots[slot].errors.clear();
+                self.times.built(slot, &outline);
                 self.slots[slot].outline = Some(outline);
             }
             Report::Failed { slot, diagnostics, revision } => {
@@ -373,7 +374,8 @@ impl Workbench {
         self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
         let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
         if !same || self.experiment.is_some() {
-            let fallback = Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
+            let fallback =
+                Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
             let experiment = self.experiment.take().unwrap_or(fallback);
             match keep::lights(&experiment, &scene) {
                 Ok(lights) => self.wish.lights = lights,
@@ -408,11 +410,7 @@ impl Workbench {
         self.comparing = true;
         let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
         std::thread::spawn(move || {
-            let map = if mode == Mode::Difference {
-                compare::difference(&a, &b, gain)
-            } else {
-                compare::flip(&a, &b)
-            };
+            let map = if mode == Mode::Difference { compare::difference(&a, &b, gain) } else { compare::flip(&a, &b) };
             let _ = out.send((mode, map));
             wake();
         });
@@ -509,7 +507,10 @@ impl Workbench {
         if self.has_messages() {
             egui::Panel::bottom("messages").resizable(true).show(ui, |ui| self.messages(ui));
         }
-        egui::Panel::left("parameters").default_size(340.0).size_range(180.0..=640.0).show(ui, |ui| self.parameters(ui));
+        egui::Panel::left("parameters")
+            .default_size(340.0)
+            .size_range(180.0..=640.0)
+            .show(ui, |ui| self.parameters(ui));
         egui::Panel::right("right").default_size(320.0).size_range(180.0..=760.0).show(ui, |ui| self.right(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.picture(ui, textures));
         if self.help {
@@ -554,7 +555,11 @@ impl Workbench {
             }
             ui.separator();
             let mut compare = self.wish.slots[1].is_some();
-            if ui.toggle_value(&mut compare, "A | B").on_hover_text("Put a second experiment beside the first").clicked() {
+            if ui
+                .toggle_value(&mut compare, "A | B")
+                .on_hover_text("Put a second experiment beside the first")
+                .clicked()
+            {
                 self.wish.slots[1] = if compare { self.wish.slots[0].clone() } else { None };
                 self.panel_slot = usize::from(compare);
             }
