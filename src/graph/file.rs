@@ -36,6 +36,8 @@ pub struct GraphFile {
     pub tables: Items<Table>,
     /// Settings worth comparing.
     pub compare: Items<CompareDecl>,
+    /// Settings that show something worth looking into.
+    pub views: Items<ViewDecl>,
 }
 
 /// An expression with its place.
@@ -405,6 +407,18 @@ pub struct CompareDecl {
     pub a: Entries<RawText>,
     /// Parameters of the second.
     pub b: Entries<RawText>,
+}
+
+/// Settings that the graph offers to look into its work.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ViewDecl {
+    /// What a button says.
+    pub title: String,
+    /// One line.
+    pub help: String,
+    /// Parameters that it sets.
+    pub set: Entries<RawText>,
 }
 
 /// A RON value kept as text, to be read by the parameter it is for.

@@ -3,6 +3,7 @@
 use super::expr::Expr;
 use super::file::{
     BufferDecl, CheckDecl, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds, TextureDecl,
+    ViewDecl,
 };
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
@@ -52,6 +53,8 @@ pub struct Graph {
     pub tables: Vec<Table>,
     /// Settings worth comparing.
     pub compare: Vec<Loc<CompareDecl>>,
+    /// Settings that show something worth looking into.
+    pub views: Vec<Loc<ViewDecl>>,
     /// The files it came from.
     pub sources: Sources,
 }
@@ -99,6 +102,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         pointer: None,
         tables: Vec::new(),
         compare: Vec::new(),
+        views: Vec::new(),
         sources,
     };
     let mut wanted = Vec::new();
@@ -114,6 +118,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         graph.scene = file.scene.or(graph.scene);
         checks.extend(file.checks.0);
         graph.compare.extend(file.compare.0);
+        graph.views.extend(file.views.0);
         pointer = file.pointer.or(pointer);
         tables.extend(file.tables.0);
         for (slot, name) in [(&mut graph.output, file.output), (&mut graph.hdr, file.hdr)] {
@@ -139,6 +144,9 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     }
     for compare in &graph.compare {
         check.values(compare.value.a.0.iter().chain(&compare.value.b.0));
+    }
+    for view in &graph.views {
+        check.values(view.value.set.0.iter());
     }
     for item in &checks {
         check.buffer_name(&item.value.buffer);

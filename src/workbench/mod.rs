@@ -47,6 +47,8 @@ use wish::{SlotWish, Wish};
 pub const PICTURES: usize = 4;
 /// The picture of the comparison.
 const COMPARISON: usize = 2;
+/// The picture of the inspector.
+const INSPECTOR: usize = 3;
 
 /// New pixels of a picture: its number, size and RGBA bytes.
 pub type NewPixels = (usize, [u32; 2], Arc<Vec<u8>>);
@@ -214,6 +216,10 @@ impl Workbench {
                 self.comparison = Some((mode, map));
             }
         }
+        if let Some(pixels) = self.inspector.take(&self.wake) {
+            self.pixels.retain(|p| p.0 != INSPECTOR);
+            self.pixels.push(pixels);
+        }
         match self.watch.take() {
             Ok(changed) => {
                 self.files_changed(&changed);
@@ -311,6 +317,7 @@ impl Workbench {
                         "revision": revision }),
                 );
                 self.slots[slot].errors.clear();
+                self.times.built(slot, &outline);
                 self.slots[slot].outline = Some(outline);
             }
             Report::Failed { slot, diagnostics, revision } => {
@@ -332,7 +339,7 @@ impl Workbench {
                 self.event("load failed", json!({ "why": why }));
                 self.trouble = Some(why);
             }
-            Report::Texels(look, texels) => self.inspector.note(look, *texels),
+            Report::Texels(look, texels) => self.inspector.note(look, *texels, &self.wake),
             Report::Table(table, bytes) => self.tables.note(table, bytes),
             Report::Checks(slot, failed) => self.slots[slot].checks = failed,
             Report::Captured(result) => {
@@ -513,8 +520,15 @@ impl Workbench {
             .default_size(340.0)
             .size_range(180.0..=640.0)
             .show(ui, |ui| self.parameters(ui));
-        egui::Panel::right("right").default_size(320.0).size_range(180.0..=760.0).show(ui, |ui| self.right(ui));
-        egui::CentralPanel::no_frame().show(ui, |ui| self.picture(ui, textures));
+        egui::Panel::right("right")
+            .default_size(320.0)
+            .size_range(180.0..=760.0)
+            .show(ui, |ui| self.right(ui, textures));
+        let inspecting = self.tab == Tab::Inspector && self.inspector.in_the_middle();
+        egui::CentralPanel::no_frame().show(ui, |ui| match inspecting {
+            true => self.inspected(ui, textures),
+            false => self.picture(ui, textures),
+        });
         if self.help {
             self.help_window(ui);
         }
@@ -682,7 +696,7 @@ impl Workbench {
         }
     }
 
-    fn right(&mut self, ui: &mut Ui) {
+    fn right(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         ui.horizontal_wrapped(|ui| {
             for (tab, name) in [
                 (Tab::Surroundings, "Scene"),
@@ -696,10 +710,12 @@ impl Workbench {
             }
         });
         ui.separator();
+        // What is not looked at need not be made.
+        (self.wish.look, self.wish.table) = (None, None);
         match self.tab {
             Tab::Surroundings => self.surroundings(ui),
             Tab::Times => self.times_tab(ui),
-            Tab::Inspector => self.inspector_tab(ui),
+            Tab::Inspector => self.inspector_tab(ui, textures),
             Tab::Tables => self.tables_tab(ui),
             Tab::Paths => self.paths_tab(ui),
             Tab::Gallery => self.gallery_tab(ui),

@@ -1,0 +1,278 @@
+//! GPU and CPU time per pass, memory per resource, and their export.
+
+mod chart;
+mod export;
+mod history;
+
+use super::report::{Outline, PictureReport};
+use super::{Tab, Workbench};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
+use history::{Frame, History, Row};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How long a table stands before it is worked out anew.
+const TABLE_AGE: Duration = Duration::from_millis(250);
+/// Height of a row of the tables, points.
+const ROW: f32 = 16.0;
+/// Height of a chart, points.
+const CHART: f32 = 90.0;
+
+/// State of this tab.
+#[derive(Default)]
+pub struct Times {
+    slots: [History; 2],
+    charts: [chart::Chart; 2],
+    rows: Vec<Row>,
+    made: Option<Instant>,
+    /// Name and bytes of A's resources, the largest first.
+    memory: Vec<(String, u64)>,
+    scene_bytes: u64,
+    /// Name of the pass under the pointer.
+    hovered: Option<String>,
+}
+
+impl Times {
+    /// Takes in the times of a frame.
+    pub fn note(&mut self, picture: &PictureReport) {
+        // The passes of a preview are those of another graph.
+        if let Some(slot) = self.slots.get_mut(picture.slot).filter(|_| !picture.preview) {
+            slot.push(Frame::of(picture));
+        }
+    }
+
+    /// A slot runs something new: its times so far are of something else.
+    pub fn built(&mut self, slot: usize, outline: &Outline) {
+        let pass = |i: &usize| outline.graph.passes.get(*i).map(|p| (*i, p.value.name.value.clone()));
+        self.slots[slot] = History::new(outline.passes.iter().filter_map(pass).collect());
+        self.made = None;
+        if slot == 0 {
+            self.memory.clone_from(&outline.memory);
+            self.memory.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+            self.scene_bytes = outline.scene_bytes;
+        }
+    }
+
+    fn refresh(&mut self, both: bool) {
+        if !both && !self.slots[1].frames.is_empty() {
+            self.slots[1] = History::default();
+            self.made = None;
+        }
+        if self.made.is_none_or(|t| t.elapsed() > TABLE_AGE) {
+            self.made = Some(Instant::now());
+            self.rows = history::rows(&self.slots[0], both.then_some(&self.slots[1]));
+        }
+    }
+}
+
+impl Workbench {
+    /// The tab.
+    pub(super) fn times_tab(&mut self, ui: &mut Ui) {
+        let both = self.wish.slots[1].is_some();
+        self.times.refresh(both);
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            self.exports(ui);
+            let mut hovered = None;
+            let mut clicked = None;
+            let top = (0..=usize::from(both)).map(|i| self.times.slots[i].top()).fold(0.0, f64::max);
+            for i in 0..=usize::from(both) {
+                let shown = self.times.charts[i].show(ui, i, &self.times.slots[i], top, self.times.hovered.as_deref());
+                let Some((name, response)) = shown else { continue };
+                if response.clicked() {
+                    clicked = Some((i, name.clone()));
+                }
+                response.on_hover_text_at_pointer(self.pass_text(i, &name));
+                hovered = Some(name);
+            }
+            ui.add_space(4.0);
+            head(ui, both);
+            for n in 0..self.times.rows.len() {
+                let row = &self.times.rows[n];
+                let response = line(ui, row, both, self.times.hovered.as_deref());
+                if !row.is_pass || !response.hovered() {
+                    continue;
+                }
+                let (slot, name) = (usize::from(row.spread[0].is_none()), row.name.clone());
+                if response.clicked() {
+                    clicked = Some((slot, name.clone()));
+                }
+                response.on_hover_text_at_pointer(self.pass_text(slot, &name));
+                hovered = Some(name);
+            }
+            self.times.hovered = hovered;
+            if let Some((slot, name)) = clicked {
+                self.inspect_pass(slot, &name);
+            }
+            ui.separator();
+            memory(ui, &self.times.memory, self.times.scene_bytes);
+        });
+    }
+
+    fn exports(&mut self, ui: &mut Ui) {
+        let mut file = None;
+        ui.horizontal(|ui| {
+            let some = self.times.slots.iter().any(|s| !s.frames.is_empty());
+            let button = |text: &str| egui::Button::new(text).small();
+            if ui
+                .add_enabled(some, button("CSV"))
+                .on_hover_text("A row a frame, a column a pass, into captures/")
+                .clicked()
+            {
+                file = Some(("csv", export::csv(&self.times.slots)));
+            }
+            let about = "For Perfetto or chrome://tracing, into captures/";
+            if ui.add_enabled(some, button("trace")).on_hover_text(about).clicked() {
+                file = Some(("json", Ok(export::trace(&self.times.slots))));
+            }
+            ui.weak(format!("the last {} frames", self.times.slots[0].frames.len()));
+        });
+        let Some((ending, bytes)) = file else { return };
+        let written = bytes.and_then(|b| write_free(&self.root, &self.name, ending, &b));
+        let ok = written.is_ok();
+        let text = match written {
+            Ok(path) => format!("wrote {}", path.display()),
+            Err(e) => format!("times not written: {e}"),
+        };
+        self.event("exported", serde_json::json!({ "ok": ok, "text": text }));
+        self.status = text;
+    }
+
+    /// What a pass writes, for people.
+    fn pass_text(&self, slot: usize, name: &str) -> String {
+        let list = self.pass_writes(slot, name).join(", ");
+        match list.is_empty() {
+            true => name.to_string(),
+            false => format!("{name}\nwrites {list}\nclick to look into it"),
+        }
+    }
+
+    fn pass_writes(&self, slot: usize, name: &str) -> &[String] {
+        let Some(outline) = &self.slots[slot].outline else { return &[] };
+        let named =
+            |w: &&(usize, Vec<String>)| outline.graph.passes.get(w.0).is_some_and(|p| p.value.name.value == name);
+        outline.writes.iter().find(named).map_or(&[], |w| &w.1)
+    }
+
+    /// Opens the first texture that a pass writes in the inspector.
+    fn inspect_pass(&mut self, slot: usize, name: &str) {
+        let Some(outline) = self.slots[slot].outline.clone() else { return };
+        let texture = |n: &&String| outline.graph.textures.iter().any(|t| t.0 == **n);
+        let Some(texture) = self.pass_writes(slot, name).iter().find(texture).cloned() else {
+            self.status = format!("{name} writes no texture");
+            return;
+        };
+        self.inspector.open(slot, texture);
+        self.tab = Tab::Inspector;
+    }
+}
+
+/// Writes `captures/times-NAME.ENDING` under `root`, or with a number behind the name when that exists.
+fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> std::io::Result<PathBuf> {
+    let stem: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
+    for n in 1..10_000 {
+        let number = if n == 1 { String::new() } else { format!("-{n}") };
+        let path = root.join("captures").join(format!("times-{stem}{number}.{ending}"));
+        match crate::files::write_new(&path, bytes) {
+            Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => {}
+            other => return other.map(|()| path),
+        }
+    }
+    Err(std::io::Error::other("too many files of that name"))
+}
+
+/// Right edges of the columns of numbers, as shares of the width.
+fn columns(both: bool) -> &'static [f32] {
+    if both { &[0.52, 0.68, 0.84, 1.0] } else { &[0.58, 0.72, 0.86, 1.0] }
+}
+
+fn head(ui: &mut Ui, both: bool) {
+    let names: [&str; 4] = if both { ["A ms", "B ms", "B/A", "A share"] } else { ["median", "p95", "share", "max"] };
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
+    let color = ui.visuals().weak_text_color();
+    for (x, name) in columns(both).iter().zip(names) {
+        put(ui, rect, *x, name, color);
+    }
+    response.on_hover_text(if both {
+        "Medians of the last frames; A and B are measured in turns"
+    } else {
+        "Milliseconds over the last frames; the share is that of the median in the GPU's total"
+    });
+}
+
+fn put(ui: &Ui, rect: Rect, x: f32, text: &str, color: Color32) {
+    let at = Pos2::new(rect.left() + rect.width() * x - 2.0, rect.center().y);
+    ui.painter().text(at, Align2::RIGHT_CENTER, text, FontId::monospace(11.0), color);
+}
+
+fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
+    let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &row.name));
+    if !ui.is_rect_visible(rect) {
+        return response;
+    }
+    if response.hovered() || (row.is_pass && hovered == Some(row.name.as_str())) {
+        ui.painter().rect_filled(rect, 2.0, ui.visuals().widgets.hovered.weak_bg_fill);
+    }
+    let color = ui.visuals().text_color();
+    let mut left = rect.left();
+    if row.is_pass {
+        let swatch = Rect::from_center_size(Pos2::new(left + 5.0, rect.center().y), Vec2::splat(8.0));
+        ui.painter().rect_filled(swatch, 1.0, chart::color(&row.name));
+        left += 13.0;
+    }
+    let names =
+        Rect::from_min_max(Pos2::new(left, rect.top()), Pos2::new(rect.left() + rect.width() * 0.42, rect.bottom()));
+    let font = FontId::proportional(12.0);
+    ui.painter().with_clip_rect(names.intersect(ui.clip_rect())).text(
+        names.left_center(),
+        Align2::LEFT_CENTER,
+        &row.name,
+        font,
+        color,
+    );
+    for (x, text) in columns(both).iter().zip(&row.cells) {
+        put(ui, rect, *x, text, color);
+    }
+    response
+}
+
+fn memory(ui: &mut Ui, list: &[(String, u64)], scene: u64) {
+    let mib = |b: u64| format!("{:.2} MiB", b as f64 / 1_048_576.0);
+    let total: u64 = list.iter().map(|m| m.1).sum();
+    let title = format!("Memory of A: {}, scene {}", mib(total), mib(scene));
+    egui::CollapsingHeader::new(title).id_salt("memory").default_open(true).show(ui, |ui| {
+        let most = list.first().map_or(1, |m| m.1.max(1));
+        for (name, bytes) in list {
+            let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
+            if !ui.is_rect_visible(rect) {
+                continue;
+            }
+            let part = (*bytes as f32 / most as f32).max(0.002);
+            let bar = Rect::from_min_size(rect.min, Vec2::new(rect.width() * part, ROW - 2.0));
+            ui.painter().rect_filled(
+                bar,
+                1.0,
+                ui.visuals().faint_bg_color.lerp_to_gamma(Color32::from_rgb(60, 90, 140), 0.6),
+            );
+            let color = ui.visuals().text_color();
+            let font = FontId::proportional(12.0);
+            ui.painter().text(rect.left_center() + Vec2::new(3.0, 0.0), Align2::LEFT_CENTER, name, font, color);
+            put(ui, rect, 1.0, &mib(*bytes), color);
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_never_overwritten() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = write_free(folder.path(), "a b/c", "csv", b"1").unwrap();
+        let second = write_free(folder.path(), "a b/c", "csv", b"2").unwrap();
+        assert_eq!(first, folder.path().join("captures/times-a_b_c.csv"));
+        assert_eq!(second, folder.path().join("captures/times-a_b_c-2.csv"));
+        assert_eq!((std::fs::read(first).unwrap(), std::fs::read(second).unwrap()), (b"1".to_vec(), b"2".to_vec()));
+    }
+}
