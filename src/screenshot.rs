@@ -9,6 +9,7 @@ use crossbeam_channel::{Receiver, unbounded};
 use egui::accesskit::{Node, NodeId};
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, Vec2};
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -22,12 +23,29 @@ pub struct Script {
     pub clicks: Vec<String>,
     /// Frames of the interface to measure at the end.
     pub measure: usize,
+    /// A file to save over and over.
+    pub edit: Option<Edit>,
     /// How long to wait for the picture to settle after each step.
     pub patience: Duration,
 }
 
+/// An edit that goes back and forth, to measure how long it takes until its picture is there.
+#[derive(Clone)]
+pub struct Edit {
+    /// The file.
+    pub file: PathBuf,
+    /// A text that stands in it once.
+    pub from: String,
+    /// What takes its place.
+    pub to: String,
+    /// How often to save.
+    pub times: usize,
+}
+
 /// What came of it.
 pub struct Shot {
+    /// From the file's renaming until the picture made with it is painted, ms.
+    pub edit_ms: Option<Spread>,
     /// Width and height.
     pub size: [u32; 2],
     /// RGBA.
@@ -95,7 +113,38 @@ impl Host {
             gpu.push(self.painter.gpu_ms);
         }
         let (size, bytes) = self.painter.read()?;
-        Ok(Shot { size, bytes, cpu_ms: spread(cpu), gpu_ms: spread(gpu) })
+        let edit_ms = self.script.edit.clone().map(|edit| self.edits(&edit)).transpose()?.map(spread);
+        Ok(Shot { edit_ms, size, bytes, cpu_ms: spread(cpu), gpu_ms: spread(gpu) })
+    }
+
+    /// Saves a file again and again and waits for each picture; the file ends as it was.
+    fn edits(&mut self, edit: &Edit) -> Result<Vec<f64>, LabError> {
+        let at = |e: std::io::Error| LabError::Request(format!("'{}': {e}", edit.file.display()));
+        let original = std::fs::read_to_string(&edit.file).map_err(at)?;
+        if original.matches(&edit.from).count() != 1 {
+            let message = format!("'{}' must stand once in '{}'", edit.from, edit.file.display());
+            return Err(LabError::Request(message));
+        }
+        let changed = original.replace(&edit.from, &edit.to);
+        let mut times = Vec::new();
+        for i in 0..edit.times {
+            self.settle()?;
+            let before = self.workbench.shown_revision();
+            let text = if i % 2 == 0 { &changed } else { &original };
+            crate::files::write_whole(&edit.file, text.as_bytes()).map_err(at)?;
+            let saved = Instant::now();
+            while self.workbench.shown_revision() == before {
+                if saved.elapsed() > self.script.patience {
+                    crate::files::write_whole(&edit.file, original.as_bytes()).map_err(at)?;
+                    return Err(LabError::Request("the edit led to no picture".into()));
+                }
+                self.frame(Vec::new())?;
+                let _ = self.woken.recv_timeout(Duration::from_millis(2));
+            }
+            times.push(saved.elapsed().as_secs_f64() * 1e3);
+        }
+        crate::files::write_whole(&edit.file, original.as_bytes()).map_err(at)?;
+        Ok(times)
     }
 
     /// Where a widget is; the whole label counts, then its beginning.

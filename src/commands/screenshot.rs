@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use super::adapt::parse_size;
 use crate::lab::{Home, LabError};
-use crate::screenshot::{Script, take};
+use crate::screenshot::{Edit, Script, take};
 use crate::workbench::Options;
 use clap::Args;
 use std::io::Cursor;
@@ -33,6 +33,18 @@ pub struct ScreenshotArgs {
     /// Measure so many frames of the interface and print what they cost.
     #[arg(long, default_value_t = 0)]
     measure: usize,
+    /// Measure how long a saved edit of this file takes until its picture is painted; the file ends as it was.
+    #[arg(long, value_name = "FILE", requires_all = ["from", "to"])]
+    edit: Option<PathBuf>,
+    /// A text that stands once in the edited file.
+    #[arg(long, value_name = "TEXT", requires = "edit")]
+    from: Option<String>,
+    /// What takes its place, in every second save.
+    #[arg(long, value_name = "TEXT", requires = "edit")]
+    to: Option<String>,
+    /// Saves to measure.
+    #[arg(long, default_value_t = 16)]
+    times: usize,
     /// Seconds to wait for the picture after each click.
     #[arg(long, default_value_t = 120)]
     patience: u64,
@@ -59,6 +71,12 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         scale: args.scale,
         clicks: args.click.clone(),
         measure: args.measure,
+        edit: args.edit.clone().map(|file| Edit {
+            file,
+            from: args.from.clone().unwrap_or_default(),
+            to: args.to.clone().unwrap_or_default(),
+            times: args.times,
+        }),
         patience: Duration::from_secs(args.patience),
     };
     let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
@@ -72,13 +90,18 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         .map_err(|e| LabError::Request(format!("cannot make the picture: {e}")))?;
     crate::files::write_whole(&args.output, file.get_ref())
         .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", args.output.display())))?;
-    if args.measure > 0 {
+    if args.measure > 0 || shot.edit_ms.is_some() {
         let row = |name: &str, s: &crate::stats::Spread| {
             say!("{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);
         };
-        say!("{:<28}{:>10}{:>10}{:>10}", "interface, ms", "min", "median", "p95");
-        row("CPU", &shot.cpu_ms);
-        row("GPU", &shot.gpu_ms);
+        say!("{:<28}{:>10}{:>10}{:>10}", "ms", "min", "median", "p95");
+        if args.measure > 0 {
+            row("interface, CPU", &shot.cpu_ms);
+            row("interface, GPU", &shot.gpu_ms);
+        }
+        if let Some(edit) = &shot.edit_ms {
+            row("save to pixels", edit);
+        }
     }
     say!("wrote {}", super::shown(&args.output).display());
     Ok(())

@@ -621,6 +621,7 @@ impl Run<'_> {
             self.out.send(Report::Picture(PictureReport {
                 slot: number,
                 wish: submitted.wish,
+                revision: slot.key.as_ref().map_or(0, |k| k.revision),
                 preview: slot.preview,
                 frame: submitted.frame,
                 time: submitted.time,

@@ -128,6 +128,7 @@ pub struct Workbench {
     resize_since: Option<Instant>,
     events: Option<Events>,
     changed_at: Option<Instant>,
+    shown_revision: u64,
     wake: Arc<dyn Fn() + Send + Sync>,
     root: PathBuf,
 }
@@ -155,6 +156,7 @@ impl Workbench {
             ..Wish::default()
         };
         watch.scene(&wish.scene);
+        crate::capture::sweep_partials(&root.join("captures"));
         let trouble = watch.trouble.clone();
         Ok(Workbench {
             engine,
@@ -189,6 +191,7 @@ impl Workbench {
             resize_since: None,
             events,
             changed_at: None,
+            shown_revision: 0,
             wake,
             root,
         })
@@ -475,8 +478,16 @@ impl Workbench {
         &self.pixels
     }
 
+    /// Revision of the files that the shown picture of A was made from.
+    pub fn shown_revision(&self) -> u64 {
+        self.shown_revision
+    }
+
     /// The host has shown them.
     pub fn painted(&mut self) {
+        if let Some(picture) = self.slots[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.0 == 0)) {
+            self.shown_revision = picture.revision;
+        }
         if !self.pixels.is_empty() {
             let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);

@@ -50,6 +50,8 @@ pub struct PictureReport {
     pub slot: usize,
     /// Wish that it fulfils.
     pub wish: u64,
+    /// Revision of the files that it was made from.
+    pub revision: u64,
     /// Whether it is the preview, shown until the graph's own picture is there.
     pub preview: bool,
     /// Counts the slot's frames.

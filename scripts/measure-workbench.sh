@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# What the workbench itself costs: its interface per frame, and the time from saving a shader to its picture.
+#
+#   scripts/measure-workbench.sh [SCENE] [SIZE] [conelab]
+#
+# Needs no window system. Prints milliseconds: least, median, 95th percentile.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+scene=${1:-atrium}
+size=${2:-1280x720}
+conelab=$(realpath "${3:-target/release/conelab}")
+
+home=$(mktemp -d)
+trap 'rm -rf "$home"' EXIT
+cp -r passes shaders configs "$home/"
+export CONELAB_HOME=$home
+for tab in Scene Time; do
+    echo "tab $tab"
+    "$conelab" screenshot --scene "$scene" --size "$size" --click "raster | tessellated" --click "$tab" \
+        --measure 300 -o "$home/shot.png"
+done
+echo "an edit of the cone shader"
+"$conelab" screenshot --scene "$scene" --size "$size" -o "$home/shot.png" --times 25 \
+    --edit "$home/shaders/include/cone.glsl" --from 'params.cone_height * v0' --to 'params.cone_height * v0 * 1.01'
