@@ -461,6 +461,14 @@ impl Workbench {
         }
     }
 
+    /// Opens the tables, when what was clicked on fills one.
+    fn show_tables(&mut self) {
+        let fills = |o: &Arc<Outline>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
+        if self.slots[0].outline.as_ref().is_some_and(fills) {
+            self.tab = Tab::Tables;
+        }
+    }
+
     /// Tells the engine, if something is wished for that it does not know.
     fn tell(&mut self) {
         let mut wish = self.wish.clone();

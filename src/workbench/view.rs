@@ -154,6 +154,7 @@ impl Workbench {
         {
             let at = (p - shown.min) / shown.size() * Vec2::new(size[0] as f32, size[1] as f32);
             self.point_at(Some(at));
+            self.show_tables();
         }
         if let (Some(camera), Some(scene)) = (&mut self.wish.camera, &self.scene) {
             let (low, high) = scene.bounds();

@@ -126,12 +126,18 @@ impl Workbench {
             }
             ui.weak(format!("the last {} frames", self.times.slots[0].frames.len()));
         });
-        let Some((ending, bytes)) = file else { return };
-        let written = bytes.and_then(|b| write_free(&self.root, &self.name, ending, &b));
+        if let Some((ending, bytes)) = file {
+            self.export(&format!("times-{}", self.name), ending, bytes);
+        }
+    }
+
+    /// Writes what was made into `captures/`, and says so.
+    pub(super) fn export(&mut self, name: &str, ending: &str, bytes: std::io::Result<Vec<u8>>) {
+        let written = bytes.and_then(|b| write_free(&self.root, name, ending, &b));
         let ok = written.is_ok();
         let text = match written {
             Ok(path) => format!("wrote {}", path.display()),
-            Err(e) => format!("times not written: {e}"),
+            Err(e) => format!("not written: {e}"),
         };
         self.event("exported", serde_json::json!({ "ok": ok, "text": text }));
         self.status = text;
@@ -166,12 +172,12 @@ impl Workbench {
     }
 }
 
-/// Writes `captures/times-NAME.ENDING` under `root`, or with a number behind the name when that exists.
+/// Writes `captures/NAME.ENDING` under `root`, or with a number behind the name when that exists.
 fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> std::io::Result<PathBuf> {
     let stem: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
     for n in 1..10_000 {
         let number = if n == 1 { String::new() } else { format!("-{n}") };
-        let path = root.join("captures").join(format!("times-{stem}{number}.{ending}"));
+        let path = root.join("captures").join(format!("{stem}{number}.{ending}"));
         match crate::files::write_new(&path, bytes) {
             Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => {}
             other => return other.map(|()| path),
@@ -269,8 +275,8 @@ mod tests {
     #[test]
     fn a_file_is_never_overwritten() {
         let folder = tempfile::tempdir().unwrap();
-        let first = write_free(folder.path(), "a b/c", "csv", b"1").unwrap();
-        let second = write_free(folder.path(), "a b/c", "csv", b"2").unwrap();
+        let first = write_free(folder.path(), "times-a b/c", "csv", b"1").unwrap();
+        let second = write_free(folder.path(), "times-a b/c", "csv", b"2").unwrap();
         assert_eq!(first, folder.path().join("captures/times-a_b_c.csv"));
         assert_eq!(second, folder.path().join("captures/times-a_b_c-2.csv"));
         assert_eq!((std::fs::read(first).unwrap(), std::fs::read(second).unwrap()), (b"1".to_vec(), b"2".to_vec()));
