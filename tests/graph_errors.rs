@@ -1248,3 +1248,14 @@ fn tables_that_cannot_be_read() {
         |     tables: [(buffer: "work", rows: 0, start: 4, stride: 4, title: "T", help: "h", columns: [])],
     "#);
 }
+
+#[test]
+fn comparisons_of_what_is_not_there() {
+    let with = |a: &str| {
+        let compare = format!("compare: [(title: \"T\", help: \"h\", a: {{ {a} }}, b: {{}})],\n    output: \"picture\",");
+        graph("output: \"picture\",", &compare)
+    };
+    let found = with("\"nothing\": 1");
+    assert!(found.contains("passes/graph.ron:29:") && found.contains("no parameter 'nothing'"), "{found}");
+    assert_eq!(with(""), "", "a comparison of the same settings is no mistake");
+}
