@@ -25,9 +25,12 @@ struct Key {
 pub fn color(name: &str) -> Color32 {
     // FNV-1a, 32 bits.
     let hash = name.bytes().fold(0x811c_9dc5_u32, |h, b| (h ^ u32::from(b)).wrapping_mul(0x0100_0193));
-    let mixed = hash ^ (hash >> 15);
-    let part = |shift: u32, n: u32| ((mixed >> shift) % n) as f32 / n as f32;
-    Hsva::new(part(0, 360), 0.45 + 0.35 * part(11, 4), 0.6 + 0.35 * part(17, 4), 1.0).into()
+    // The last step of MurmurHash3, so that names which differ little differ much in colour.
+    let mixed = (hash ^ (hash >> 16)).wrapping_mul(0x85eb_ca6b);
+    let mixed = (mixed ^ (mixed >> 13)).wrapping_mul(0xc2b2_ae35);
+    let mixed = mixed ^ (mixed >> 16);
+    let part = |shift: u32, n: u32| ((mixed >> shift) % n) as f32 / (n - 1) as f32;
+    Hsva::new(part(0, 360), 0.45 + 0.45 * part(11, 3), 0.45 + 0.5 * part(17, 4), 1.0).into()
 }
 
 impl Chart {
