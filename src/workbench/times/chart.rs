@@ -62,10 +62,11 @@ impl Chart {
         }
         painter.add(Shape::Mesh(self.mesh.clone()));
         let weak = ui.visuals().weak_text_color();
-        painter.hline(rect.x_range(), rect.bottom() - rect.height() / 1.15, (0.5, weak));
+        let line = rect.bottom() - rect.height() / 1.15;
+        painter.hline(rect.x_range(), line, (0.5, weak));
         let label = format!("{}  {:.2} ms", ["A", "B"][slot.min(1)], top / 1.15);
         painter.text(
-            rect.left_top() + Vec2::new(3.0, 1.0),
+            Pos2::new(rect.left() + 3.0, line + 1.0),
             Align2::LEFT_TOP,
             label,
             FontId::proportional(11.0),

@@ -73,6 +73,8 @@ impl Workbench {
         let both = self.wish.slots[1].is_some();
         self.times.refresh(both);
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            // The scroll bar must not cover the last column.
+            ui.set_max_width(ui.available_width() - 8.0);
             self.exports(ui);
             let mut hovered = None;
             let mut clicked = None;
