@@ -1198,7 +1198,7 @@ fn views_that_set_what_there_is_not() {
         graph("output: \"picture\",", &format!("{view}\n    output: \"picture\","))
     };
     assert_eq!(view("\"method\": \"exact\", \"bright\": true"), "");
-    let place = "passes/graph.ron:29:62: error: ";
+    let place = "passes/graph.ron:29:59: error: ";
     for (set, said) in [
         ("\"metod\": \"exact\"", "metod"),
         ("\"method\": \"slow\"", "slow"),
