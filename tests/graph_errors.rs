@@ -1192,6 +1192,27 @@ fn pointers_that_point_nowhere() {
 }
 
 #[test]
+fn views_that_set_what_there_is_not() {
+    let view = |set: &str| {
+        let view = format!("views: [(title: \"fast\", help: \"The fast one.\", set: {{ {set} }})],");
+        graph("output: \"picture\",", &format!("{view}\n    output: \"picture\","))
+    };
+    assert_eq!(view("\"method\": \"exact\", \"bright\": true"), "");
+    let place = "passes/graph.ron:29:59: error: ";
+    for (set, said) in [
+        ("\"metod\": \"exact\"", "metod"),
+        ("\"method\": \"slow\"", "slow"),
+        ("\"cells\": 8", "cells"),
+        ("\"bright\": 1", "bright"),
+    ] {
+        let errors = view(set);
+        assert!(errors.starts_with(place) && errors.contains(said), "{errors}");
+    }
+    let unknown = graph("output: \"picture\",", "views: [(title: \"t\", help: \"h\", sets: {})], output: \"picture\",");
+    assert!(unknown.contains("'sets'"), "{unknown}");
+}
+
+#[test]
 fn tables_that_cannot_be_read() {
     let table = |old: &str, new: &str| {
         let right = "(buffer: \"work\", rows: 0, start: 16, stride: 16, title: \"Work\", help: \"Rows.\",

@@ -2,7 +2,7 @@
 
 use super::Workbench;
 use crate::graph::table::{Cell, CellKind, Column, Table, decode};
-use egui::{RichText, Ui};
+use egui::{Align2, FontId, Ui};
 use egui_extras::{Column as Width, TableBuilder};
 
 /// State of this tab.
@@ -223,7 +223,19 @@ impl Workbench {
                 let Some(cells) = rows.shown.get(row.index()).and_then(|i| rows.cells.get(*i)) else { return };
                 for cell in cells {
                     row.col(|ui| {
-                        ui.label(RichText::new(cell.to_string()).monospace().size(11.0));
+                        let rect = ui.max_rect();
+                        // Painted, not a label: a widget for each of hundreds of cells would take milliseconds.
+                        if ui.is_rect_visible(rect) {
+                            let color = ui.visuals().text_color();
+                            let text = cell.to_string();
+                            ui.painter().text(
+                                rect.left_center(),
+                                Align2::LEFT_CENTER,
+                                text,
+                                FontId::monospace(11.0),
+                                color,
+                            );
+                        }
                     });
                 }
             });

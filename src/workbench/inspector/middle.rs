@@ -99,14 +99,16 @@ impl Workbench {
     }
 }
 
+/// Points that a notch of a common wheel scrolls.
+const NOTCH: f32 = 50.0;
+
 /// Whole steps of the wheel: 1 up, -1 down. Smooth scrolling comes in small parts, of which the first counts.
 fn notch(ui: &Ui, wheel: f32) -> i32 {
     let id = ui.id().with("notch");
     let left: f32 = ui.data(|d| d.get_temp(id)).unwrap_or(0.0);
-    // Points that a notch of a common wheel scrolls.
     let sum = if wheel == 0.0 { left } else { left + wheel };
-    let steps = (sum / 40.0).trunc();
-    ui.data_mut(|d| d.insert_temp(id, sum - steps * 40.0));
+    let steps = (sum / NOTCH).trunc();
+    ui.data_mut(|d| d.insert_temp(id, sum - steps * NOTCH));
     steps as i32
 }
 

@@ -52,8 +52,10 @@ impl Inspector {
     pub fn open(&mut self, slot: usize, texture: String) {
         if self.look.texture != texture {
             self.fit = true;
+            self.sight = middle::Sight::default();
         }
-        self.look = Look { slot, texture, mip: 0, layer: 0, axis: self.look.axis, slice: self.look.slice };
+        // A slice that no volume has becomes the one in the middle.
+        self.look = Look { slot, texture, mip: 0, layer: 0, axis: self.look.axis, slice: u32::MAX };
     }
 
     /// Takes in the texels that were asked for.
@@ -183,7 +185,9 @@ impl Workbench {
                 }
             });
             let size = (plan.extent[look.axis.min(2)] >> look.mip.min(31)).max(1);
-            look.slice = look.slice.min(size - 1);
+            if look.slice >= size {
+                look.slice = size / 2;
+            }
             ui.add(Slider::new(&mut look.slice, 0..=size - 1).text("slice"));
         }
         let waits = self.inspector.shown.as_ref().is_none_or(|s| s.decoded.look != self.inspector.look);

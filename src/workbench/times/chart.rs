@@ -25,9 +25,12 @@ struct Key {
 pub fn color(name: &str) -> Color32 {
     // FNV-1a, 32 bits.
     let hash = name.bytes().fold(0x811c_9dc5_u32, |h, b| (h ^ u32::from(b)).wrapping_mul(0x0100_0193));
-    let mixed = hash ^ (hash >> 15);
-    let part = |shift: u32, n: u32| ((mixed >> shift) % n) as f32 / n as f32;
-    Hsva::new(part(0, 360), 0.45 + 0.35 * part(11, 4), 0.6 + 0.35 * part(17, 4), 1.0).into()
+    // The last step of MurmurHash3, so that names which differ little differ much in colour.
+    let mixed = (hash ^ (hash >> 16)).wrapping_mul(0x85eb_ca6b);
+    let mixed = (mixed ^ (mixed >> 13)).wrapping_mul(0xc2b2_ae35);
+    let mixed = mixed ^ (mixed >> 16);
+    let part = |shift: u32, n: u32| ((mixed >> shift) % n) as f32 / (n - 1) as f32;
+    Hsva::new(part(0, 360), 0.45 + 0.45 * part(11, 3), 0.45 + 0.5 * part(17, 4), 1.0).into()
 }
 
 impl Chart {
@@ -59,10 +62,11 @@ impl Chart {
         }
         painter.add(Shape::Mesh(self.mesh.clone()));
         let weak = ui.visuals().weak_text_color();
-        painter.hline(rect.x_range(), rect.bottom() - rect.height() / 1.15, (0.5, weak));
+        let line = rect.bottom() - rect.height() / 1.15;
+        painter.hline(rect.x_range(), line, (0.5, weak));
         let label = format!("{}  {:.2} ms", ["A", "B"][slot.min(1)], top / 1.15);
         painter.text(
-            rect.left_top() + Vec2::new(3.0, 1.0),
+            Pos2::new(rect.left() + 3.0, line + 1.0),
             Align2::LEFT_TOP,
             label,
             FontId::proportional(11.0),

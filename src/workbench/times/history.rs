@@ -99,8 +99,8 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
         let most = lists[0].iter().flatten().copied().fold(0.0, f64::max);
         let spread = lists.map(|v| v.map(spread));
         let share =
-            spread[0].filter(|_| total > 0.0 && name != CPU).map(|s| format!("{:.1} %", 100.0 * s.median / total));
-        let ms = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.3}"));
+            spread[0].filter(|_| total > 0.0 && name != CPU).map(|s| format!("{:.1}%", 100.0 * s.median / total));
+        let ms = |v: Option<f64>| v.map_or(String::new(), digits);
         let median = spread.map(|s| s.map(|s| s.median));
         let ratio = match median {
             [Some(a), Some(b)] if a > 0.0 => format!("{:.2}", b / a),
@@ -122,6 +122,15 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     list.push(row("GPU, first to last", false, slots.map(|h| values(h, &|f| f.gpu_ms))));
     list.push(row(CPU, false, slots.map(|h| values(h, &|f| f.cpu_ms))));
     list
+}
+
+/// A time with four digits, ms.
+fn digits(ms: f64) -> String {
+    match ms {
+        _ if ms >= 99.995 => format!("{ms:.1}"),
+        _ if ms >= 9.9995 => format!("{ms:.2}"),
+        _ => format!("{ms:.3}"),
+    }
 }
 
 /// The row that is no part of the GPU's time.
@@ -156,16 +165,21 @@ mod tests {
         let rows = rows(&a, Some(&b));
         let names: Vec<&str> = rows.iter().map(|r| r.name.as_str()).collect();
         assert_eq!(names, ["x", "y", "z", "GPU, first to last", CPU]);
-        assert_eq!(rows[0].cells, ["1.000", "", "", "25.0 %"]);
-        assert_eq!(rows[1].cells, ["3.000", "6.000", "2.00", "75.0 %"]);
+        assert_eq!(rows[0].cells, ["1.000", "", "", "25.0%"]);
+        assert_eq!(rows[1].cells, ["3.000", "6.000", "2.00", "75.0%"]);
         assert_eq!(rows[2].cells, ["", "2.000", "", ""]);
         assert_eq!(rows[4].cells, ["1.000", "1.000", "1.00", ""]);
     }
 
     #[test]
+    fn times_have_four_digits() {
+        assert_eq!([0.0123, 9.9996, 52.944, 511.644].map(digits), ["0.012", "10.00", "52.94", "511.6"]);
+    }
+
+    #[test]
     fn alone_it_says_how_times_spread() {
         let rows = rows(&history(&["x"], &[&[1.0], &[2.0], &[9.0]]), None);
-        assert_eq!(rows[0].cells, ["2.000", "9.000", "100.0 %", "9.000"]);
+        assert_eq!(rows[0].cells, ["2.000", "9.000", "100.0%", "9.000"]);
         assert!(super::rows(&History::default(), None).iter().all(|r| r.cells.iter().all(String::is_empty)));
     }
 }

@@ -15,6 +15,8 @@ use std::time::{Duration, Instant};
 const TABLE_AGE: Duration = Duration::from_millis(250);
 /// Height of a row of the tables, points.
 const ROW: f32 = 16.0;
+/// Width of a number, points.
+const NUMBER: f32 = 38.0;
 /// Height of a chart, points.
 const CHART: f32 = 90.0;
 
@@ -71,6 +73,8 @@ impl Workbench {
         let both = self.wish.slots[1].is_some();
         self.times.refresh(both);
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            // The scroll bar must not cover the last column.
+            ui.set_max_width(ui.available_width() - 8.0);
             self.exports(ui);
             let mut hovered = None;
             let mut clicked = None;
@@ -188,11 +192,11 @@ fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> std::io::R
 
 /// Right edges of the columns of numbers, as shares of the width.
 fn columns(both: bool) -> &'static [f32] {
-    if both { &[0.52, 0.68, 0.84, 1.0] } else { &[0.58, 0.72, 0.86, 1.0] }
+    if both { &[0.56, 0.71, 0.84, 1.0] } else { &[0.56, 0.71, 0.86, 1.0] }
 }
 
 fn head(ui: &mut Ui, both: bool) {
-    let names: [&str; 4] = if both { ["A ms", "B ms", "B/A", "A share"] } else { ["median", "p95", "share", "max"] };
+    let names: [&str; 4] = if both { ["A ms", "B ms", "B/A", "share A"] } else { ["median", "p95", "share", "max"] };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
     let color = ui.visuals().weak_text_color();
     for (x, name) in columns(both).iter().zip(names) {
@@ -207,7 +211,7 @@ fn head(ui: &mut Ui, both: bool) {
 
 fn put(ui: &Ui, rect: Rect, x: f32, text: &str, color: Color32) {
     let at = Pos2::new(rect.left() + rect.width() * x - 2.0, rect.center().y);
-    ui.painter().text(at, Align2::RIGHT_CENTER, text, FontId::monospace(11.0), color);
+    ui.painter().text(at, Align2::RIGHT_CENTER, text, FontId::monospace(10.5), color);
 }
 
 fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
@@ -226,8 +230,9 @@ fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
         ui.painter().rect_filled(swatch, 1.0, chart::color(&row.name));
         left += 13.0;
     }
-    let names =
-        Rect::from_min_max(Pos2::new(left, rect.top()), Pos2::new(rect.left() + rect.width() * 0.42, rect.bottom()));
+    // Names give way to numbers.
+    let right = rect.left() + rect.width() * columns(both).first().copied().unwrap_or(1.0) - NUMBER;
+    let names = Rect::from_min_max(Pos2::new(left, rect.top()), Pos2::new(right, rect.bottom()));
     let font = FontId::proportional(12.0);
     ui.painter().with_clip_rect(names.intersect(ui.clip_rect())).text(
         names.left_center(),
