@@ -302,15 +302,15 @@ impl Workbench {
                 self.device = Some(device);
                 self.trouble = None;
             }
-            Report::Built { slot, outline, change, ms, revision } => {
+            Report::Built { slot, outline, change, ms, revision, objects } => {
                 let Change { kept, built, resized } = change;
                 self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
                 self.event(
                     "built",
                     json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
-                        "revision": revision }),
+                        "revision": revision, "objects": objects }),
                 );
-                self.slots[slot].errors.clear();
+                self.mended(slot);
                 self.slots[slot].outline = Some(outline);
             }
             Report::Failed { slot, diagnostics, revision } => {
@@ -319,10 +319,7 @@ impl Workbench {
                 self.slots[slot].errors = diagnostics;
             }
             Report::Set { slot, .. } => {
-                if !self.slots[slot].errors.is_empty() {
-                    self.slots[slot].errors.clear();
-                    self.event("mended", json!({ "slot": slot }));
-                }
+                self.mended(slot);
             }
             Report::Picture(picture) => self.picture_came(picture),
             Report::Loading(what, part) => self.loading = Some((what, part)),
@@ -351,6 +348,13 @@ impl Workbench {
         }
     }
 
+    fn mended(&mut self, slot: usize) {
+        if !self.slots[slot].errors.is_empty() {
+            self.slots[slot].errors.clear();
+            self.event("mended", json!({ "slot": slot }));
+        }
+    }
+
     fn picture_came(&mut self, picture: PictureReport) {
         self.times.note(&picture);
         let number = picture.slot;
@@ -360,7 +364,8 @@ impl Workbench {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let fields = json!({ "slot": number, "preview": picture.preview, "frame": picture.frame,
                 "wish": picture.wish, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
-                "since_change_ms": since });
+                "since_change_ms": since,
+                "fingerprint": events::fingerprint(&picture.bytes) });
             self.event("picture", fields);
         }
         self.slots[number].picture = Some(picture);
@@ -471,17 +476,25 @@ impl Workbench {
     /// The host has shown them.
     pub fn painted(&mut self) {
         if !self.pixels.is_empty() {
+            if self.events.is_none() {
+                self.pixels.clear();
+                return;
+            }
             let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
+            let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let wish = self.slots[0].picture.as_ref().map_or(0, |p| p.wish);
-            self.event("painted", json!({ "pictures": list, "wish": wish, "since_change_ms": since }));
+            self.event("painted", json!({ "pictures": list, "fingerprints": prints, "wish": wish, "since_change_ms": since }));
         }
         self.pixels.clear();
     }
 
     /// Tells where the widgets are, for scripts; `true` if there is more to tell.
     pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
-        self.events.as_mut().is_some_and(|e| e.widgets(update, scale))
+        self.events.as_mut().is_some_and(|e| {
+            e.place(self.view.place, scale);
+            e.widgets(update, scale)
+        })
     }
 
     /// Whether the widgets are to be described.
