@@ -119,6 +119,8 @@ pub struct Workbench {
     pixels: Vec<NewPixels>,
     comparison: Option<(Mode, Map)>,
     comparing: bool,
+    /// What was compared last: mode, gain, A, B.
+    comparison_of: Option<(Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>)>,
     compared: (Sender<(Mode, Option<Map>)>, Receiver<(Mode, Option<Map>)>),
     /// The area of the picture, in pixels of the screen.
     area: [u32; 2],
@@ -181,6 +183,7 @@ impl Workbench {
             pixels: Vec::new(),
             comparison: None,
             comparing: false,
+            comparison_of: None,
             compared: unbounded(),
             area: [0, 0],
             fixed_size: options.size,
@@ -356,6 +359,9 @@ impl Workbench {
     }
 
     fn picture_came(&mut self, picture: PictureReport) {
+        if self.wish.slots[picture.slot].is_none() {
+            return;
+        }
         self.times.note(&picture);
         let number = picture.slot;
         self.pixels.retain(|p| p.0 != number);
@@ -369,7 +375,6 @@ impl Workbench {
             self.event("picture", fields);
         }
         self.slots[number].picture = Some(picture);
-        self.compare();
     }
 
     fn loaded(&mut self, scene: Arc<Scene>) {
@@ -410,6 +415,14 @@ impl Workbench {
         }
         let shown = |s: &Slot| s.picture.as_ref().map(|p| Shown { size: p.size, bytes: p.bytes.clone() });
         let (Some(a), Some(b)) = (shown(&self.slots[0]), shown(&self.slots[1])) else { return };
+        let of = (mode, self.view.gain, a.bytes.clone(), b.bytes.clone());
+        let same = |o: &(Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>)| {
+            (o.0, o.1) == (of.0, of.1) && Arc::ptr_eq(&o.2, &of.2) && Arc::ptr_eq(&o.3, &of.3)
+        };
+        if self.comparison_of.as_ref().is_some_and(same) {
+            return;
+        }
+        self.comparison_of = Some(of);
         self.comparing = true;
         let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
         std::thread::spawn(move || {
@@ -522,7 +535,11 @@ impl Workbench {
         if self.has_messages() {
             egui::Panel::bottom("messages").resizable(true).show(ui, |ui| self.messages(ui));
         }
-        egui::Panel::left("parameters").default_size(340.0).size_range(180.0..=640.0).show(ui, |ui| self.parameters(ui));
+        egui::Panel::left("parameters").default_size(340.0).size_range(180.0..=640.0).show(ui, |ui| {
+            // Panels are as wide as what is in them, which at first is little.
+            ui.set_min_width(ui.available_width());
+            self.parameters(ui);
+        });
         egui::Panel::right("right").default_size(320.0).size_range(180.0..=760.0).show(ui, |ui| self.right(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.picture(ui, textures));
         if self.help {
@@ -531,6 +548,11 @@ impl Workbench {
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
         self.history.note(&self.wish, held);
+        if self.wish.slots[1].is_none() {
+            self.slots[1] = Slot::default();
+            self.comparison_of = None;
+        }
+        self.compare();
         self.tell();
     }
 

@@ -121,7 +121,7 @@ impl Workbench {
                 badge(&painter, fit(right, a, scale).left_top() + Vec2::new(14.0, 10.0), "B");
             }
             Mode::Difference | Mode::Perceived => {
-                if self.comparison.is_some() {
+                if self.comparison.as_ref().is_some_and(|(mode, _)| *mode == self.view.mode) {
                     draw(COMPARISON, shown, area);
                 } else {
                     draw(0, shown, area);
