@@ -6,7 +6,12 @@ use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_ash_renderer::allocator::DefaultAllocator;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, vulkan};
 use gpu_allocator::MemoryLocation;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
+
+/// Bytes of a picture as half floats that the renderer, which encodes with the power 1 / 2.2, writes as the same bytes: an
+/// sRGB texture would come out up to 9 of 255 wrong.
+static DECODED: LazyLock<[[u8; 2]; 256]> =
+    LazyLock::new(|| std::array::from_fn(|i| half::f16::from_f32((i as f32 / 255.0).powf(2.2)).to_le_bytes()));
 
 /// Where the painter's pixels go.
 enum Target {
@@ -124,10 +129,8 @@ impl Painter {
                 .queue_family_index(gpu.family)
                 .flags(vk::CommandPoolCreateFlags::TRANSIENT);
             painter.upload_pool = d.create_command_pool(&info, None).map_err(at())?;
-            let sizes = [vk::DescriptorPoolSize {
-                ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-                descriptor_count: count,
-            }];
+            let sizes =
+                [vk::DescriptorPoolSize { ty: vk::DescriptorType::COMBINED_IMAGE_SAMPLER, descriptor_count: count }];
             let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
             painter.pool = d.create_descriptor_pool(&info, None).map_err(at())?;
             for _ in 0..SLOTS {
@@ -155,8 +158,8 @@ impl Painter {
             let layouts = [self.layout];
             let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(self.pool).set_layouts(&layouts);
             // SAFETY: pool and layout are alive.
-            let set = unsafe { gpu.device.allocate_descriptor_sets(&info) }
-                .map_err(VulkanError::at("prepare to paint"))?[0];
+            let set =
+                unsafe { gpu.device.allocate_descriptor_sets(&info) }.map_err(VulkanError::at("prepare to paint"))?[0];
             let id = renderer.add_user_texture(set);
             self.pictures.push(Picture { image: None, set, id });
         }
@@ -232,11 +235,7 @@ impl Painter {
             result = renderer.cmd_draw(commands.handle, extent, scale, primitives);
             // SAFETY: as above.
             unsafe { gpu.device.cmd_end_rendering(commands.handle) };
-            let end = if to_present {
-                vk::ImageLayout::PRESENT_SRC_KHR
-            } else {
-                vk::ImageLayout::TRANSFER_SRC_OPTIMAL
-            };
+            let end = if to_present { vk::ImageLayout::PRESENT_SRC_KHR } else { vk::ImageLayout::TRANSFER_SRC_OPTIMAL };
             commands.attach(image, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, end);
             commands.timestamp();
         })?;
@@ -280,8 +279,7 @@ impl Painter {
         for slot in &mut self.slots {
             slot.commands.wait()?;
         }
-        // The renderer decodes what it samples and encodes what it writes.
-        let format = vk::Format::R8G8B8A8_SRGB;
+        let format = vk::Format::R16G16B16A16_SFLOAT;
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let (image, view) = plain_image(&self.gpu, "picture", p.size, format, usage, vk::ImageUsageFlags::SAMPLED)?;
         let info = [vk::DescriptorImageInfo::default()
@@ -306,12 +304,17 @@ impl Painter {
         pixels
             .iter()
             .map(|p| {
-                let size = p.bytes.len() as u64;
+                let size = 2 * p.bytes.len() as u64;
                 let mut buffer = match old.iter().position(|b| b.size == size) {
                     Some(i) => old.swap_remove(i),
                     None => Buffer::new(&self.gpu, "picture upload", size, usage, MemoryLocation::CpuToGpu)?,
                 };
-                buffer.bytes_mut()[..p.bytes.len()].copy_from_slice(p.bytes);
+                let halves = buffer.bytes_mut().chunks_exact_mut(8);
+                for (to, from) in halves.zip(p.bytes.chunks_exact(4)) {
+                    for (to, from) in to.chunks_exact_mut(2).zip([from[0], from[1], from[2], 255]) {
+                        to.copy_from_slice(&DECODED[usize::from(from)]);
+                    }
+                }
                 Ok(buffer)
             })
             .collect()
@@ -357,9 +360,8 @@ impl Painter {
                     // A window that is hidden may give no image for long: the program must not stand still.
                     let timeout = 100_000_000;
                     // SAFETY: the semaphore is unused: its last frame has been waited for.
-                    let next = unsafe {
-                        chain.loader.acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null())
-                    };
+                    let next =
+                        unsafe { chain.loader.acquire_next_image(chain.handle, timeout, acquired, vk::Fence::null()) };
                     match next {
                         Ok((index, suboptimal)) => {
                             *stale = suboptimal;

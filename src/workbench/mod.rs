@@ -383,7 +383,8 @@ impl Workbench {
         self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
         let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
         if !same || self.experiment.is_some() {
-            let fallback = Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
+            let fallback =
+                Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
             let experiment = self.experiment.take().unwrap_or(fallback);
             match keep::lights(&experiment, &scene) {
                 Ok(lights) => self.wish.lights = lights,
@@ -426,11 +427,7 @@ impl Workbench {
         self.comparing = true;
         let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
         std::thread::spawn(move || {
-            let map = if mode == Mode::Difference {
-                compare::difference(&a, &b, gain)
-            } else {
-                compare::flip(&a, &b)
-            };
+            let map = if mode == Mode::Difference { compare::difference(&a, &b, gain) } else { compare::flip(&a, &b) };
             let _ = out.send((mode, map));
             wake();
         });
@@ -497,7 +494,10 @@ impl Workbench {
             let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let wish = self.slots[0].picture.as_ref().map_or(0, |p| p.wish);
-            self.event("painted", json!({ "pictures": list, "fingerprints": prints, "wish": wish, "since_change_ms": since }));
+            self.event(
+                "painted",
+                json!({ "pictures": list, "fingerprints": prints, "wish": wish, "since_change_ms": since }),
+            );
         }
         self.pixels.clear();
     }
@@ -589,7 +589,11 @@ impl Workbench {
             }
             ui.separator();
             let mut compare = self.wish.slots[1].is_some();
-            if ui.toggle_value(&mut compare, "A | B").on_hover_text("Put a second experiment beside the first").clicked() {
+            if ui
+                .toggle_value(&mut compare, "A | B")
+                .on_hover_text("Put a second experiment beside the first")
+                .clicked()
+            {
                 self.wish.slots[1] = if compare { self.wish.slots[0].clone() } else { None };
                 self.panel_slot = usize::from(compare);
             }

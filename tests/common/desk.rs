@@ -89,7 +89,9 @@ fn screen() -> (Screen, String) {
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
-        .unwrap_or_else(|e| panic!("cannot start Xvfb ({e}): install the package xvfb, or run `scripts/setup.sh test`"));
+        .unwrap_or_else(|e| {
+            panic!("cannot start Xvfb ({e}): install the package xvfb, or run `scripts/setup.sh test`")
+        });
     let mut number = String::new();
     let mut out = BufReader::new(server.stdout.take().unwrap());
     out.read_line(&mut number).unwrap();
@@ -425,9 +427,11 @@ impl Desk {
         let [left, top, right, bottom] = self.place().map(|v| v as i16);
         let last = self.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
         let size = [0, 1].map(|i| usize::try_from(last["size"][i].as_u64().unwrap()).unwrap());
-        let (width, height) = ((right - left) as u16, (bottom - top) as u16);
+        let (width, height) = ((right - left).max(1) as u16, (bottom - top).max(1) as u16);
         let image = self.x.get_image(ImageFormat::Z_PIXMAP, self.window, left, top, width, height, !0);
-        let bytes = image.unwrap().reply().unwrap().data;
+        // While the window is smaller than the picture was, there is nothing to see.
+        let Ok(image) = image.unwrap().reply() else { return Seen { size: (0, 0), rgba: Vec::new() } };
+        let bytes = image.data;
         let mut rgba = Vec::new();
         for y in 0..size[1] {
             for x in 0..size[0] {
@@ -456,8 +460,7 @@ impl Desk {
         }
     }
 
-    /// Waits until this picture is on the screen: as it was when it was seen first. (Nearly its bytes: the painter decodes and
-    /// encodes them, which may round by one.)
+    /// Waits until this picture is on the screen: as it was when it was seen first.
     #[track_caller]
     pub fn shows(&mut self, print: &str) -> Seen {
         if let Some(known) = self.known.get(print).cloned() {
@@ -466,15 +469,22 @@ impl Desk {
         self.wait(0, &format!("painting of {print}"), |e| {
             e["event"] == "painted" && e["fingerprints"].as_array().unwrap().iter().any(|f| f == print)
         });
-        let seen = loop {
-            let seen = self.look();
-            std::thread::sleep(Duration::from_millis(80));
-            if self.look() == seen {
-                break seen;
-            }
-        };
+        let seen = self.look_still();
         self.known.insert(print.to_string(), seen.clone());
         seen
+    }
+
+    /// What is on the screen once it stands still.
+    pub fn look_still(&mut self) -> Seen {
+        let mut seen = self.look();
+        loop {
+            std::thread::sleep(Duration::from_millis(150));
+            let next = self.look();
+            if next == seen {
+                return seen;
+            }
+            seen = next;
+        }
     }
 
     /// Keeps what the window shows, for a person to look at.
