@@ -1,7 +1,9 @@
 //! Reading a graph with its includes, and checking everything that needs no shader.
 
 use super::expr::Expr;
-use super::file::{BufferDecl, CheckDecl, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds, TextureDecl};
+use super::file::{
+    BufferDecl, CheckDecl, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds, TextureDecl,
+};
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
 use super::table::Table;

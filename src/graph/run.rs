@@ -401,7 +401,9 @@ impl Program {
 
     /// Remembers the layouts that a frame of this parity leaves behind.
     fn rest(&mut self, parity: usize) {
-        for (now, end) in self.resting.iter_mut().flatten().flatten().zip(self.schedule.ends[parity].iter().flatten().flatten()) {
+        for (now, end) in
+            self.resting.iter_mut().flatten().flatten().zip(self.schedule.ends[parity].iter().flatten().flatten())
+        {
             if *end != vk::ImageLayout::UNDEFINED {
                 *now = *end;
             }
@@ -697,7 +699,12 @@ fn copy_out(
     commands.full_barrier();
 }
 
-pub(super) fn relayout(image: &Image, from: vk::ImageLayout, to: vk::ImageLayout, mip: u32) -> vk::ImageMemoryBarrier2<'static> {
+pub(super) fn relayout(
+    image: &Image,
+    from: vk::ImageLayout,
+    to: vk::ImageLayout,
+    mip: u32,
+) -> vk::ImageMemoryBarrier2<'static> {
     let all = vk::PipelineStageFlags2::ALL_COMMANDS;
     let access = vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE;
     vk::ImageMemoryBarrier2::default()

@@ -146,8 +146,8 @@ fn create_instance(
         let layer_names = if validation { vec![VALIDATION.as_ptr()] } else { vec![] };
         let mut extension_names = if debug_utils { vec![ext::debug_utils::NAME.as_ptr()] } else { vec![] };
         if let Some(display) = display {
-            let needed =
-                ash_window::enumerate_required_extensions(display).map_err(VulkanError::at("present to this window"))?;
+            let needed = ash_window::enumerate_required_extensions(display)
+                .map_err(VulkanError::at("present to this window"))?;
             extension_names.extend_from_slice(needed);
         }
         let app = vk::ApplicationInfo::default().application_name(c"conelab").api_version(vk::API_VERSION_1_3);
@@ -332,10 +332,7 @@ impl Gpu {
     ///
     /// # Errors
     /// As [`Gpu::open`].
-    pub fn open_for(
-        options: &GpuOptions,
-        display: Option<raw_window_handle::RawDisplayHandle>,
-    ) -> Result<Arc<Gpu>> {
+    pub fn open_for(options: &GpuOptions, display: Option<raw_window_handle::RawDisplayHandle>) -> Result<Arc<Gpu>> {
         let entry = load()?;
         let messages = Box::new(Messages::default());
         let (instance, debug_utils) = create_instance(&entry, options.validation, display, &messages)?;

@@ -27,9 +27,8 @@ impl Surface {
         let handle = create(gpu, &window)?;
         let surface = Surface { gpu: gpu.clone(), loader, handle, window };
         // SAFETY: device and surface belong to one instance.
-        let supported = unsafe {
-            surface.loader.get_physical_device_surface_support(gpu.physical, gpu.family, surface.handle)
-        };
+        let supported =
+            unsafe { surface.loader.get_physical_device_surface_support(gpu.physical, gpu.family, surface.handle) };
         match supported {
             Ok(true) => Ok(surface),
             _ => Err(VulkanError::CannotPresent(gpu.info.name.clone())),
@@ -85,12 +84,8 @@ impl Swapchain {
         // SAFETY: device and surface belong to one instance; what is made is destroyed in `drop`.
         unsafe {
             let physical = gpu.physical;
-            let can = surface
-                .loader
-                .get_physical_device_surface_capabilities(physical, surface.handle)
-                .map_err(at())?;
-            let formats =
-                surface.loader.get_physical_device_surface_formats(physical, surface.handle).map_err(at())?;
+            let can = surface.loader.get_physical_device_surface_capabilities(physical, surface.handle).map_err(at())?;
+            let formats = surface.loader.get_physical_device_surface_formats(physical, surface.handle).map_err(at())?;
             // What is drawn is already encoded: formats that encode once more would be wrong.
             let wanted = [vk::Format::B8G8R8A8_UNORM, vk::Format::R8G8B8A8_UNORM];
             let format = formats

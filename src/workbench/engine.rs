@@ -725,4 +725,3 @@ fn outline(session: &Session, loaded: &Loaded) -> Outline {
         warnings: loaded.warnings.clone(),
     }
 }
-

@@ -16,10 +16,7 @@ impl Workbench {
             for (slot, name) in self.slots.iter().zip(["A", "B"]) {
                 if !slot.errors.is_empty() {
                     let count = slot.errors.len();
-                    ui.colored_label(
-                        RED,
-                        format!("{name} shows the last good picture: {count} to mend in the files"),
-                    );
+                    ui.colored_label(RED, format!("{name} shows the last good picture: {count} to mend in the files"));
                 }
                 for error in &slot.errors {
                     diagnostic(ui, error);

@@ -60,7 +60,8 @@ fn keys(ui: &Ui, camera: &mut Camera, size: f32, speed: f32) {
     let forward = direction(camera);
     let (go, seconds, fast) = ui.input(|i| {
         let held = |key: Key| f32::from(u8::from(i.key_down(key) && !i.modifiers.command));
-        let go = forward * (held(Key::W) - held(Key::S)) + right * (held(Key::D) - held(Key::A))
+        let go = forward * (held(Key::W) - held(Key::S))
+            + right * (held(Key::D) - held(Key::A))
             + up * (held(Key::E) - held(Key::Q));
         (go, i.stable_dt.min(0.1), i.modifiers.shift)
     });

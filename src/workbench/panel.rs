@@ -56,14 +56,14 @@ impl Panel {
                 } else {
                     RichText::new(title)
                 };
-                egui::CollapsingHeader::new(title)
-                    .id_salt(("group", number))
-                    .open(searching.then_some(true))
-                    .show(ui, |ui| {
+                egui::CollapsingHeader::new(title).id_salt(("group", number)).open(searching.then_some(true)).show(
+                    ui,
+                    |ui| {
                         for param in shown {
                             row(ui, param, slot, other);
                         }
-                    });
+                    },
+                );
             }
         });
     }
@@ -84,7 +84,8 @@ fn row(ui: &mut Ui, param: &Param, slot: &mut SlotWish, other: Option<&SlotWish>
     let changed = is_set(slot, param);
     ui.horizontal(|ui| {
         let reset = ui.add_visible(changed, egui::Button::new("↺").small().frame(false));
-        reset.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("reset {}", param.name)));
+        reset
+            .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("reset {}", param.name)));
         if reset.on_hover_text("Back to the default").clicked() {
             value = param.default.clone();
         }

@@ -91,7 +91,9 @@ impl Wish {
             name: "workbench".into(),
             graph: slot.graph.clone(),
             scene: self.scene.clone(),
-            camera: self.camera.map_or(CameraChoice::Named("default".into()), |c| CameraChoice::Placed(PlacedCamera::from(&c))),
+            camera: self
+                .camera
+                .map_or(CameraChoice::Named("default".into()), |c| CameraChoice::Placed(PlacedCamera::from(&c))),
             size: self.size,
             time: self.clock.at,
             sky: None,
