@@ -51,6 +51,12 @@ const COMPARISON: usize = 2;
 /// New pixels of a picture: its number, size and RGBA bytes.
 pub type NewPixels = (usize, [u32; 2], Arc<Vec<u8>>);
 
+/// What is compared: mode, gain, A, B.
+type ComparisonOf = (Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>);
+
+/// What came of it.
+type Compared = (Mode, Option<Map>);
+
 /// What is known of A or B.
 #[derive(Default)]
 struct Slot {
@@ -120,8 +126,8 @@ pub struct Workbench {
     comparison: Option<(Mode, Map)>,
     comparing: bool,
     /// What was compared last: mode, gain, A, B.
-    comparison_of: Option<(Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>)>,
-    compared: (Sender<(Mode, Option<Map>)>, Receiver<(Mode, Option<Map>)>),
+    comparison_of: Option<ComparisonOf>,
+    compared: (Sender<Compared>, Receiver<Compared>),
     /// The area of the picture, in pixels of the screen.
     area: [u32; 2],
     fixed_size: Option<(u32, u32)>,
@@ -417,9 +423,8 @@ impl Workbench {
         let shown = |s: &Slot| s.picture.as_ref().map(|p| Shown { size: p.size, bytes: p.bytes.clone() });
         let (Some(a), Some(b)) = (shown(&self.slots[0]), shown(&self.slots[1])) else { return };
         let of = (mode, self.view.gain, a.bytes.clone(), b.bytes.clone());
-        let same = |o: &(Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>)| {
-            (o.0, o.1) == (of.0, of.1) && Arc::ptr_eq(&o.2, &of.2) && Arc::ptr_eq(&o.3, &of.3)
-        };
+        let same =
+            |o: &ComparisonOf| (o.0, o.1) == (of.0, of.1) && Arc::ptr_eq(&o.2, &of.2) && Arc::ptr_eq(&o.3, &of.3);
         if self.comparison_of.as_ref().is_some_and(same) {
             return;
         }
