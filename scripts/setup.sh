@@ -4,7 +4,8 @@
 #
 #   scripts/setup.sh [build] [run] [test]
 #
-# build: C++ compiler, shader compiler. run: Vulkan loader and drivers. test: Vulkan validation layer.
+# build: C++ compiler, shader compiler. run: Vulkan loader and drivers. test: Vulkan validation layer, a virtual screen and
+# what a window needs there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -20,7 +21,8 @@ shaderc_packages=(libshaderc-dev glslang-dev spirv-tools)
 packages=()
 wants build && packages+=(g++ ca-certificates)
 wants run && packages+=(libvulkan1 mesa-vulkan-drivers)
-wants test && packages+=(vulkan-validationlayers)
+wants test && packages+=(vulkan-validationlayers xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 libxcb-xkb1
+    libwayland-client0)
 
 # ---------------------------------------------------------------------------------------------------- system packages
 
@@ -69,6 +71,7 @@ lacks() {
         layers=$(find /usr/share/vulkan /usr/local/share/vulkan /etc/vulkan -name 'VkLayer_khronos_validation.json' \
             2>/dev/null || true)
         [[ -n $layers${VK_LAYER_PATH:-}${VK_ADD_LAYER_PATH:-} ]] || echo "the Vulkan validation layer"
+        command -v Xvfb >/dev/null || echo "the virtual screen 'Xvfb'"
     fi
 }
 

@@ -1273,7 +1273,8 @@ fn tables_that_cannot_be_read() {
 #[test]
 fn comparisons_of_what_is_not_there() {
     let with = |a: &str| {
-        let compare = format!("compare: [(title: \"T\", help: \"h\", a: {{ {a} }}, b: {{}})],\n    output: \"picture\",");
+        let compare =
+            format!("compare: [(title: \"T\", help: \"h\", a: {{ {a} }}, b: {{}})],\n    output: \"picture\",");
         graph("output: \"picture\",", &compare)
     };
     let found = with("\"nothing\": 1");

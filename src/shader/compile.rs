@@ -6,7 +6,7 @@ use crate::vulkan::Stage;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// A shader file to compile.
 #[derive(Clone, Debug)]
@@ -32,6 +32,12 @@ pub struct Compiled {
     pub texts: Arc<BTreeMap<String, String>>,
 }
 
+/// Kept: with the last one go the tables of built-in functions, and making them takes a hundred times a compile.
+static COMPILER: LazyLock<Result<shaderc::Compiler, shaderc::Error>> = LazyLock::new(shaderc::Compiler::new);
+
+/// The last module of each file (folder, name), in this program: an edit compiles and reads only what it touches.
+static LAST: Mutex<BTreeMap<(PathBuf, String), Compiled>> = Mutex::new(BTreeMap::new());
+
 /// Compiles shaders of one folder.
 pub struct ShaderCompiler {
     folder: PathBuf,
@@ -56,6 +62,11 @@ impl ShaderCompiler {
     pub fn compile(&self, source: &Source, params: &str) -> Result<Compiled, Vec<Diagnostic>> {
         let mut texts = BTreeMap::from([("params.glsl".to_string(), params.to_string())]);
         self.collect(&source.file, &mut texts)?;
+        let name = (self.folder.clone(), source.file.clone());
+        let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = last().get(&name).filter(|k| k.stage == source.stage && *k.texts == texts) {
+            return Ok(known.clone());
+        }
         let key = self.key(source, &texts);
         let cached = self.cache.as_ref().map(|dir| dir.join(format!("{key}.spv")));
         let from_cache = cached.as_deref().and_then(crate::files::read_checked).and_then(|b| to_words(&b));
@@ -77,13 +88,15 @@ impl ShaderCompiler {
                 (words, interface)
             }
         };
-        Ok(Compiled {
+        let compiled = Compiled {
             file: source.file.clone(),
             stage: source.stage,
             words: Arc::new(words),
             interface,
             texts: Arc::new(texts),
-        })
+        };
+        last().insert(name, compiled.clone());
+        Ok(compiled)
     }
 
     /// Path of an include: beside the shaders, or in `include/`.
@@ -143,7 +156,7 @@ impl ShaderCompiler {
         let broken = |message: String| {
             vec![Diagnostic::error(Place { file: self.folder.join(&source.file), ..Place::default() }, message)]
         };
-        let compiler = shaderc::Compiler::new().map_err(|e| broken(format!("the compiler did not start: {e}")))?;
+        let compiler = COMPILER.as_ref().map_err(|e| broken(format!("the compiler did not start: {e}")))?;
         let mut options = shaderc::CompileOptions::new().map_err(|e| broken(e.to_string()))?;
         options.set_target_env(shaderc::TargetEnv::Vulkan, shaderc::EnvVersion::Vulkan1_3 as u32);
         options.set_optimization_level(shaderc::OptimizationLevel::Performance);

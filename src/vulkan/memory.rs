@@ -237,12 +237,26 @@ impl View {
     /// # Errors
     /// Vulkan's own.
     pub fn new(image: &Arc<Image>, desc: &ViewDesc) -> Result<View> {
+        View::swizzled(image, desc, vk::ComponentMapping::default())
+    }
+
+    /// A view whose alpha is 1, whatever the image holds there.
+    ///
+    /// # Errors
+    /// Vulkan's own.
+    pub(super) fn opaque(image: &Arc<Image>, desc: &ViewDesc) -> Result<View> {
+        let one = vk::ComponentSwizzle::ONE;
+        View::swizzled(image, desc, vk::ComponentMapping { a: one, ..vk::ComponentMapping::default() })
+    }
+
+    fn swizzled(image: &Arc<Image>, desc: &ViewDesc, components: vk::ComponentMapping) -> Result<View> {
         let mut usage = vk::ImageViewUsageCreateInfo::default().usage(desc.usage);
         let info = vk::ImageViewCreateInfo::default()
             .push_next(&mut usage)
             .image(image.handle)
             .view_type(desc.kind)
             .format(desc.format)
+            .components(components)
             .subresource_range(
                 vk::ImageSubresourceRange::default()
                     .aspect_mask(desc.aspect)

@@ -21,8 +21,8 @@ const SLOTS: usize = 2;
 struct Slot {
     commands: FrameSlot,
     acquired: vk::Semaphore,
-    /// Staging of the pictures that changed in this frame.
-    staging: Vec<Buffer>,
+    /// Where each picture's new pixels wait to be copied; kept, because making host memory takes milliseconds.
+    staging: Vec<Option<Buffer>>,
 }
 
 /// A picture of 8-bit RGBA pixels that the program changes often.
@@ -76,7 +76,7 @@ impl Painter {
     /// The device cannot present to the window, out of memory.
     pub fn for_window(gpu: &Arc<Gpu>, surface: Surface, size: (u32, u32), pictures: usize) -> Result<Painter> {
         let swapchain = Swapchain::new(gpu, &surface, size)?;
-        let format = swapchain.as_ref().map_or(vk::Format::B8G8R8A8_UNORM, |s| s.format);
+        let format = swapchain.as_ref().map_or(vk::Format::B8G8R8A8_SRGB, |s| s.format);
         Painter::new(gpu, Target::Window { surface: Box::new(surface), swapchain, stale: false }, format, pictures)
     }
 
@@ -85,7 +85,7 @@ impl Painter {
     /// # Errors
     /// Out of memory.
     pub fn offscreen(gpu: &Arc<Gpu>, pictures: usize) -> Result<Painter> {
-        Painter::new(gpu, Target::Image(None), vk::Format::R8G8B8A8_UNORM, pictures)
+        Painter::new(gpu, Target::Image(None), vk::Format::R8G8B8A8_SRGB, pictures)
     }
 
     fn new(gpu: &Arc<Gpu>, target: Target, format: vk::Format, pictures: usize) -> Result<Painter> {
@@ -148,7 +148,7 @@ impl Painter {
             depth_attachment_format: None,
             stencil_attachment_format: None,
         });
-        let options = Options { in_flight_frames: SLOTS, srgb_framebuffer: false, ..Options::default() };
+        let options = Options { in_flight_frames: SLOTS, srgb_framebuffer: is_srgb(self.format), ..Options::default() };
         let gpu = &self.gpu;
         let mut renderer =
             Renderer::with_default_allocator(&gpu.instance, gpu.physical, gpu.device.clone(), mode, options)
@@ -208,7 +208,7 @@ impl Painter {
             self.free_textures(&textures)?;
             return Ok(false);
         };
-        self.slots[slot].staging = self.stage(pixels)?;
+        self.stage(pixels)?;
         let Painter { slots, renderer, pictures, gpu, .. } = self;
         let Some(renderer) = renderer else { return Ok(false) };
         let Slot { commands, acquired, staging } = &mut slots[slot];
@@ -217,8 +217,10 @@ impl Painter {
         let semaphores = swap.map(|drawn| (*acquired, drawn));
         commands.submit_between(semaphores, |commands| {
             commands.timestamp();
-            for (p, staging) in pixels.iter().zip(staging.iter()) {
-                if let Some((image, _)) = &pictures[p.picture].image {
+            for p in pixels {
+                if let (Some(Picture { image: Some((image, _)), .. }), Some(Some(staging))) =
+                    (pictures.get(p.picture), staging.get(p.picture))
+                {
                     commands.refill(image, staging);
                 }
             }
@@ -281,7 +283,7 @@ impl Painter {
         for slot in &mut self.slots {
             slot.commands.wait()?;
         }
-        // The renderer decodes what it samples and encodes what it writes.
+        // Decoded when sampled and encoded when drawn, both by the device: the bytes arrive as they are.
         let format = vk::Format::R8G8B8A8_SRGB;
         let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST;
         let (image, view) = plain_image(&self.gpu, "picture", p.size, format, usage, vk::ImageUsageFlags::SAMPLED)?;
@@ -300,22 +302,21 @@ impl Painter {
         Ok(())
     }
 
-    fn stage(&mut self, pixels: &[Pixels<'_>]) -> Result<Vec<Buffer>> {
-        let slot = self.frame % SLOTS;
-        let mut old = std::mem::take(&mut self.slots[slot].staging);
-        let usage = vk::BufferUsageFlags::TRANSFER_SRC;
-        pixels
-            .iter()
-            .map(|p| {
-                let size = p.bytes.len() as u64;
-                let mut buffer = match old.iter().position(|b| b.size == size) {
-                    Some(i) => old.swap_remove(i),
-                    None => Buffer::new(&self.gpu, "picture upload", size, usage, MemoryLocation::CpuToGpu)?,
-                };
+    fn stage(&mut self, pixels: &[Pixels<'_>]) -> Result<()> {
+        let Slot { staging, .. } = &mut self.slots[self.frame % SLOTS];
+        staging.resize_with(self.pictures.len(), || None);
+        for p in pixels.iter().filter(|p| p.picture < self.pictures.len()) {
+            let size = (p.bytes.len() as u64).max(16).next_multiple_of(4);
+            let place = &mut staging[p.picture];
+            if place.as_ref().is_none_or(|b| b.size != size) {
+                let usage = vk::BufferUsageFlags::TRANSFER_SRC;
+                *place = Some(Buffer::new(&self.gpu, "picture upload", size, usage, MemoryLocation::CpuToGpu)?);
+            }
+            if let Some(buffer) = place {
                 buffer.bytes_mut()[..p.bytes.len()].copy_from_slice(p.bytes);
-                Ok(buffer)
-            })
-            .collect()
+            }
+        }
+        Ok(())
     }
 
     /// The image to draw on and, for a window's, the semaphore to signal.
@@ -420,6 +421,10 @@ impl Painter {
     }
 }
 
+fn is_srgb(format: vk::Format) -> bool {
+    matches!(format, vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB)
+}
+
 fn plain_image(
     gpu: &Arc<Gpu>,
     name: &str,
@@ -447,7 +452,9 @@ fn plain_image(
         layers: (0, 1),
         usage: view_usage,
     };
-    let view = View::new(&image, &desc)?;
+    // Attachments must be viewed as they are.
+    let sampled = view_usage.contains(vk::ImageUsageFlags::SAMPLED);
+    let view = if sampled { View::opaque(&image, &desc)? } else { View::new(&image, &desc)? };
     Ok((image, view))
 }
 

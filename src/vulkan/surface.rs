@@ -86,11 +86,16 @@ impl Swapchain {
             let physical = gpu.physical;
             let can = surface.loader.get_physical_device_surface_capabilities(physical, surface.handle).map_err(at())?;
             let formats = surface.loader.get_physical_device_surface_formats(physical, surface.handle).map_err(at())?;
-            // What is drawn is already encoded: formats that encode once more would be wrong.
-            let wanted = [vk::Format::B8G8R8A8_UNORM, vk::Format::R8G8B8A8_UNORM];
-            let format = formats
+            // Formats that encode show pictures as they are; without, the painter encodes, a few steps of 255 off.
+            let wanted = [
+                vk::Format::B8G8R8A8_SRGB,
+                vk::Format::R8G8B8A8_SRGB,
+                vk::Format::B8G8R8A8_UNORM,
+                vk::Format::R8G8B8A8_UNORM,
+            ];
+            let format = wanted
                 .iter()
-                .find(|f| wanted.contains(&f.format))
+                .find_map(|w| formats.iter().find(|f| f.format == *w))
                 .or(formats.first())
                 .copied()
                 .ok_or_else(|| VulkanError::CannotPresent(gpu.info.name.clone()))?;

@@ -506,7 +506,9 @@ impl Run<'_> {
                     slot.key = Some(done.key.clone());
                     let ms = done.start.elapsed().as_secs_f64() * 1e3;
                     let revision = done.key.revision;
-                    self.out.send(Report::Built { slot: number, outline: Arc::new(outline), change, ms, revision });
+                    let objects = Arc::strong_count(&self.lab.gpu);
+                    let outline = Arc::new(outline);
+                    self.out.send(Report::Built { slot: number, outline, change, ms, revision, objects });
                 }
                 self.disturb(1);
             }

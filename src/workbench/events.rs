@@ -8,11 +8,18 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
+/// A number for a picture's red, green and blue (FNV-1a), to tell whether two are the same.
+pub fn fingerprint(rgba: &[u8]) -> String {
+    let rgb = rgba.chunks_exact(4).flat_map(|p| &p[..3]);
+    format!("{:016x}", rgb.fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3)))
+}
+
 /// A log of events.
 pub struct Events {
     file: File,
     start: Instant,
     widgets: Value,
+    place: Option<egui::Rect>,
     nodes: HashMap<u64, accesskit::Node>,
     told: Instant,
 }
@@ -25,7 +32,7 @@ impl Events {
     pub fn new(path: &Path) -> std::io::Result<Events> {
         let now = Instant::now();
         let file = File::create(path)?;
-        Ok(Events { file, start: now, widgets: Value::Null, nodes: HashMap::new(), told: now })
+        Ok(Events { file, start: now, widgets: Value::Null, place: None, nodes: HashMap::new(), told: now })
     }
 
     /// Writes an event; the time is added, in ms since the start.
@@ -36,6 +43,17 @@ impl Events {
         }
         // A disk that is full must not end the program.
         let _ = writeln!(self.file, "{fields}");
+    }
+
+    /// Writes where the picture is on the screen, in pixels, when that changed.
+    pub fn place(&mut self, place: Option<egui::Rect>, scale: f32) {
+        if place != self.place
+            && let Some(r) = place
+        {
+            let rect = [r.min.x, r.min.y, r.max.x, r.max.y].map(|v| f64::from((v * scale).round()));
+            self.write("place", json!({ "rect": rect }));
+        }
+        self.place = place;
     }
 
     /// Writes where the widgets are, in points, when that changed; at most some times a second. `true` if more is to

@@ -53,6 +53,12 @@ const INSPECTOR: usize = 3;
 /// New pixels of a picture: its number, size and RGBA bytes.
 pub type NewPixels = (usize, [u32; 2], Arc<Vec<u8>>);
 
+/// What is compared: mode, gain, A, B.
+type ComparisonOf = (Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>);
+
+/// What came of it.
+type Compared = (Mode, Option<Map>);
+
 /// What is known of A or B.
 #[derive(Default)]
 struct Slot {
@@ -121,7 +127,9 @@ pub struct Workbench {
     pixels: Vec<NewPixels>,
     comparison: Option<(Mode, Map)>,
     comparing: bool,
-    compared: (Sender<(Mode, Option<Map>)>, Receiver<(Mode, Option<Map>)>),
+    /// What was compared last: mode, gain, A, B.
+    comparison_of: Option<ComparisonOf>,
+    compared: (Sender<Compared>, Receiver<Compared>),
     /// The area of the picture, in pixels of the screen.
     area: [u32; 2],
     fixed_size: Option<(u32, u32)>,
@@ -185,6 +193,7 @@ impl Workbench {
             pixels: Vec::new(),
             comparison: None,
             comparing: false,
+            comparison_of: None,
             compared: unbounded(),
             area: [0, 0],
             fixed_size: options.size,
@@ -311,16 +320,17 @@ impl Workbench {
                 self.device = Some(device);
                 self.trouble = None;
             }
-            Report::Built { slot, outline, change, ms, revision } => {
+            Report::Built { slot, outline, change, ms, revision, objects } => {
                 let Change { kept, built, resized } = change;
                 self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
                 self.event(
                     "built",
                     json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
-                        "revision": revision }),
+                        "revision": revision, "objects": objects }),
                 );
                 self.slots[slot].errors.clear();
                 self.times.built(slot, &outline);
+                self.mended(slot);
                 self.slots[slot].outline = Some(outline);
             }
             Report::Failed { slot, diagnostics, revision } => {
@@ -329,10 +339,7 @@ impl Workbench {
                 self.slots[slot].errors = diagnostics;
             }
             Report::Set { slot, .. } => {
-                if !self.slots[slot].errors.is_empty() {
-                    self.slots[slot].errors.clear();
-                    self.event("mended", json!({ "slot": slot }));
-                }
+                self.mended(slot);
             }
             Report::Picture(picture) => self.picture_came(picture),
             Report::Loading(what, part) => self.loading = Some((what, part)),
@@ -364,7 +371,17 @@ impl Workbench {
         }
     }
 
+    fn mended(&mut self, slot: usize) {
+        if !self.slots[slot].errors.is_empty() {
+            self.slots[slot].errors.clear();
+            self.event("mended", json!({ "slot": slot }));
+        }
+    }
+
     fn picture_came(&mut self, picture: PictureReport) {
+        if self.wish.slots[picture.slot].is_none() {
+            return;
+        }
         self.times.note(&picture);
         let number = picture.slot;
         self.pixels.retain(|p| p.0 != number);
@@ -373,11 +390,11 @@ impl Workbench {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let fields = json!({ "slot": number, "preview": picture.preview, "frame": picture.frame,
                 "wish": picture.wish, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
-                "since_change_ms": since });
+                "since_change_ms": since,
+                "fingerprint": events::fingerprint(&picture.bytes) });
             self.event("picture", fields);
         }
         self.slots[number].picture = Some(picture);
-        self.compare();
     }
 
     fn loaded(&mut self, scene: Arc<Scene>) {
@@ -419,6 +436,13 @@ impl Workbench {
         }
         let shown = |s: &Slot| s.picture.as_ref().map(|p| Shown { size: p.size, bytes: p.bytes.clone() });
         let (Some(a), Some(b)) = (shown(&self.slots[0]), shown(&self.slots[1])) else { return };
+        let of = (mode, self.view.gain, a.bytes.clone(), b.bytes.clone());
+        let same =
+            |o: &ComparisonOf| (o.0, o.1) == (of.0, of.1) && Arc::ptr_eq(&o.2, &of.2) && Arc::ptr_eq(&o.3, &of.3);
+        if self.comparison_of.as_ref().is_some_and(same) {
+            return;
+        }
+        self.comparison_of = Some(of);
         self.comparing = true;
         let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
         std::thread::spawn(move || {
@@ -497,17 +521,28 @@ impl Workbench {
             self.shown_revision = picture.revision;
         }
         if !self.pixels.is_empty() {
+            if self.events.is_none() {
+                self.pixels.clear();
+                return;
+            }
             let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
+            let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let wish = self.slots[0].picture.as_ref().map_or(0, |p| p.wish);
-            self.event("painted", json!({ "pictures": list, "wish": wish, "since_change_ms": since }));
+            self.event(
+                "painted",
+                json!({ "pictures": list, "fingerprints": prints, "wish": wish, "since_change_ms": since }),
+            );
         }
         self.pixels.clear();
     }
 
     /// Tells where the widgets are, for scripts; `true` if there is more to tell.
     pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
-        self.events.as_mut().is_some_and(|e| e.widgets(update, scale))
+        self.events.as_mut().is_some_and(|e| {
+            e.place(self.view.place, scale);
+            e.widgets(update, scale)
+        })
     }
 
     /// Whether the widgets are to be described.
@@ -554,6 +589,11 @@ impl Workbench {
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
         self.history.note(&self.wish, held);
+        if self.wish.slots[1].is_none() {
+            self.slots[1] = Slot::default();
+            self.comparison_of = None;
+        }
+        self.compare();
         self.tell();
     }
 

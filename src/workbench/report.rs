@@ -86,6 +86,8 @@ pub enum Report {
         ms: f64,
         /// The sources' revision.
         revision: u64,
+        /// Vulkan objects that live on the device: what grows is never let go.
+        objects: usize,
     },
     /// A build failed; what ran before runs on.
     Failed {

@@ -20,6 +20,8 @@ pub struct View {
     /// Speed of keys, 1 crosses the scene in ten seconds.
     pub speed: f32,
     dragging_split: bool,
+    /// Where picture A is, in points.
+    pub place: Option<Rect>,
 }
 
 impl Default for View {
@@ -32,6 +34,7 @@ impl Default for View {
             steering: motion::Mode::Orbit,
             speed: 1.0,
             dragging_split: false,
+            place: None,
         }
     }
 }
@@ -43,7 +46,10 @@ pub fn fit(area: Rect, size: [u32; 2], scale: f32) -> Rect {
     let size = Vec2::new(size[0].max(1) as f32, size[1].max(1) as f32) / scale;
     let factor = (area.width() / size.x).min(area.height() / size.y);
     let factor = if factor >= 1.0 { factor.floor().min(16.0) } else { factor };
-    Rect::from_center_size(area.center(), size * factor)
+    let place = Rect::from_center_size(area.center(), size * factor);
+    // On whole pixels of the screen: texels of the picture must not fall between them.
+    let whole = (place.min.to_vec2() * scale).round() / scale;
+    Rect::from_min_size(whole.to_pos2(), place.size())
 }
 
 impl Workbench {
@@ -115,7 +121,7 @@ impl Workbench {
                 badge(&painter, fit(right, a, scale).left_top() + Vec2::new(14.0, 10.0), "B");
             }
             Mode::Difference | Mode::Perceived => {
-                if self.comparison.is_some() {
+                if self.comparison.as_ref().is_some_and(|(mode, _)| *mode == self.view.mode) {
                     draw(COMPARISON, shown, area);
                 } else {
                     draw(0, shown, area);
@@ -125,6 +131,7 @@ impl Workbench {
         if self.stale() {
             painter.rect_stroke(shown, 0.0, Stroke::new(2.0, Color32::from_rgb(220, 80, 60)), egui::StrokeKind::Inside);
         }
+        self.view.place = Some(shown);
         self.mouse(ui, &response, shown, a, both);
     }
 

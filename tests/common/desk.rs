@@ -1,0 +1,546 @@
+//! A desk: a virtual screen with the program on it, a hand for mouse and keys, and an eye on pixels and events.
+
+use crate::common::{conelab, root};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+use x11rb::connection::Connection;
+use x11rb::protocol::xproto::{
+    AtomEnum, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, EventMask, ImageFormat, InputFocus, MapState,
+    Window,
+};
+use x11rb::protocol::xtest::ConnectionExt as _;
+use x11rb::rust_connection::RustConnection;
+
+/// Size of the window.
+pub const WINDOW: (u32, u32) = (1280, 800);
+
+/// One program at a time: what is measured must not depend on how many tests run.
+static ONE: Mutex<()> = Mutex::new(());
+
+/// A rectangle of the screen: left, top, right, bottom.
+pub type Rect = [f64; 4];
+
+pub const SHIFT: u32 = 0xffe1;
+pub const CONTROL: u32 = 0xffe3;
+pub const F1: u32 = 0xffbe;
+
+/// What is on the screen where the picture is, one RGBA a texel of the picture.
+#[derive(Clone, PartialEq)]
+pub struct Seen {
+    pub size: (usize, usize),
+    pub rgba: Vec<u8>,
+}
+
+impl Seen {
+    /// Some columns, without `rim` rows and columns at the edges.
+    pub fn part(&self, columns: std::ops::Range<usize>, rim: usize) -> Vec<u8> {
+        let rows = self.rgba.chunks_exact(4 * self.size.0).skip(rim).take(self.size.1 - 2 * rim);
+        let columns = columns.start.max(rim)..columns.end.min(self.size.0 - rim);
+        rows.flat_map(|row| &row[4 * columns.start..4 * columns.end]).copied().collect()
+    }
+
+    /// All but the rim, where the window may draw a border.
+    pub fn inner(&self) -> Vec<u8> {
+        self.part(0..self.size.0, 4)
+    }
+}
+
+/// A virtual screen, ended with the value.
+struct Screen(Child);
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+pub struct Desk {
+    pub home: TempDir,
+    program: Child,
+    x: RustConnection,
+    root: Window,
+    window: Window,
+    log: BufReader<File>,
+    line: String,
+    pub events: Vec<Value>,
+    known: HashMap<String, Seen>,
+    _screen: Screen,
+    _one: MutexGuard<'static, ()>,
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
+
+fn screen() -> (Screen, String) {
+    let mut server = Command::new("Xvfb")
+        .args(["-displayfd", "1", "-screen", "0", "1400x900x24", "-nolisten", "tcp"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap_or_else(|e| {
+            panic!("cannot start Xvfb ({e}): install the package xvfb, or run `scripts/setup.sh test`")
+        });
+    let mut number = String::new();
+    let mut out = BufReader::new(server.stdout.take().unwrap());
+    out.read_line(&mut number).unwrap();
+    (Screen(server), format!(":{}", number.trim()))
+}
+
+impl Desk {
+    /// The program on a copy of passes, shaders and configs, with an experiment (RON) that is opened, and arguments.
+    #[track_caller]
+    pub fn open(experiment: &str, args: &[&str]) -> Desk {
+        let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
+        let home = tempfile::tempdir().unwrap();
+        for folder in ["passes", "shaders", "configs"] {
+            copy(&root().join(folder), &home.path().join(folder));
+        }
+        std::fs::write(home.path().join("configs/desk.ron"), experiment).unwrap();
+        let (server, display) = screen();
+        let log = home.path().join("events.jsonl");
+        File::create(&log).unwrap();
+        let window = format!("{}x{}", WINDOW.0, WINDOW.1);
+        let program = conelab(home.path())
+            .args(["view", "configs/desk.ron", "--events", "events.jsonl", "--window", &window])
+            .args(args)
+            .env("DISPLAY", &display)
+            .env("CONELAB_CACHE", home.path().join("cache"))
+            .env("WINIT_X11_SCALE_FACTOR", "1")
+            .env_remove("WAYLAND_DISPLAY")
+            .env_remove("WAYLAND_SOCKET")
+            .stdout(Stdio::null())
+            .stderr(File::create(home.path().join("stderr")).unwrap())
+            .spawn()
+            .unwrap();
+        let (x, number) = x11rb::connect(Some(&display)).unwrap();
+        let root = x.setup().roots[number].root;
+        let log = BufReader::new(File::open(log).unwrap());
+        let mut desk = Desk {
+            home,
+            program,
+            x,
+            root,
+            window: 0,
+            log,
+            line: String::new(),
+            events: Vec::new(),
+            known: HashMap::new(),
+            _screen: server,
+            _one: one,
+        };
+        let until = Instant::now() + Duration::from_secs(20);
+        desk.window = loop {
+            if let Some(window) = desk.windows() {
+                break window;
+            }
+            assert!(Instant::now() < until, "no window\n{}", desk.stderr());
+            std::thread::sleep(Duration::from_millis(20));
+        };
+        // There is no window manager to do it.
+        desk.focus();
+        desk
+    }
+
+    fn windows(&self) -> Option<Window> {
+        let tree = self.x.query_tree(self.root).unwrap().reply().unwrap();
+        tree.children.into_iter().find(|w| {
+            let name = self.x.get_property(false, *w, AtomEnum::WM_NAME, AtomEnum::ANY, 0, 64).unwrap().reply();
+            let mapped = self.x.get_window_attributes(*w).unwrap().reply();
+            name.is_ok_and(|n| n.value == b"conelab") && mapped.is_ok_and(|m| m.map_state == MapState::VIEWABLE)
+        })
+    }
+
+    fn focus(&self) {
+        self.x.set_input_focus(InputFocus::PARENT, self.window, x11rb::CURRENT_TIME).unwrap();
+        self.x.flush().unwrap();
+    }
+
+    /// What the program wrote to its standard error.
+    pub fn stderr(&self) -> String {
+        std::fs::read_to_string(self.home.path().join("stderr")).unwrap_or_default()
+    }
+
+    // Events.
+
+    /// Takes in what was logged since; returns how many events there are.
+    pub fn now(&mut self) -> usize {
+        while self.log.read_line(&mut self.line).unwrap() > 0 {
+            if !self.line.ends_with('\n') {
+                break;
+            }
+            self.events.push(serde_json::from_str(&self.line).unwrap());
+            self.line.clear();
+        }
+        self.events.len()
+    }
+
+    /// The first event after the first `since` for which `is` holds.
+    #[track_caller]
+    pub fn wait(&mut self, since: usize, what: &str, is: impl Fn(&Value) -> bool) -> Value {
+        self.wait_at_most(Duration::from_secs(15), since, what, is)
+    }
+
+    #[track_caller]
+    pub fn wait_at_most(&mut self, time: Duration, since: usize, what: &str, is: impl Fn(&Value) -> bool) -> Value {
+        let until = Instant::now() + time;
+        let mut seen = since;
+        loop {
+            self.now();
+            if let Some(event) = self.events[seen..].iter().find(|e| is(e)) {
+                return event.clone();
+            }
+            seen = self.events.len();
+            if Instant::now() > until || self.program.try_wait().unwrap().is_some() {
+                let mut last: Vec<String> =
+                    self.events[since..].iter().filter(|e| e["event"] != "widgets").map(Value::to_string).collect();
+                last.drain(..last.len().saturating_sub(12));
+                let text = self.texts().join(" | ");
+                panic!("no {what}; but\n{}\n{}\non the screen: {text}", last.join("\n"), self.stderr());
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// The next event of a name after the first `since`.
+    #[track_caller]
+    pub fn event(&mut self, since: usize, name: &str) -> Value {
+        self.wait(since, name, |e| e["event"] == name)
+    }
+
+    /// Waits until the program shows its first picture that is no preview, and returns its fingerprint.
+    #[track_caller]
+    pub fn first_picture(&mut self) -> String {
+        self.wait(0, "first picture", |e| e["event"] == "picture" && e["preview"] == false);
+        self.resting(0)
+    }
+
+    /// The fingerprint of A's or B's picture once none follows for a while and it is on the screen.
+    #[track_caller]
+    pub fn resting(&mut self, slot: usize) -> String {
+        let mut count = self.pictures(slot).len();
+        let mut since = Instant::now();
+        while since.elapsed() < Duration::from_millis(350) {
+            std::thread::sleep(Duration::from_millis(10));
+            let now = self.pictures(slot).len();
+            if now != count {
+                (count, since) = (now, Instant::now());
+            }
+        }
+        self.pictures(slot).pop().expect("a picture")
+    }
+
+    /// Fingerprints of the pictures so far.
+    pub fn pictures(&mut self, slot: usize) -> Vec<String> {
+        self.now();
+        let list = self.events.iter().filter(|e| e["event"] == "picture" && e["slot"] == slot && e["preview"] == false);
+        list.map(|e| e["fingerprint"].as_str().unwrap().to_string()).collect()
+    }
+
+    /// Waits for a picture with this fingerprint.
+    #[track_caller]
+    pub fn picture(&mut self, since: usize, slot: usize, print: &str) {
+        self.wait(since, &format!("picture {print}"), |e| {
+            e["event"] == "picture" && e["slot"] == slot && e["fingerprint"] == print
+        });
+    }
+
+    /// Waits for a picture with another fingerprint, which it returns.
+    #[track_caller]
+    pub fn other_picture(&mut self, since: usize, slot: usize, print: &str) -> String {
+        let event = self.wait(since, &format!("picture other than {print}"), |e| {
+            e["event"] == "picture" && e["slot"] == slot && e["preview"] == false && e["fingerprint"] != print
+        });
+        event["fingerprint"].as_str().unwrap().to_string()
+    }
+
+    // Widgets.
+
+    fn widgets(&mut self) -> Vec<Value> {
+        self.now();
+        let last = self.events.iter().rev().find(|e| e["event"] == "widgets");
+        last.map_or(Vec::new(), |e| e["list"].as_array().unwrap().clone())
+    }
+
+    /// All labels on the screen.
+    pub fn texts(&mut self) -> Vec<String> {
+        self.widgets().iter().map(|w| w["label"].as_str().unwrap().to_string()).collect()
+    }
+
+    /// Waits until `holds` of the labels.
+    #[track_caller]
+    pub fn texts_until(&mut self, what: &str, holds: impl Fn(&[String]) -> bool) {
+        let until = Instant::now() + Duration::from_secs(5);
+        while !holds(&self.texts()) {
+            assert!(Instant::now() < until, "{what}: {:?}", self.texts());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// The place of the widget with this role ("" for any) and label, once it has stood still.
+    #[track_caller]
+    pub fn find(&mut self, role: &str, label: &str) -> Rect {
+        let until = Instant::now() + Duration::from_secs(5);
+        let mut last = None;
+        loop {
+            let widgets = self.widgets();
+            let found = widgets.iter().find(|w| w["label"] == label && (role.is_empty() || w["role"] == role));
+            let rect = found.map(|w| [0, 1, 2, 3].map(|i| w["rect"][i].as_f64().unwrap()));
+            match rect {
+                // Groups and menus open with a movement; the log of widgets comes ten times a second.
+                Some(rect) if last == Some(rect) => return rect,
+                _ => last = rect,
+            }
+            assert!(Instant::now() < until, "no {role} '{label}' among {:?}", self.texts());
+            std::thread::sleep(Duration::from_millis(150));
+        }
+    }
+
+    #[track_caller]
+    pub fn click(&mut self, role: &str, label: &str) {
+        let at = centre(self.find(role, label));
+        self.click_at(at);
+    }
+
+    // The hand.
+
+    fn fake(&self, kind: u8, detail: u8, (x, y): (f64, f64)) {
+        let origin = self.x.translate_coordinates(self.window, self.root, 0, 0).unwrap().reply().unwrap();
+        let at = (origin.dst_x + x.round() as i16, origin.dst_y + y.round() as i16);
+        self.x.xtest_fake_input(kind, detail, 0, self.root, at.0, at.1, 0).unwrap().check().unwrap();
+        // A frame of the window.
+        std::thread::sleep(Duration::from_millis(40));
+    }
+
+    pub fn click_at(&self, at: (f64, f64)) {
+        self.fake(6, 0, at);
+        self.fake(4, 1, at);
+        self.fake(5, 1, at);
+    }
+
+    /// Presses at one place and releases at another.
+    pub fn drag(&self, from: (f64, f64), to: (f64, f64)) {
+        self.fake(6, 0, from);
+        self.fake(4, 1, from);
+        for i in 1..=4 {
+            let t = f64::from(i) / 4.0;
+            self.fake(6, 0, (from.0 + t * (to.0 - from.0), from.1 + t * (to.1 - from.1)));
+        }
+        self.fake(5, 1, to);
+    }
+
+    /// Presses keys together, the last one after the others, and releases them.
+    pub fn keys(&self, symbols: &[u32]) {
+        let codes: Vec<u8> = symbols.iter().map(|s| self.code(*s)).collect();
+        for code in &codes {
+            self.x.xtest_fake_input(2, *code, 0, self.root, 0, 0, 0).unwrap().check().unwrap();
+        }
+        std::thread::sleep(Duration::from_millis(10));
+        for code in codes.iter().rev() {
+            self.x.xtest_fake_input(3, *code, 0, self.root, 0, 0, 0).unwrap().check().unwrap();
+        }
+    }
+
+    /// Types small letters, digits and underscores.
+    pub fn text(&self, text: &str) {
+        for c in text.bytes() {
+            match c {
+                b'_' => self.keys(&[SHIFT, u32::from(b'-')]),
+                c => self.keys(&[u32::from(c)]),
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    fn code(&self, symbol: u32) -> u8 {
+        let (low, high) = (self.x.setup().min_keycode, self.x.setup().max_keycode);
+        let map = self.x.get_keyboard_mapping(low, high - low + 1).unwrap().reply().unwrap();
+        let per = usize::from(map.keysyms_per_keycode);
+        let row = map.keysyms.chunks(per).position(|row| row[0] == symbol).expect("a key for it");
+        low + u8::try_from(row).unwrap()
+    }
+
+    // The window.
+
+    pub fn resize(&self, width: u32, height: u32) {
+        let size = ConfigureWindowAux::new().width(width).height(height);
+        self.x.configure_window(self.window, &size).unwrap().check().unwrap();
+    }
+
+    pub fn unmap(&self) {
+        self.x.unmap_window(self.window).unwrap().check().unwrap();
+    }
+
+    pub fn map(&self) {
+        self.x.map_window(self.window).unwrap().check().unwrap();
+        self.focus();
+    }
+
+    /// Closes the window as its frame's button would; the exit code, and how long it took.
+    #[track_caller]
+    pub fn close(&mut self) -> Duration {
+        let atom = |name: &[u8]| self.x.intern_atom(false, name).unwrap().reply().unwrap().atom;
+        let data = [atom(b"WM_DELETE_WINDOW"), 0, 0, 0, 0];
+        let message = ClientMessageEvent::new(32, self.window, atom(b"WM_PROTOCOLS"), data);
+        self.x.send_event(false, self.window, EventMask::NO_EVENT, message).unwrap().check().unwrap();
+        let start = Instant::now();
+        loop {
+            if let Some(status) = self.program.try_wait().unwrap() {
+                assert_eq!(status.code(), Some(0), "{}", self.stderr());
+                return start.elapsed();
+            }
+            assert!(start.elapsed() < Duration::from_secs(30), "it does not end\n{}", self.stderr());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// Resident memory, MiB.
+    pub fn memory(&self) -> f64 {
+        let mut text = String::new();
+        File::open(format!("/proc/{}/status", self.program.id())).unwrap().read_to_string(&mut text).unwrap();
+        let line = text.lines().find_map(|l| l.strip_prefix("VmRSS:")).unwrap();
+        line.trim().trim_end_matches(" kB").trim().parse::<f64>().unwrap() / 1024.0
+    }
+
+    // The eye.
+
+    /// Where picture A is, in pixels of the window.
+    pub fn place(&mut self) -> Rect {
+        self.now();
+        let last = self.events.iter().rev().find(|e| e["event"] == "place").expect("a picture");
+        [0, 1, 2, 3].map(|i| last["rect"][i].as_f64().unwrap())
+    }
+
+    /// The picture on the screen, at one point a texel.
+    pub fn look(&mut self) -> Seen {
+        let [left, top, right, bottom] = self.place().map(|v| v as i16);
+        let last = self.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
+        let size = [0, 1].map(|i| usize::try_from(last["size"][i].as_u64().unwrap()).unwrap());
+        let (width, height) = ((right - left).max(1) as u16, (bottom - top).max(1) as u16);
+        let image = self.x.get_image(ImageFormat::Z_PIXMAP, self.window, left, top, width, height, !0);
+        // While the window is smaller than the picture was, there is nothing to see.
+        let Ok(image) = image.unwrap().reply() else { return Seen { size: (0, 0), rgba: Vec::new() } };
+        let bytes = image.data;
+        let mut rgba = Vec::new();
+        for y in 0..size[1] {
+            for x in 0..size[0] {
+                let at = |i: usize, n: usize, to: u16| (2 * i + 1) * usize::from(to) / (2 * n);
+                let i = 4 * (at(y, size[1], height) * usize::from(width) + at(x, size[0], width));
+                rgba.extend([bytes[i + 2], bytes[i + 1], bytes[i], 255]);
+            }
+        }
+        Seen { size: (size[0], size[1]), rgba }
+    }
+
+    /// Waits until `holds` of what is on the screen.
+    #[track_caller]
+    pub fn look_until(&mut self, what: &str, holds: impl Fn(&Seen) -> bool) -> Seen {
+        let until = Instant::now() + Duration::from_secs(5);
+        loop {
+            let seen = self.look();
+            if holds(&seen) {
+                return seen;
+            }
+            if Instant::now() > until {
+                self.keep_screen();
+                panic!("{what} is not on the screen (kept in {})\n{:?}", kept().display(), self.texts());
+            }
+            std::thread::sleep(Duration::from_millis(30));
+        }
+    }
+
+    /// Waits until this picture is on the screen: as it was when it was seen first.
+    #[track_caller]
+    pub fn shows(&mut self, print: &str) -> Seen {
+        if let Some(known) = self.known.get(print).cloned() {
+            return self.look_until(&format!("picture {print}"), |seen| *seen == known);
+        }
+        self.wait(0, &format!("painting of {print}"), |e| {
+            e["event"] == "painted" && e["fingerprints"].as_array().unwrap().iter().any(|f| f == print)
+        });
+        let seen = self.look_still();
+        self.known.insert(print.to_string(), seen.clone());
+        seen
+    }
+
+    /// What is on the screen once it stands still.
+    pub fn look_still(&mut self) -> Seen {
+        let mut seen = self.look();
+        loop {
+            std::thread::sleep(Duration::from_millis(150));
+            let next = self.look();
+            if next == seen {
+                return seen;
+            }
+            seen = next;
+        }
+    }
+
+    /// Keeps what the window shows, for a person to look at.
+    pub fn keep_screen(&self) {
+        let size = self.x.get_geometry(self.window).unwrap().reply().unwrap();
+        let image = self.x.get_image(ImageFormat::Z_PIXMAP, self.window, 0, 0, size.width, size.height, !0);
+        let bytes = image.unwrap().reply().unwrap().data;
+        let rgb = bytes.chunks_exact(4).flat_map(|p| [p[2], p[1], p[0]]).collect();
+        let picture = image::RgbImage::from_raw(size.width.into(), size.height.into(), rgb).unwrap();
+        picture.save(kept()).unwrap();
+    }
+
+    // Files.
+
+    /// Saves as editors do: a new file takes the place of the old one.
+    pub fn rename_into(&self, name: &str, text: &str) {
+        let path = self.home.path().join(name);
+        let new = path.with_extension("new~");
+        std::fs::write(&new, text).unwrap();
+        std::fs::rename(new, path).unwrap();
+    }
+
+    /// Saves into the file itself.
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.home.path().join(name), text).unwrap();
+    }
+
+    pub fn file(&self, name: &str) -> String {
+        std::fs::read_to_string(self.home.path().join(name)).unwrap()
+    }
+}
+
+/// Where pictures of failures are kept.
+fn kept() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("window.png")
+}
+
+pub fn centre(r: Rect) -> (f64, f64) {
+    ((r[0] + r[2]) / 2.0, (r[1] + r[3]) / 2.0)
+}
+
+/// A text with its only `old` replaced.
+#[track_caller]
+pub fn with(text: &str, old: &str, new: &str) -> String {
+    assert_eq!(text.matches(old).count(), 1, "'{old}' stands once");
+    text.replace(old, new)
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap().flatten() {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            std::fs::copy(entry.path(), target).unwrap();
+        }
+    }
+}
