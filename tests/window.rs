@@ -375,7 +375,7 @@ fn a_save_is_on_the_screen_before_one_looks_up() {
 
 #[test]
 fn the_window_answers_and_closes_while_a_slow_device_renders() {
-    let mut desk = Desk::open(SMALL, &["--size", "1200x900"]);
+    let mut desk = Desk::open(SMALL, &["--size", "1400x1050"]);
     let slow =
         desk.wait_at_most(Duration::from_secs(60), 0, "picture", |e| e["event"] == "picture" && e["preview"] == false);
     println!("a frame takes {:.0} ms", number(&slow, "gpu_ms"));
