@@ -52,8 +52,10 @@ pub struct Shot {
     pub bytes: Vec<u8>,
     /// CPU time of a frame of the interface: layout, triangles, recording; ms.
     pub cpu_ms: Spread,
-    /// GPU time of a frame of the interface, ms.
+    /// GPU time of drawing a frame of the interface, ms.
     pub gpu_ms: Spread,
+    /// GPU time of copying new pictures for it, ms.
+    pub copy_ms: Spread,
 }
 
 struct Host {
@@ -107,14 +109,15 @@ impl Host {
             self.settle()?;
         }
         let mut cpu = Vec::new();
-        let mut gpu = Vec::new();
+        let (mut gpu, mut copies) = (Vec::new(), Vec::new());
         for _ in 0..self.script.measure {
             cpu.push(self.frame(Vec::new())?);
-            gpu.push(self.painter.gpu_ms);
+            copies.push(self.painter.gpu_ms.0);
+            gpu.push(self.painter.gpu_ms.1);
         }
         let (size, bytes) = self.painter.read()?;
         let edit_ms = self.script.edit.clone().map(|edit| self.edits(&edit)).transpose()?.map(spread);
-        Ok(Shot { edit_ms, size, bytes, cpu_ms: spread(cpu), gpu_ms: spread(gpu) })
+        Ok(Shot { edit_ms, size, bytes, cpu_ms: spread(cpu), gpu_ms: spread(gpu), copy_ms: spread(copies) })
     }
 
     /// Saves a file again and again and waits for each picture; the file ends as it was.

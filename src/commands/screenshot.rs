@@ -45,6 +45,9 @@ pub struct ScreenshotArgs {
     /// Saves to measure.
     #[arg(long, default_value_t = 16)]
     times: usize,
+    /// Write what happens to this file, one JSON object a line.
+    #[arg(long, value_name = "FILE")]
+    events: Option<PathBuf>,
     /// Seconds to wait for the picture after each click.
     #[arg(long, default_value_t = 120)]
     patience: u64,
@@ -81,7 +84,8 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     };
     let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
     let size = args.size.as_deref().map(parse_size).transpose()?;
-    let options = Options { home, gpu: gpu.clone(), experiment, scene: args.scene.clone(), size, events: None };
+    let options =
+        Options { home, gpu: gpu.clone(), experiment, scene: args.scene.clone(), size, events: args.events.clone() };
     let shot = take(options, &gpu, script)?;
     let rgb: Vec<u8> = shot.bytes.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
     let mut file = Cursor::new(Vec::new());
@@ -98,6 +102,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         if args.measure > 0 {
             row("interface, CPU", &shot.cpu_ms);
             row("interface, GPU", &shot.gpu_ms);
+            row("copying pictures, GPU", &shot.copy_ms);
         }
         if let Some(edit) = &shot.edit_ms {
             row("save to pixels", edit);

@@ -56,8 +56,8 @@ pub struct Painter {
     target: Target,
     format: vk::Format,
     gpu: Arc<Gpu>,
-    /// Milliseconds on the GPU of the last frame known.
-    pub gpu_ms: f64,
+    /// Milliseconds on the GPU of the last frame known: copying its pictures, and drawing.
+    pub gpu_ms: (f64, f64),
     /// Milliseconds that the last frame waited for an earlier one to finish on the GPU.
     pub waited_ms: f64,
 }
@@ -116,7 +116,7 @@ impl Painter {
             target,
             format,
             gpu: gpu.clone(),
-            gpu_ms: 0.0,
+            gpu_ms: (0.0, 0.0),
             waited_ms: 0.0,
         };
         let count = u32::try_from(pictures).unwrap_or(u32::MAX).max(1);
@@ -133,7 +133,7 @@ impl Painter {
             let info = vk::DescriptorPoolCreateInfo::default().max_sets(count).pool_sizes(&sizes);
             painter.pool = d.create_descriptor_pool(&info, None).map_err(at())?;
             for _ in 0..SLOTS {
-                let commands = FrameSlot::new(gpu, 2)?;
+                let commands = FrameSlot::new(gpu, 3)?;
                 let acquired = d.create_semaphore(&Default::default(), None).map_err(at())?;
                 painter.slots.push(Slot { commands, acquired, staging: Vec::new() });
             }
@@ -196,9 +196,10 @@ impl Painter {
         let ticks = self.slots[slot].commands.wait()?;
         self.waited_ms = begun.elapsed().as_secs_f64() * 1e3;
         if let Some(ticks) = ticks
-            && let [a, b] = ticks[..]
+            && let [a, b, c] = ticks[..]
         {
-            self.gpu_ms = b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
+            let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
+            self.gpu_ms = (ms(a, b), ms(b, c));
         }
         self.change_textures(&mut textures)?;
         for p in pixels {
@@ -224,6 +225,7 @@ impl Painter {
                     commands.refill(image, staging);
                 }
             }
+            commands.timestamp();
             commands.attach(image, vk::ImageLayout::UNDEFINED, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
             let color = [vk::RenderingAttachmentInfo::default()
                 .image_view(view)

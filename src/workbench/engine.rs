@@ -116,6 +116,10 @@ struct Slot {
     building: bool,
     submitted: VecDeque<Submitted>,
     frame: u64,
+    /// GPU time of the last frame known, ms.
+    last_ms: f64,
+    /// The last wish that the session, or the failure to build one, answers.
+    answered: u64,
     /// Frames still to render before the slot rests.
     due: u32,
     lights: bool,
@@ -426,9 +430,11 @@ impl Run<'_> {
         if slot.key.as_ref() == Some(&key) {
             // What failed meanwhile is taken back.
             slot.failed = None;
+            slot.answered = self.wish.number;
             return Ok(());
         }
         if slot.failed.as_ref() == Some(&key) {
+            slot.answered = self.wish.number;
             return Ok(());
         }
         let same_files = |k: &Key| k.graph == key.graph && k.revision == key.revision;
@@ -443,6 +449,7 @@ impl Run<'_> {
                 Ok(Some(params)) => {
                     slot.key = Some(key);
                     slot.failed = None;
+                    slot.answered = self.wish.number;
                     self.out.send(Report::Set { slot: number, params });
                     self.disturb(1);
                     return Ok(());
@@ -595,7 +602,7 @@ impl Run<'_> {
         }
         session.set_time(self.clock.now);
         slot.frame += 1;
-        slot.submitted.push_back(Submitted { wish: self.wish.number, time: self.clock.now, frame: slot.frame });
+        slot.submitted.push_back(Submitted { wish: slot.answered, time: self.clock.now, frame: slot.frame });
         let renderdoc = std::mem::take(&mut self.renderdoc).then(super::renderdoc::begin);
         let delta = if self.wish.clock.playing { self.wish.clock.step.unwrap_or(0.0) } else { 0.0 };
         let mut finished: Vec<FrameTimes> = session.frame(delta)?.into_iter().collect();
@@ -603,8 +610,9 @@ impl Run<'_> {
         if !rest {
             slot.due = slot.due.max(1);
         }
-        // A software device gains nothing from frames ahead, and a still picture must not wait for the next change.
-        let ahead = u64::from(!(software || slot.due == 0 || renderdoc.is_some()));
+        // Long frames gain nothing from another one ahead, and an edit would wait for it; a still picture must not wait
+        // for the next change.
+        let ahead = u64::from(!(software || slot.last_ms > LONG || slot.due == 0 || renderdoc.is_some()));
         finished.extend(session.program.finish_to(ahead)?);
         if let Some(begun) = renderdoc {
             self.out.send(Report::Trouble(super::renderdoc::end(begun)));
@@ -618,6 +626,7 @@ impl Run<'_> {
         let slot = &mut self.slots[number];
         for times in finished {
             let Some(submitted) = slot.submitted.pop_front() else { continue };
+            slot.last_ms = times.gpu_ms;
             let Some(bytes) = times.picture else { continue };
             let size = slot.session.as_ref().map_or(self.wish.size, |s| s.size());
             self.out.send(Report::Picture(PictureReport {
@@ -695,6 +704,9 @@ impl Run<'_> {
         });
     }
 }
+
+/// A frame as long as this is worth waiting for, ms.
+const LONG: f64 = 4.0;
 
 /// Frames until what is gathered over time has settled.
 const SETTLE: u32 = 16;

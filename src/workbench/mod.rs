@@ -107,6 +107,8 @@ pub struct Workbench {
     name: String,
     slots: [Slot; 2],
     scene: Option<Arc<Scene>>,
+    /// Of the scene's bounds, m; asking for them walks through all vertices.
+    diagonal: f32,
     experiment: Option<Experiment>,
     loading: Option<(String, f32)>,
     device: Option<DeviceReport>,
@@ -174,6 +176,7 @@ impl Workbench {
             name: experiment.name.clone(),
             slots: Default::default(),
             scene: None,
+            diagonal: 1.0,
             experiment: Some(experiment),
             loading: None,
             device: None,
@@ -418,6 +421,8 @@ impl Workbench {
                 }
             }
         }
+        let (low, high) = scene.bounds();
+        self.diagonal = (high - low).length().max(1e-3);
         self.scene = Some(scene);
         self.tell();
     }

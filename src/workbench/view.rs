@@ -163,10 +163,8 @@ impl Workbench {
             self.point_at(Some(at));
             self.show_tables();
         }
-        if let (Some(camera), Some(scene)) = (&mut self.wish.camera, &self.scene) {
-            let (low, high) = scene.bounds();
-            let diagonal = (high - low).length().max(1e-3);
-            motion::steer(ui, response, camera, self.view.steering, diagonal, self.view.speed);
+        if let Some(camera) = &mut self.wish.camera {
+            motion::steer(ui, response, camera, self.view.steering, self.diagonal, self.view.speed);
         }
     }
 }
