@@ -41,7 +41,7 @@ view: ## Open the workbench
 shot: ## Take the README's picture of the workbench
 	@scripts/setup.sh build run
 	@$(CONELAB) screenshot configs/default.ron --scene atrium --window 1600x900 \
-		--click "raster | tessellated" --click Time $(ARGS) -o docs/workbench.jpg
+		--click "raster | tessellated" --click Time --click "keep rendering" --measure 400 $(ARGS) -o docs/workbench.jpg
 
 test: ## Run all tests
 	@scripts/setup.sh build run test

@@ -15,8 +15,9 @@ trap 'rm -rf "$home"' EXIT
 cp -r passes shaders configs "$home/"
 export CONELAB_HOME=$home
 for tab in Scene Time; do
-    echo "tab $tab"
+    echo "tab $tab, two voxelizers, rendering on"
     "$conelab" screenshot --scene "$scene" --size "$size" --click "raster | tessellated" --click "$tab" \
+        --click "keep rendering" \
         --measure 300 -o "$home/shot.png"
 done
 echo "an edit of the cone shader"

@@ -113,7 +113,8 @@ struct Slot {
     /// What could not be built.
     failed: Option<Key>,
     preview: bool,
-    building: bool,
+    /// When the build in work began.
+    building: Option<Instant>,
     submitted: VecDeque<Submitted>,
     frame: u64,
     /// GPU time of the last frame known, ms.
@@ -194,7 +195,6 @@ fn session(
     out.send(Report::Device(DeviceReport {
         name: gpu.info.name.clone(),
         driver: gpu.info.driver.clone(),
-        software: gpu.info.kind == "cpu",
     }));
     let (jobs, job_box) = unbounded();
     let (done_out, done) = unbounded();
@@ -218,7 +218,7 @@ fn session(
     };
     run.change(wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
     let result = loop {
-        let idle = !run.busy();
+        let (idle, awaits) = (!run.busy(), run.awaits_build());
         let mut orders: Vec<Order> = Vec::new();
         let mut builds: Vec<Done> = Vec::new();
         let mut scenes = Vec::new();
@@ -227,6 +227,12 @@ fn session(
                 recv(inbox) -> order => orders.push(order.unwrap_or(Order::Quit)),
                 recv(done) -> d => builds.extend(d),
                 recv(loaded) -> l => scenes.extend(l),
+            }
+        } else if awaits {
+            select! {
+                recv(inbox) -> order => orders.push(order.unwrap_or(Order::Quit)),
+                recv(done) -> d => builds.extend(d),
+                default(Duration::from_millis(10)) => {}
             }
         }
         orders.extend(inbox.try_iter());
@@ -258,6 +264,12 @@ fn session(
 impl Run<'_> {
     fn busy(&self) -> bool {
         self.slots.iter().any(|s| s.session.is_some() && s.due > 0)
+    }
+
+    /// Whether a build is about to be done, so that beginning a long frame of what it replaces would only delay it.
+    fn awaits_build(&self) -> bool {
+        let soon = |since: Instant| since.elapsed() < PATIENCE;
+        self.slots.iter().any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
     }
 
     fn handle(
@@ -466,7 +478,7 @@ impl Run<'_> {
         let lent = beside.map(|s| s.lend());
         let preview_exists = self.lab.home.folders().passes.join("preview.ron").is_file();
         let slot = &mut self.slots[number];
-        if slot.building {
+        if slot.building.is_some() {
             return Ok(());
         }
         // The first picture of all comes from a graph of two small shaders.
@@ -478,7 +490,7 @@ impl Run<'_> {
         }
         let loaded = slot.loaded.clone().filter(|_| !slot.preview && slot.key.as_ref().is_some_and(same_files));
         let seed = slot.session.as_ref().map(|s| s.seed()).or(lent);
-        slot.building = true;
+        slot.building = Some(Instant::now());
         let lab = self.lab.clone();
         let _ = self.jobs.send(Job { slot: number, key, experiment, scene, seed, loaded, preview, lab });
         Ok(())
@@ -486,7 +498,7 @@ impl Run<'_> {
 
     fn built(&mut self, done: Done) -> Result<(), LabError> {
         let number = done.slot;
-        self.slots[number].building = false;
+        self.slots[number].building = None;
         if self.wish.slots[number].is_none() {
             return Ok(());
         }
@@ -526,7 +538,7 @@ impl Run<'_> {
                 self.slots[number].failed = None;
                 if let (Some(key), Some(scene), Some(wish)) = (key, self.scene.clone(), &self.wish.slots[number]) {
                     let experiment = self.wish.experiment(wish);
-                    self.slots[number].building = true;
+                    self.slots[number].building = Some(Instant::now());
                     let (seed, loaded, lab) = (None, None, self.lab.clone());
                     let job = Job { slot: number, key, experiment, scene, seed, loaded, preview: false, lab };
                     let _ = self.jobs.send(job);
@@ -555,6 +567,9 @@ impl Run<'_> {
 
     /// Renders what is due, A and B in turns, so that neither always finds the clocks raised by the other.
     fn render(&mut self) -> Result<(), LabError> {
+        if self.awaits_build() {
+            return Ok(());
+        }
         let stepping = self.tick();
         let rest = !(self.wish.continuous || stepping);
         self.turn += 1;
@@ -707,6 +722,9 @@ impl Run<'_> {
 
 /// A frame as long as this is worth waiting for, ms.
 const LONG: f64 = 4.0;
+
+/// How long frames wait for a build.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Frames until what is gathered over time has settled.
 const SETTLE: u32 = 16;

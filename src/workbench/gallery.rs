@@ -10,6 +10,9 @@ use egui::{ColorImage, TextureHandle, Ui, Vec2};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+/// A picture's file and its small picture, if it could be read.
+type Thumbnail = (PathBuf, Option<ColorImage>);
+
 /// State of this tab.
 pub struct Gallery {
     name: String,
@@ -19,7 +22,7 @@ pub struct Gallery {
     resources: Vec<String>,
     captures: Option<Vec<Summary>>,
     thumbnails: HashMap<PathBuf, Option<TextureHandle>>,
-    made: (Sender<(PathBuf, Option<ColorImage>)>, Receiver<(PathBuf, Option<ColorImage>)>),
+    made: (Sender<Thumbnail>, Receiver<Thumbnail>),
     replays: (Sender<String>, Receiver<String>),
     replayed: String,
 }

@@ -153,7 +153,6 @@ impl Workbench {
         let events = options.events.as_deref().map(Events::new).transpose();
         let events = events.map_err(|e| LabError::Request(format!("cannot write the log of events: {e}")))?;
         let root = options.home.root.clone();
-        let software = options.gpu.device.as_deref().is_some_and(|d| d.to_lowercase().contains("llvmpipe"));
         let engine = Engine::start(options.home, options.gpu, wake.clone());
         let mut watch = watch::Watch::new(&root, wake.clone());
         let wish = Wish {
@@ -161,8 +160,6 @@ impl Workbench {
             scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
             size: options.size.unwrap_or((0, 0)),
             clock: wish::Clock { at: experiment.time, jumps: 1, ..wish::Clock::default() },
-            // A software device has better things to do than to draw the same picture again.
-            continuous: !software,
             ..Wish::default()
         };
         watch.scene(&wish.scene);
@@ -318,7 +315,6 @@ impl Workbench {
     fn report(&mut self, report: Report) {
         match report {
             Report::Device(device) => {
-                self.wish.continuous &= !device.software;
                 self.event("device", json!({ "name": device.name, "driver": device.driver }));
                 self.device = Some(device);
                 self.trouble = None;
@@ -648,8 +644,9 @@ impl Workbench {
                 self.compare_bar(ui);
             }
             ui.separator();
-            ui.toggle_value(&mut self.wish.continuous, "keep rendering")
-                .on_hover_text("Render on when nothing changes, to measure");
+            ui.toggle_value(&mut self.wish.continuous, "keep rendering").on_hover_text(
+                "Frames are rendered when something changes; with this also when nothing does, to measure",
+            );
             if ui.button("help").on_hover_text("F1").clicked() {
                 self.help = !self.help;
             }

@@ -18,8 +18,6 @@ pub struct DeviceReport {
     pub name: String,
     /// Driver.
     pub driver: String,
-    /// Whether it is a software device.
-    pub software: bool,
 }
 
 /// A graph as it runs now.

@@ -81,7 +81,6 @@ impl Workbench {
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
         self.area = [(area.width() * scale) as u32, (area.height() * scale) as u32];
-        painter.rect_filled(area, 0.0, Color32::from_gray(12));
         let Some(a) = self.slots[0].picture.as_ref().map(|p| p.size) else {
             painter.text(
                 area.center(),
