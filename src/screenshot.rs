@@ -174,7 +174,8 @@ impl Host {
         while calm < 8 {
             if Instant::now() > until {
                 let seconds = self.script.patience.as_secs();
-                return Err(LabError::Request(format!("the picture was not there after {seconds} s")));
+                let why = self.workbench.trouble().map_or(String::new(), |t| format!(": {t}"));
+                return Err(LabError::Request(format!("the picture was not there after {seconds} s{why}")));
             }
             self.frame(Vec::new())?;
             calm = if self.workbench.settled() { calm + 1 } else { 0 };

@@ -192,10 +192,7 @@ fn session(
 ) -> Result<End, LabError> {
     let lab = Lab::open(home, options.clone())?;
     let gpu = lab.gpu.clone();
-    out.send(Report::Device(DeviceReport {
-        name: gpu.info.name.clone(),
-        driver: gpu.info.driver.clone(),
-    }));
+    out.send(Report::Device(DeviceReport { name: gpu.info.name.clone(), driver: gpu.info.driver.clone() }));
     let (jobs, job_box) = unbounded();
     let (done_out, done) = unbounded();
     let (loaded_out, loaded) = unbounded();

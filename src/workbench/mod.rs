@@ -551,6 +551,11 @@ impl Workbench {
         self.events.is_some()
     }
 
+    /// What went wrong last, if anything.
+    pub fn trouble(&self) -> Option<&str> {
+        self.trouble.as_deref()
+    }
+
     /// Whether everything wished for is on screen.
     pub fn settled(&self) -> bool {
         let shown = |i: usize| {
