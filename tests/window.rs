@@ -410,3 +410,100 @@ fn the_window_answers_and_closes_while_a_slow_device_renders() {
     println!("closed in {:.2} s", took.as_secs_f64());
     assert!(took < Duration::from_secs(5), "{took:?}");
 }
+
+#[test]
+fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
+    let mut desk = small();
+    let first = desk.first_picture();
+    desk.click("", "Display");
+    let mark = desk.now();
+    slide(&mut desk, "exposure", 0.15);
+    desk.other_picture(mark, 0, &first);
+    let brighter = desk.resting(0);
+
+    // A file that exists is not replaced by the first click.
+    desk.click("", "Keep");
+    let before = desk.file("configs/desk.ron");
+    let mark = desk.now();
+    desk.click("Button", "save");
+    desk.event(mark, "not saved");
+    assert_eq!(desk.file("configs/desk.ron"), before);
+    let mark = desk.now();
+    desk.click("Button", "replace it");
+    desk.event(mark, "saved");
+    let saved = desk.file("configs/desk.ron");
+    assert!(saved.contains("exposure") && saved.contains("\"voxel_dim\": 32") && !saved.contains("bias"), "{saved}");
+
+    // A capture holds the picture that was on the screen, and makes it again.
+    let mark = desk.now();
+    desk.click("Button", "capture");
+    let captured = desk.event(mark, "captured");
+    assert_eq!(captured["ok"], true, "{captured}");
+    let picture = image::open(desk.home.path().join("captures/desk/picture.png")).unwrap().to_rgba8();
+    assert_eq!(fingerprint(&picture), brighter);
+    let said = succeeds(conelab(desk.home.path()).args(["replay", "captures/desk"]));
+    assert!(said.starts_with("identical"), "{said}");
+
+    // From the gallery too; and its settings can be loaded.
+    let mark = desk.now();
+    desk.click("", "replay desk");
+    let replayed = desk.wait_at_most(Duration::from_secs(30), mark, "a replay", |e| e["event"] == "replayed");
+    assert!(replayed["text"].as_str().unwrap().contains("identical"), "{replayed}");
+    let mark = desk.now();
+    desk.click("", "reset exposure");
+    desk.picture(mark, 0, &first);
+    let mark = desk.now();
+    desk.click("", "load desk");
+    desk.picture(mark, 0, &brighter);
+    desk.close();
+    drop(desk);
+
+    let mut again = Desk::open(&saved, &["--size", "160x120"]);
+    assert_eq!(again.first_picture(), brighter, "the same picture after a restart");
+    again.close();
+}
+
+#[test]
+fn the_camera_follows_a_path_and_the_tabs_show_what_they_are_for() {
+    let mut desk = small();
+    let first = desk.first_picture();
+
+    // A key here, another after a drag, and the scene's time moves between them.
+    desk.click("", "Motion");
+    desk.click("Button", "add key");
+    let rect = desk.place();
+    let (x, y) = centre(rect);
+    let mark = desk.now();
+    desk.drag((x, y), (x + 40.0, y));
+    desk.other_picture(mark, 0, &first);
+    let turned = desk.resting(0);
+    desk.click("Button", "add key");
+    let mark = desk.now();
+    desk.click("", "follow");
+    desk.picture(mark, 0, &first);
+    let mark = desk.now();
+    // '.' steps a sixtieth of a second.
+    for _ in 0..3 {
+        desk.keys(&[u32::from(b'.')]);
+    }
+    desk.other_picture(mark, 0, &first);
+    assert_ne!(desk.resting(0), turned, "between the keys");
+    desk.click("", "follow");
+    desk.shows(&turned);
+
+    // A click shows cones and their samples, Escape takes them away.
+    let mark = desk.now();
+    desk.click_at((x, y + 20.0));
+    desk.other_picture(mark, 0, &turned);
+    desk.texts_until("the table of samples", |texts| texts.iter().any(|t| t.contains("Cone samples")));
+    desk.texts_until("rows", |texts| texts.iter().any(|t| t.contains("rows") && !t.starts_with("0 of")));
+    let mark = desk.now();
+    desk.keys(&[0xff1b]);
+    desk.picture(mark, 0, &turned);
+
+    desk.click("", "Time");
+    desk.texts_until("the passes", |texts| texts.iter().any(|t| t.contains("shading")));
+    desk.click("", "Inspect");
+    desk.texts_until("statistics", |texts| texts.iter().any(|t| t == "NaN"));
+    desk.close();
+}
