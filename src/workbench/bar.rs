@@ -1,0 +1,141 @@
+//! The bar at the top: experiments, scenes, undo, comparisons; and the line at the foot.
+
+use super::engine::Order;
+use super::{Workbench, edit, ron_files, short, slot_of};
+use crate::experiment::Experiment;
+use crate::graph::file::RawText;
+use crate::graph::source::Entries;
+use egui::Ui;
+
+impl Workbench {
+    pub(super) fn bar(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            ui.strong("conelab");
+            self.experiments_menu(ui);
+            self.scenes_menu(ui);
+            ui.separator();
+            let (undo, redo) = self.history.can();
+            if ui.add_enabled(undo, egui::Button::new("undo")).on_hover_text("Ctrl Z").clicked() {
+                self.history.go(&mut self.wish, true);
+            }
+            if ui.add_enabled(redo, egui::Button::new("redo")).on_hover_text("Ctrl Shift Z").clicked() {
+                self.history.go(&mut self.wish, false);
+            }
+            ui.separator();
+            let mut compare = self.wish.slots[1].is_some();
+            if ui
+                .toggle_value(&mut compare, "A | B")
+                .on_hover_text("Put a second experiment beside the first")
+                .clicked()
+            {
+                self.wish.slots[1] = if compare { self.wish.slots[0].clone() } else { None };
+                self.panel_slot = usize::from(compare);
+            }
+            self.comparisons(ui);
+            if self.wish.slots[1].is_some() {
+                self.compare_bar(ui);
+            }
+            ui.separator();
+            ui.toggle_value(&mut self.wish.continuous, "keep rendering").on_hover_text(
+                "Frames are rendered when something changes; with this also when nothing does, to measure",
+            );
+            if ui.button("help").on_hover_text("F1").clicked() {
+                self.help = !self.help;
+            }
+        });
+    }
+
+    /// Comparisons that the graph offers: each is one click.
+    fn comparisons(&mut self, ui: &mut Ui) {
+        let Some(outline) = self.slots[0].outline.clone() else { return };
+        for compare in &outline.graph.compare {
+            let button = ui.button(&compare.value.title).on_hover_text(&compare.value.help);
+            if button.clicked() {
+                let base = self.wish.slots[0].clone().unwrap_or_default();
+                let make = |values: &Entries<RawText>| {
+                    let mut slot = base.clone();
+                    for (name, text) in &values.0 {
+                        if let Some(param) = outline.graph.params.list.iter().find(|p| p.name == name.value)
+                            && let Ok(value) = param.parse(&text.value.0)
+                        {
+                            edit::set(&mut slot, param, &value);
+                        }
+                    }
+                    slot
+                };
+                self.wish.slots = [Some(make(&compare.value.a)), Some(make(&compare.value.b))];
+            }
+        }
+    }
+
+    fn experiments_menu(&mut self, ui: &mut Ui) {
+        let mut chosen = None;
+        let response = ui.menu_button(format!("experiment: {}", self.name), |ui| {
+            for path in ron_files(&self.root.join("configs")) {
+                let name = path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
+                ui.horizontal(|ui| {
+                    if ui.button(&name).clicked() {
+                        chosen = Some((path.clone(), 0));
+                        ui.close();
+                    }
+                    if ui.small_button("as B").clicked() {
+                        chosen = Some((path.clone(), 1));
+                        ui.close();
+                    }
+                });
+            }
+        });
+        response.response.on_hover_text("Presets: configs/*.ron");
+        let Some((path, slot)) = chosen else { return };
+        match Experiment::read(&path) {
+            Ok(experiment) if slot == 0 => self.open(&experiment),
+            Ok(experiment) => self.wish.slots[1] = Some(slot_of(&experiment)),
+            Err(errors) => self.slots[slot].errors = errors,
+        }
+    }
+
+    fn scenes_menu(&mut self, ui: &mut Ui) {
+        let mut chosen = None;
+        ui.menu_button(format!("scene: {}", short(&self.wish.scene)), |ui| {
+            for (name, about) in crate::scene::builtin::list() {
+                if ui.button(name).on_hover_text(about).clicked() {
+                    chosen = Some(name.to_string());
+                    ui.close();
+                }
+            }
+            ui.separator();
+            for path in ron_files(&self.root.join("configs/scenes")) {
+                if ui.button(short(&path.to_string_lossy())).clicked() {
+                    chosen = Some(path.to_string_lossy().into_owned());
+                    ui.close();
+                }
+            }
+            ui.weak("Models (.gltf, .glb, .obj) can be dropped on the window");
+        });
+        if let Some(spec) = chosen {
+            self.open_scene(&spec);
+        }
+    }
+
+    pub(super) fn status_line(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            if let Some((what, part)) = self.loading.clone() {
+                ui.add(egui::ProgressBar::new(part).desired_width(160.0).text(what));
+                if ui.small_button("cancel").clicked() {
+                    self.engine.order(Order::CancelLoading);
+                }
+            }
+            if let Some(device) = &self.device {
+                ui.weak(&device.name).on_hover_text(&device.driver);
+            }
+            if let Some(p) = &self.slots[0].picture {
+                ui.weak(format!("{}x{}", p.size[0], p.size[1]));
+                ui.weak(format!("{:.2} ms", p.gpu_ms));
+                if p.preview {
+                    ui.weak("preview, while the passes are built");
+                }
+            }
+            ui.label(&self.status);
+        });
+    }
+}
