@@ -616,7 +616,7 @@ fn a_killed_program_leaves_everything_whole() {
         assert_eq!(capture::list(&folder).len(), kept.len(), "kill {i}: an earlier one is gone");
     }
     assert!(
-        killed > KILLS / 4 && halves > 2 && kept.len() > 2,
+        killed > KILLS / 4 && halves > 0 && kept.len() > 2,
         "{killed} killed, {halves} halves, {} kept",
         kept.len()
     );

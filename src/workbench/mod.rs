@@ -327,7 +327,6 @@ impl Workbench {
                     json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
                         "revision": revision, "objects": objects }),
                 );
-                self.slots[slot].errors.clear();
                 self.times.built(slot, &outline);
                 self.mended(slot);
                 self.slots[slot].outline = Some(outline);
