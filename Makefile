@@ -34,7 +34,7 @@ demo: ## Render the built-in atrium, lit by voxel cones, on any Vulkan device
 		'$(OUT)/stats.json   times of every pass, memory of every resource, all settings'
 
 view: ## Open the workbench
-	@scripts/setup.sh build run
+	@scripts/setup.sh build run window
 	@cargo build --release --locked
 	@$(CONELAB) view $(ARGS)
 

@@ -2,10 +2,10 @@
 # Makes this machine able to build conelab: says what is missing, installs it on Debian and Ubuntu, and prepares the
 # static shader compiler. Quick and silent when nothing is missing.
 #
-#   scripts/setup.sh [build] [run] [test]
+#   scripts/setup.sh [build] [run] [window] [test]
 #
-# build: C++ compiler, shader compiler. run: Vulkan loader and drivers. test: Vulkan validation layer, a virtual screen and
-# what a window needs there.
+# build: C++ compiler, shader compiler. run: Vulkan loader and drivers. window: libraries of X11 and Wayland. test:
+# Vulkan validation layer, a virtual screen and the libraries of a window.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -21,8 +21,8 @@ shaderc_packages=(libshaderc-dev glslang-dev spirv-tools)
 packages=()
 wants build && packages+=(g++ ca-certificates)
 wants run && packages+=(libvulkan1 mesa-vulkan-drivers)
-wants test && packages+=(vulkan-validationlayers xvfb libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 libxcb-xkb1
-    libwayland-client0)
+{ wants window || wants test; } && packages+=(libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0 libxcb-xkb1 libwayland-client0)
+wants test && packages+=(vulkan-validationlayers xvfb)
 
 # ---------------------------------------------------------------------------------------------------- system packages
 
