@@ -9,6 +9,7 @@ pub mod experiment;
 pub mod files;
 pub mod graph;
 pub mod lab;
+pub mod metrics;
 pub mod picture;
 pub mod scene;
 pub mod screenshot;

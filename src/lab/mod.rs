@@ -16,6 +16,7 @@ use crate::graph::plan::{Plan, PlanInput, plan};
 use crate::graph::run::{FrameTimes, Program};
 use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::successor::Parts;
+use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
 use crate::shader::ShaderCompiler;
 use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
@@ -35,6 +36,9 @@ pub enum LabError {
     /// The device.
     #[error(transparent)]
     Vulkan(#[from] VulkanError),
+    /// Pictures that cannot be compared.
+    #[error(transparent)]
+    Metric(#[from] MetricError),
     /// Anything else that the user asked for and cannot have.
     #[error("{0}")]
     Request(String),
