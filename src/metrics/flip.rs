@@ -113,9 +113,8 @@ fn features(grey: &Plane) -> Vec<[f32; 2]> {
     let deviation = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
     let radius = (3.0 * deviation).ceil() as i32;
     let weights = |f: &dyn Fn(f64) -> f64| -> Vec<f32> {
-        let all: Vec<f64> = (-radius..=radius)
-            .map(|x| f(f64::from(x)) * (-0.5 * (f64::from(x) / deviation).powi(2)).exp())
-            .collect();
+        let all: Vec<f64> =
+            (-radius..=radius).map(|x| f(f64::from(x)) * (-0.5 * (f64::from(x) / deviation).powi(2)).exp()).collect();
         // Positive weights sum to 1, and negative ones to -1.
         let positive: f64 = all.iter().filter(|w| **w > 0.0).sum();
         let negative: f64 = -all.iter().filter(|w| **w < 0.0).sum::<f64>();
