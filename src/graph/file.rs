@@ -26,6 +26,8 @@ pub struct GraphFile {
     pub hdr: Option<Loc<String>>,
     /// Further results that may be asked for.
     pub outputs: Items<String>,
+    /// Contributions to the linear picture that other graphs have too: part, texture.
+    pub parts: Entries<String>,
     /// What the graph needs of the scene's geometry.
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words of buffers that must be zero after a frame.

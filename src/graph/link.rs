@@ -307,6 +307,7 @@ impl Linker<'_> {
         let mut wanted: HashSet<&str> = graph.outputs.iter().map(String::as_str).collect();
         wanted.extend(graph.output.as_deref());
         wanted.extend(graph.hdr.as_deref());
+        wanted.extend(graph.parts.iter().map(|p| p.1.as_str()));
         wanted.extend(graph.checks.iter().map(|c| c.buffer.value.as_str()));
         wanted.extend(graph.tables.iter().map(|t| t.buffer.value.as_str()));
         let warn = |at: At, message: String| {

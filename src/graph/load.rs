@@ -42,6 +42,8 @@ pub struct Graph {
     pub hdr: Option<String>,
     /// Further results.
     pub outputs: Vec<String>,
+    /// Contributions to the linear picture: part, texture. Graphs are compared by the parts that both have.
+    pub parts: Vec<(String, String)>,
     /// Needs of the geometry.
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words that must be zero.
@@ -97,6 +99,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         output: None,
         hdr: None,
         outputs: Vec::new(),
+        parts: Vec::new(),
         scene: None,
         checks: Vec::new(),
         pointer: None,
@@ -129,6 +132,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         }
         graph.outputs.extend(file.outputs.0.iter().map(|o| o.value.clone()));
         wanted.extend(file.outputs.0);
+        graph.parts.extend(file.parts.0.iter().map(|(part, texture)| (part.value.clone(), texture.value.clone())));
+        wanted.extend(file.parts.0.into_iter().map(|p| p.1));
     }
     let list = check_params(&decls, &graph.sources, &mut errors, &mut broken);
     graph.params_at = list.iter().map(|p| declared_at(&decls, &p.name)).collect();
