@@ -3,6 +3,8 @@
 pub mod colour;
 pub mod flip;
 pub mod hdr_flip;
+pub mod maps;
+pub mod region;
 mod sums;
 
 use hdr_flip::{Exposures, exposures, hdr_flip};
