@@ -1,6 +1,8 @@
 //! Results as files: PNG for what is display-encoded, EXR for what is linear.
 
 use crate::lab::{LabError, Texels};
+use crate::metrics::Linear;
+use crate::vulkan::Format;
 use crate::vulkan::format::Channels;
 use exr::prelude::{
     AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer, LayerAttributes, WritableImage,
@@ -12,6 +14,9 @@ use std::path::Path;
 /// Texels as floats, four a texel, missing channels 0 and missing alpha 1. Slices of volumes follow one another downwards.
 pub fn to_floats(texels: &Texels) -> Vec<[f32; 4]> {
     let f = texels.format;
+    if f.name == "rgba32f" {
+        return bytemuck::pod_collect_to_vec(&texels.bytes);
+    }
     let bytes = f.bytes as usize;
     texels.bytes.chunks_exact(bytes).map(|t| decode(f.name, f.channels, f.count, t)).collect()
 }
@@ -102,6 +107,26 @@ pub fn png(texels: &Texels) -> Result<Vec<u8>, LabError> {
     image::write_buffer_with_format(&mut out, &rgb, width, height, image::ColorType::Rgb8, image::ImageFormat::Png)
         .map_err(|e| LabError::Request(format!("cannot make the PNG: {e}")))?;
     Ok(out.into_inner())
+}
+
+/// Writes a linear picture as an EXR (32-bit floats).
+///
+/// # Errors
+/// Another ending than .exr, a folder that cannot be written to.
+pub fn write_linear(path: &Path, picture: &Linear) -> Result<(), LabError> {
+    let texels: Vec<[f32; 4]> = picture.rgb.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
+    let format = Format::named("rgba32f").ok_or_else(|| LabError::Request("no format rgba32f".into()))?;
+    let extent = [picture.size.0, picture.size.1, 1];
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        return Err(LabError::Request(format!("'{}': give it a name that ends in .exr", path.display())));
+    }
+    write(path, &Texels { extent, format, bytes: bytemuck::cast_slice(&texels).to_vec() })
+}
+
+/// Texels as linear RGB.
+pub fn to_linear(texels: &Texels) -> Linear {
+    let rgb = to_floats(texels).iter().map(|t| [t[0], t[1], t[2]]).collect();
+    Linear { size: file_size(texels), rgb }
 }
 
 /// Texels as an EXR file (32-bit floats).
