@@ -20,6 +20,7 @@ mod adapt;
 mod capture;
 mod check;
 mod graph;
+mod reference;
 mod render;
 mod replay;
 mod save;
@@ -53,6 +54,8 @@ enum Command {
     Replay(replay::ReplayArgs),
     /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
     Save(save::SaveArgs),
+    /// Gather ground truth for an experiment by path tracing, into captures/reference.
+    Reference(reference::ReferenceArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
     Graph(graph::GraphArgs),
     /// Print a scene's counts, bounds, materials and missing files, or write it to another format.
@@ -104,6 +107,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Save(args) => save::run(&args),
+        Command::Reference(args) => reference::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Scene(args) => scene(&args),

@@ -11,6 +11,7 @@ pub mod graph;
 pub mod lab;
 pub mod metrics;
 pub mod picture;
+pub mod reference;
 pub mod scene;
 pub mod screenshot;
 pub mod shader;

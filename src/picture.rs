@@ -4,6 +4,7 @@ use crate::experiment::MAX_SIZE;
 use crate::lab::{LabError, Texels};
 use crate::metrics::colour::srgb_to_linear;
 use crate::metrics::{Kind, Linear, MAX_PIXELS};
+use crate::vulkan::Format;
 use crate::vulkan::format::Channels;
 use exr::prelude::{
     AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer, LayerAttributes, WritableImage,
@@ -15,6 +16,9 @@ use std::path::Path;
 /// Texels as floats, four a texel, missing channels 0 and missing alpha 1. Slices of volumes follow one another downwards.
 pub fn to_floats(texels: &Texels) -> Vec<[f32; 4]> {
     let f = texels.format;
+    if f.name == "rgba32f" {
+        return bytemuck::pod_collect_to_vec(&texels.bytes);
+    }
     let bytes = f.bytes as usize;
     texels.bytes.chunks_exact(bytes).map(|t| decode(f.name, f.channels, f.count, t)).collect()
 }
@@ -107,6 +111,27 @@ pub fn png(texels: &Texels) -> Result<Vec<u8>, LabError> {
     Ok(out.into_inner())
 }
 
+/// Writes a linear picture as an EXR (32-bit floats).
+///
+/// # Errors
+/// Another ending than .exr, a folder that cannot be written to.
+pub fn write_linear(path: &Path, picture: &Linear) -> Result<(), LabError> {
+    let texels: Vec<[f32; 4]> = picture.rgb.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
+    let format = Format::named("rgba32f").ok_or_else(|| LabError::Request("no format rgba32f".into()))?;
+    let extent = [picture.size.0, picture.size.1, 1];
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        return Err(LabError::Request(format!("'{}': give it a name that ends in .exr", path.display())));
+    }
+    write(path, &Texels { extent, format, bytes: bytemuck::cast_slice(&texels).to_vec() })
+}
+
+/// Texels as linear RGB; a texture of one channel is grey.
+pub fn to_linear(texels: &Texels) -> Linear {
+    let grey = texels.format.count == 1;
+    let rgb = to_floats(texels).iter().map(|t| if grey { [t[0]; 3] } else { [t[0], t[1], t[2]] }).collect();
+    Linear { size: file_size(texels), rgb }
+}
+
 /// Texels as an EXR file (32-bit floats).
 ///
 /// # Errors
@@ -166,13 +191,6 @@ fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {
     )
     .map_err(|e| e.to_string())?;
     Ok(image.layer_data.channel_data.pixels.1)
-}
-
-/// The texels of a 2D texture as linear RGB; a texture of one channel is grey.
-pub fn linear(texels: &Texels) -> Linear {
-    let grey = texels.format.count == 1;
-    let rgb = to_floats(texels).iter().map(|t| if grey { [t[0]; 3] } else { [t[0], t[1], t[2]] }).collect();
-    Linear { size: file_size(texels), rgb }
 }
 
 /// Reads a picture of at most [`MAX_PIXELS`] as linear RGB: radiance from an EXR or HDR, decoded sRGB from a PNG.

@@ -26,7 +26,7 @@ impl Session {
             let index = self.graph.textures.iter().position(|t| t.0 == texture);
             let made = index.is_some_and(|i| !self.program.plan.textures[i].usage.is_empty());
             if made && self.wanted.contains(&texture) {
-                parts.insert(part, picture::linear(&self.texels(&texture, 0, 0)?));
+                parts.insert(part, picture::to_linear(&self.texels(&texture, 0, 0)?));
             }
         }
         Ok(parts)
