@@ -4,7 +4,7 @@ mod table;
 mod verdict;
 
 pub use table::table;
-pub use verdict::{METRICS, Verdict};
+pub use verdict::Verdict;
 
 use crate::metrics::maps::{MapFile, maps};
 use crate::metrics::region::{Region, regions};
@@ -140,11 +140,14 @@ pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Res
     })
 }
 
-/// The parts to compare, `total` first.
+/// Known parts in the order they are shown in; others follow by name.
+const ORDER: [&str; 5] = ["total", "direct", "diffuse", "specular", "occlusion"];
+
+/// The parts to compare.
 fn part_names(pictures: &[Side], reference: &Side, wanted: &[String]) -> Result<Vec<String>, MetricError> {
     let everywhere = |part: &&String| pictures.iter().all(|p| p.parts.contains_key(*part));
     let mut common: Vec<String> = reference.parts.keys().filter(everywhere).cloned().collect();
-    common.sort_by_key(|part| part != "total");
+    common.sort_by_key(|part| ORDER.iter().position(|o| o == part).unwrap_or(ORDER.len()));
     if let Some(missing) = wanted.iter().find(|w| !common.contains(w)) {
         return Err(MetricError(format!(
             "there is no part '{missing}' in all pictures; they have: {}",

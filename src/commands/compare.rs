@@ -21,8 +21,8 @@ pub struct CompareArgs {
     a: PathBuf,
     /// Another; the reference of A when there is no other reference.
     b: Option<PathBuf>,
-    /// What both are compared with: a picture, an experiment, a capture, `auto` for the cached reference of the first
-    /// experiment, or `none`.
+    /// What both are compared with: a picture, an experiment, a capture, `auto` for the cached reference of A where A is an
+    /// experiment and has one, or `none`.
     #[arg(long, default_value = "auto")]
     reference: PathBuf,
     /// Bounces of the cached reference; the method gathers one.
@@ -60,7 +60,9 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
     let a = sources.side(&args.a, true)?;
     let b = args.b.as_ref().map(|b| sources.side(b, true)).transpose()?;
     let given = match args.reference.to_str() {
-        Some("auto") => sources.cached(args.bounces)?,
+        // Beside a picture from elsewhere, an experiment is what it is compared with.
+        Some("auto") if args.a.extension().is_some_and(|e| e == "ron") => sources.cached(args.bounces)?,
+        Some("auto") => None,
         Some("none") => None,
         _ => Some(sources.side(&args.reference, false)?),
     };

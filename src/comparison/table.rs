@@ -1,13 +1,25 @@
 //! A comparison as text.
 
-use super::{Comparison, METRICS, PartComparison, RegionComparison};
+use super::{Comparison, PartComparison, RegionComparison};
 use crate::metrics::Scores;
 use std::fmt::Write as _;
 
 /// Width of a column.
-const WIDTH: usize = 10;
-/// Names of the columns, in the order of [`METRICS`].
-const HEADS: [&str; 8] = ["relMSE", "RMSE", "energy", "SMAPE", "FLIP", "HDR-FLIP", "leak", "over-occl."];
+const WIDTH: usize = 11;
+/// Width of the columns before them: region and picture.
+const TITLE: usize = 30;
+/// Heads of the columns, and the metrics whose verdict stands below them.
+const COLUMNS: [(&str, &str); 9] = [
+    ("relMSE", "relmse"),
+    ("RMSE", "rmse"),
+    ("energy", "energy_ratio"),
+    ("SMAPE", "smape"),
+    ("FLIP", "flip"),
+    ("HDR-FLIP", "hdr_flip"),
+    ("leak", "leak"),
+    ("over-occl.", "over_occlusion"),
+    ("of pixels", "over_occluded"),
+];
 const LETTERS: [&str; 2] = ["A", "B"];
 
 /// The comparison as a table: a block for each part, a row for each region and picture.
@@ -27,8 +39,8 @@ pub fn table(comparison: &Comparison) -> String {
 }
 
 fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
-    let _ = write!(out, "\n{:28}", part.part);
-    for head in HEADS {
+    let _ = write!(out, "\n{:TITLE$}", part.part);
+    for (head, _) in COLUMNS {
         let _ = write!(out, "{head:>WIDTH$}");
     }
     out.push('\n');
@@ -57,7 +69,7 @@ fn rows(out: &mut String, region: &RegionComparison) {
         share => format!("{} ({:.1} %)", region.region, 100.0 * share),
     };
     for (letter, scores) in LETTERS.iter().zip(&region.scores) {
-        let _ = write!(out, "  {title:<24}{letter} ");
+        let _ = write!(out, "  {title:<26}{letter} ");
         match scores {
             Some(s) => values(s).iter().for_each(|v| {
                 let _ = write!(out, "{:>WIDTH$}", short(*v));
@@ -68,8 +80,8 @@ fn rows(out: &mut String, region: &RegionComparison) {
         title.clear();
     }
     if !region.better.is_empty() {
-        let _ = write!(out, "  {:<26}", "  better");
-        for (metric, _) in METRICS {
+        let _ = write!(out, "{:<TITLE$}", "    better");
+        for (_, metric) in COLUMNS {
             let verdict = region.better.get(metric).map(ToString::to_string).unwrap_or_default();
             let _ = write!(out, "{verdict:>WIDTH$}");
         }
@@ -77,8 +89,8 @@ fn rows(out: &mut String, region: &RegionComparison) {
     }
 }
 
-fn values(s: &Scores) -> [f64; 8] {
-    [s.relmse, s.rmse, s.energy_ratio, s.smape, s.flip, s.hdr_flip, s.leak, s.over_occlusion]
+fn values(s: &Scores) -> [f64; 9] {
+    [s.relmse, s.rmse, s.energy_ratio, s.smape, s.flip, s.hdr_flip, s.leak, s.over_occlusion, s.over_occluded]
 }
 
 /// A number to four digits; `-` where there is none.

@@ -37,9 +37,9 @@ const NOISE_FACTOR: f64 = 4.0;
 /// How far a picture is from the reference by one metric; 0 is best.
 type Distance = fn(&Scores) -> f64;
 
-/// The metrics that can say which of two pictures is better. A ratio is as far from 1 as its inverse; over-occlusion is
-/// the radiance lost, spread over all pixels.
-pub const METRICS: [(&str, Distance); 8] = [
+/// The metrics that can say which of two pictures is better. A ratio is as far from 1 as its inverse. `over_occlusion` is
+/// not among them: it is the mean over other pixels for each picture.
+const METRICS: [(&str, Distance); 8] = [
     ("relmse", |s| s.relmse),
     ("rmse", |s| s.rmse),
     ("energy_ratio", |s| s.energy_ratio.ln().abs()),
@@ -47,7 +47,7 @@ pub const METRICS: [(&str, Distance); 8] = [
     ("flip", |s| s.flip),
     ("hdr_flip", |s| s.hdr_flip),
     ("leak", |s| s.leak),
-    ("over_occlusion", |s| s.over_occlusion * s.over_occluded),
+    ("over_occluded", |s| s.over_occluded),
 ];
 
 /// Whether a relMSE, or a difference of two, is below four times the noise.

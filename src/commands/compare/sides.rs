@@ -19,13 +19,13 @@ pub(super) struct Sources<'a> {
     frames: usize,
     lab: Option<Lab>,
     scenes: BTreeMap<String, Arc<Scene>>,
-    /// The first experiment and its scene.
-    first: Option<(Experiment, Arc<Scene>)>,
+    /// The experiments that were rendered, with their scenes.
+    rendered: Vec<(Experiment, Arc<Scene>)>,
 }
 
 impl<'a> Sources<'a> {
     pub(super) fn new(changes: &'a Changes, device: &'a DeviceArgs, frames: usize) -> Sources<'a> {
-        Sources { changes, device, frames, lab: None, scenes: BTreeMap::new(), first: None }
+        Sources { changes, device, frames, lab: None, scenes: BTreeMap::new(), rendered: Vec::new() }
     }
 
     /// A picture by its path. `set` says whether `--set` is for it: a reference has other parameters.
@@ -45,7 +45,13 @@ impl<'a> Sources<'a> {
 
     /// The cached reference of the first experiment, if there are both.
     pub(super) fn cached(&self, bounces: u32) -> Result<Option<Side>, LabError> {
-        let Some((experiment, scene)) = &self.first else { return Ok(None) };
+        let Some((experiment, scene)) = self.rendered.first() else { return Ok(None) };
+        if let Some((other, _)) = self.rendered.iter().find(|(other, _)| !same_view(experiment, other)) {
+            eprintln!(
+                "warning: '{}' and '{}' differ in scene, camera, time or light, and are compared all the same",
+                experiment.name, other.name
+            );
+        }
         let found = reference::find(&Home::find()?, experiment, scene, bounces)?;
         Ok(found.map(|r| Side {
             name: format!("path traced, {} samples a pixel, bounces {bounces}", r.samples),
@@ -96,9 +102,13 @@ impl<'a> Sources<'a> {
         for message in session.failed_checks()? {
             eprintln!("warning: {}: {message}", path.display());
         }
-        if self.first.is_none() {
-            self.first = Some((experiment, scene));
-        }
+        self.rendered.push((experiment, scene));
         session.parts()
     }
+}
+
+/// Whether two experiments look at the same: only then can one reference be for both.
+fn same_view(a: &Experiment, b: &Experiment) -> bool {
+    let lights = |e: &Experiment| e.lights.iter().map(|(name, l)| (name.value.clone(), *l)).collect::<Vec<_>>();
+    (&a.scene, &a.camera, a.time, a.sky) == (&b.scene, &b.camera, b.time, b.sky) && lights(a) == lights(b)
 }
