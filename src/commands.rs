@@ -24,6 +24,7 @@ mod render;
 mod replay;
 mod save;
 mod screenshot;
+mod sweep;
 mod view;
 
 use crate::lab::{Lab, LabError};
@@ -51,6 +52,8 @@ enum Command {
     Capture(capture::CaptureArgs),
     /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
     Replay(replay::ReplayArgs),
+    /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
+    Sweep(sweep::SweepArgs),
     /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
     Save(save::SaveArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
@@ -103,6 +106,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Render(args) => render::run(&args),
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
         Command::Save(args) => save::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
