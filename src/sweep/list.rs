@@ -1,6 +1,7 @@
 //! The points of a sweep, each with the number of everything that its result depends on.
 
 use super::file::Sweep;
+use super::record::Subject;
 use crate::capture::scene_hash;
 use crate::experiment::{Experiment, placed_text};
 use crate::graph::source::Diagnostic;
@@ -21,6 +22,8 @@ pub struct Listed {
     pub experiment: Experiment,
     /// The scene, lit as the experiment says.
     pub scene: Arc<Scene>,
+    /// What is looked at.
+    pub subject: Subject,
     /// Its values, by the names of what is varied.
     pub labels: Vec<(String, String)>,
 }
@@ -55,16 +58,23 @@ impl<'a> Lister<'a> {
         let loaded = warm.graph(self.home, &experiment.graph)?;
         let graph = self.graphs.entry(experiment.graph.clone()).or_insert_with(|| graph_hash(loaded)).clone();
         let params = experiment.params_over(&loaded.graph.params)?;
-        let (scene, scene_hash) = self.scene(&experiment)?;
+        let (scene, sha256) = self.scene(&experiment)?;
         let camera = camera_of(&experiment, &scene)?;
         let mut hash = Sha256::new();
         let values = params.list.iter().zip(&params.values).map(|(p, v)| format!("{}={v}", p.name));
+        let subject = Subject {
+            scene: scene.name.clone(),
+            sha256,
+            camera: placed_text(&camera),
+            size: experiment.size,
+            time: format!("{:?}", experiment.time),
+        };
         let facts = [
             format!("conelab {}", env!("CARGO_PKG_VERSION")),
             graph,
-            scene_hash,
-            placed_text(&camera),
-            format!("{}x{} at {:?} s", experiment.size.0, experiment.size.1, experiment.time),
+            subject.sha256.clone(),
+            subject.camera.clone(),
+            format!("{}x{} at {} s", subject.size.0, subject.size.1, subject.time),
             format!("{} + {} frames", frames.warmup, frames.count),
         ];
         for fact in facts.into_iter().chain(values) {
@@ -73,7 +83,7 @@ impl<'a> Lister<'a> {
         }
         let mut id = crate::capture::hex(&hash.finalize());
         id.truncate(32);
-        Ok(Listed { id, experiment, scene, labels })
+        Ok(Listed { id, experiment, scene, subject, labels })
     }
 
     /// The scene under the experiment's light, with its hash.

@@ -12,6 +12,6 @@ mod table;
 
 pub use file::{MAX_POINTS, Sweep};
 pub use list::{Listed, Lister, list};
-pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, collect};
+pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
 pub use run::{Options, Progress, Shard, Tally, run};
 pub use table::{Cell, csv, parts_of};

@@ -56,10 +56,27 @@ pub struct Record {
     pub id: String,
     /// The experiment with nothing left to defaults, as it would stand in a file of the sweep's folder.
     pub experiment: String,
+    /// What is looked at: points of one subject can be compared.
+    pub subject: Subject,
     /// The device.
     pub device: DeviceStats,
     /// What came of it.
     pub outcome: Outcome,
+}
+
+/// A picture, whatever method makes it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Subject {
+    /// The scene's name.
+    pub scene: String,
+    /// SHA-256 of its content, light included.
+    pub sha256: String,
+    /// The camera, written out.
+    pub camera: String,
+    /// Width and height, pixels.
+    pub size: (u32, u32),
+    /// Seconds, written out.
+    pub time: String,
 }
 
 /// What came of a point.

@@ -2,15 +2,15 @@
 
 use super::file::Sweep;
 use super::list::{Listed, Lister, list};
-use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, collect, write_file};
-use crate::experiment::{Experiment, resolved_text};
+use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, Subject, collect, write_file};
+use crate::experiment::resolved_text;
 use crate::lab::{Lab, LabError, camera_of};
 use crate::measure::{Frames, Warm, measure};
 use crate::reference::{self, Reference};
 use crate::scene::Scene;
 use crate::stats::DeviceStats;
 use crate::vulkan::VulkanError;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -164,6 +164,7 @@ fn record_of(
         schema: POINT_SCHEMA.into(),
         id: point.id.clone(),
         experiment: text,
+        subject: point.subject.clone(),
         device: DeviceStats::of(&lab.gpu.info),
         outcome,
     })
@@ -172,7 +173,7 @@ fn record_of(
 /// Cached references, each read once. Only a few are kept: one of 1920x1080 takes about 125 MB.
 #[derive(Default)]
 struct References {
-    found: HashMap<String, Option<Arc<Reference>>>,
+    found: BTreeMap<Subject, Option<Arc<Reference>>>,
 }
 
 /// Most references in memory.
@@ -180,21 +181,14 @@ const MAX_REFERENCES: usize = 8;
 
 impl References {
     fn get(&mut self, lab: &Lab, point: &Listed) -> Result<Option<Arc<Reference>>, LabError> {
-        let key = key(&point.experiment, &point.scene);
-        if let Some(found) = self.found.get(&key) {
+        if let Some(found) = self.found.get(&point.subject) {
             return Ok(found.clone());
         }
         if self.found.len() >= MAX_REFERENCES {
             self.found.clear();
         }
         let found = reference::find(&lab.home, &point.experiment, &point.scene, 1)?.map(Arc::new);
-        self.found.insert(key, found.clone());
+        self.found.insert(point.subject.clone(), found.clone());
         Ok(found)
     }
-}
-
-/// What a reference depends on: the scene under its light (by its place in memory, as scenes live as long as the list
-/// of points), camera, size and time.
-fn key(experiment: &Experiment, scene: &Arc<Scene>) -> String {
-    format!("{:p} {:?} {:?} {:?}", Arc::as_ptr(scene), experiment.camera, experiment.size, experiment.time)
 }

@@ -49,7 +49,7 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     for ((listed, _), record) in collected.points.iter().zip(&records) {
         let point = record.and_then(done);
         let error = record.and_then(|r| match &r.outcome {
-            Outcome::Failed(e) => Some(e.as_str()),
+            Outcome::Failed(e) => e.lines().next(),
             Outcome::Done(_) => None,
         });
         let outcome = match (point, error) {
