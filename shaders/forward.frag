@@ -5,6 +5,7 @@
 #include "params.glsl"
 #include "gather.glsl"
 #include "shadow.glsl"
+#include "direct.glsl"
 
 layout(location = 0) out vec4 radiance; // everything, emission included
 layout(location = 1) out vec4 direct;
@@ -13,17 +14,8 @@ layout(location = 3) out vec4 specularIndirect;
 layout(location = 4) out vec4 occlusion; // 1: open
 layout(location = 5) out vec4 surfaceNormal; // * .5 + .5
 
-vec3 directLight(Surface s, vec3 face, vec3 v) {
-    vec3 sum = vec3(0.0);
-    for (uint i = 0; i < sceneInfo.light_count; i++) {
-        Light light = lights.lights[i];
-        Incident incident = incidentLight(light, position);
-        float cosine = dot(s.normal, incident.to_light);
-        if (cosine <= 0.0 || dot(face, incident.to_light) <= 0.0) continue;
-        vec3 brdf = diffuseBrdf(s) + specularBrdf(s, v, incident.to_light);
-        sum += brdf * incident.irradiance * cosine * shadowVisibility(light, position, face, incident.to_light);
-    }
-    return sum;
+float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
+    return shadowVisibility(light, p, face, to_light);
 }
 
 void main() {
@@ -35,7 +27,7 @@ void main() {
     if (gl_SampleMaskIn[0] == 0) return;
     Surface s = surfaceAt(m, g, face);
 
-    vec3 light = directLight(s, face, v);
+    vec3 light = directLight(s, position, face, v);
     ConeOrigin o = coneOrigin(position, face, s.normal);
     vec4 hemisphere = diffuseCone(o, s, face);
     vec3 diffuse = s.albedo * hemisphere.rgb * params.indirect_scale;

@@ -5,7 +5,7 @@
 #include "params.glsl"
 #include "volume.glsl"
 #include "voxels.glsl"
-#include "lights.glsl"
+#include "shadow_views.glsl"
 #include "scene.glsl"
 
 layout(local_size_x = 128) in;

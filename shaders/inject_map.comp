@@ -4,7 +4,7 @@
 // into the voxel it hits. Writes of several texels, and of several lights, race: the last one stays.
 #include "params.glsl"
 #include "volume.glsl"
-#include "lights.glsl"
+#include "shadow_views.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
 

@@ -3,7 +3,7 @@
 // Depth from a light (thesis, Section 4.2); pass.index is the shadow view.
 #include "params.glsl"
 #include "scene.glsl"
-#include "lights.glsl"
+#include "shadow_views.glsl"
 
 layout(location = 0) out vec2 uv;
 layout(location = 1) flat out uint material;

@@ -21,8 +21,12 @@ vec3 fresnel(vec3 f0, float cosine) {
 }
 
 // Trowbridge-Reitz. The thesis writes alpha = roughness; Burley and Unreal Engine 4 alpha = roughness^2.
+float ggxAlpha(float roughness) {
+    return params.ggx_alpha == GGX_ALPHA_SQUARED ? roughness * roughness : roughness;
+}
+
 float distribution(float n_h, float roughness) {
-    float alpha = params.ggx_alpha == GGX_ALPHA_SQUARED ? roughness * roughness : roughness;
+    float alpha = ggxAlpha(roughness);
     float a2 = alpha * alpha;
     float d = n_h * n_h * (a2 - 1.0) + 1.0;
     return a2 / (PI * d * d);

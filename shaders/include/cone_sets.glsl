@@ -3,6 +3,7 @@
 // against the Lambert kernel's 1, 2/3, 1/4; the fitted ones are right for l = 0, 1, 2.
 #ifndef CONE_SETS_GLSL
 #define CONE_SETS_GLSL
+#include "frame.glsl"
 
 struct ConeSet {
     int count; // axial cone included
@@ -23,14 +24,6 @@ ConeSet diffuseCones() {
     if (CONE_SET == CONE_SET_WIDE) return makeConeSet(params.cone_count, 0.15, 45.0, 78.0);
     // Fitted for the lobe that lod_offset -2 leaves of the aperture, about 11 degrees to each side.
     return makeConeSet(params.cone_count, 0.33, 59.0, 44.0);
-}
-
-// Any tangent frame of n (Duff et al. 2017).
-mat3 frameOf(vec3 n) {
-    float s = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (s + n.z);
-    float b = n.x * n.y * a;
-    return mat3(1.0 + s * n.x * n.x * a, s * b, -s * n.x, b, s + n.y * n.y * a, -n.y, n);
 }
 
 #endif

@@ -1,7 +1,7 @@
 // Shadow lookup for surfaces. The bias is a distance in shadow texels, never in metres.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
-#include "lights.glsl"
+#include "shadow_views.glsl"
 
 uniform sampler2DArrayShadow shadowCompare;
 

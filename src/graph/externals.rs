@@ -28,6 +28,9 @@ const fn external(name: &'static str, kind: ExternalKind) -> External {
 /// Number of arrays that material textures are spread over.
 pub const MATERIAL_ARRAYS: usize = 12;
 
+/// The resources that a scene has only for graphs that name them: a hierarchy over all triangles, for rays.
+pub const RAY_RESOURCES: [&str; 2] = ["bvhNodes", "bvhTriangles"];
+
 use ExternalKind::{Storage, TextureArray, Uniform};
 
 /// All of them.
@@ -42,6 +45,9 @@ pub const EXTERNALS: &[External] = &[
     external("draws", Storage),
     external("positions", Storage),
     external("attributes", Storage),
+    external("indices", Storage),
+    external("bvhNodes", Storage),
+    external("bvhTriangles", Storage),
     external("materialTexture0", TextureArray),
     external("materialTexture1", TextureArray),
     external("materialTexture2", TextureArray),

@@ -1,5 +1,6 @@
 //! The lab: a device and what is loaded on it; turns an experiment into frames.
 
+mod bvh;
 mod materials;
 mod scene;
 mod view;
@@ -9,13 +10,15 @@ pub use view::Viewpoint;
 
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::expr::{Env, Var};
-use crate::graph::link::{Linked, link};
+use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
+use crate::graph::link::{Linked, Target, link};
 use crate::graph::load::{Folders, Graph, load};
 use crate::graph::param::Params;
 use crate::graph::plan::{Plan, PlanInput, plan};
 use crate::graph::run::{FrameTimes, Program};
 use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::successor::Parts;
+use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
 use crate::shader::ShaderCompiler;
 use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
@@ -35,6 +38,9 @@ pub enum LabError {
     /// The device.
     #[error(transparent)]
     Vulkan(#[from] VulkanError),
+    /// Pictures that cannot be compared.
+    #[error(transparent)]
+    Metric(#[from] MetricError),
     /// Anything else that the user asked for and cannot have.
     #[error("{0}")]
     Request(String),
@@ -224,12 +230,16 @@ impl Lab {
         wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
-        let scene_gpu = match seed.filter(|s| Arc::ptr_eq(&s.scene, &scene) && s.max_edge == plan.max_edge) {
+        let rays = traces_rays(&linked, &plan);
+        let fits = |s: &&Seed| {
+            Arc::ptr_eq(&s.scene, &scene) && s.max_edge == plan.max_edge && (s.scene_gpu.has_rays() || !rays)
+        };
+        let scene_gpu = match seed.filter(fits) {
             Some(seed) if seed.beside => seed.scene_gpu.fork(&self.gpu, &scene)?,
             Some(seed) => seed.scene_gpu.clone(),
             None => {
                 let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
-                SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene))?
+                SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene), rays)?
             }
         };
         let none = Parts::default();
@@ -265,6 +275,12 @@ fn plan_of(
 ) -> Result<Plan, LabError> {
     let input = PlanInput { params, env: environment(scene, size), wanted: wanted.to_vec(), device };
     plan(graph, linked, &input).map_err(LabError::Input)
+}
+
+/// Whether a pass that runs asks for the hierarchy over the scene's triangles.
+fn traces_rays(linked: &[Linked], plan: &Plan) -> bool {
+    let mut bound = plan.steps.iter().flat_map(|s| &linked[s.pass].bound);
+    bound.any(|b| matches!(b.target, Target::External(e) if RAY_RESOURCES.contains(&EXTERNALS[e].name)))
 }
 
 /// Variables of expressions that come from scene and size.
@@ -407,7 +423,7 @@ impl Session {
     /// # Errors
     /// The device was lost.
     pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
-        let mut updates = self.scene_gpu.updates(&self.scene, self.time, self.frame == 0);
+        let mut updates = self.scene_gpu.updates(&self.scene, self.time, self.frame == 0)?;
         updates.append(&mut self.light_updates);
         let camera = self.viewpoint.uniform(self.size, self.time, self.frame, delta);
         updates.push((self.scene_gpu.camera.clone(), camera));

@@ -1,5 +1,6 @@
 //! A scene on the device, as the fixed named resources that shaders read (`shaders/include/scene.glsl`).
 
+use super::bvh::{self, Soup};
 use super::materials::{self, NO_TEXTURE};
 use super::view::{lights, shadow_view_count};
 use crate::graph::run::{Geometry, SceneResources};
@@ -43,11 +44,11 @@ struct MaterialBlock {
 
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
-struct DrawBlock {
-    instance: u32,
+pub(super) struct DrawBlock {
+    pub instance: u32,
     material: u32,
-    first_index: u32,
-    index_count: u32,
+    pub first_index: u32,
+    pub index_count: u32,
 }
 
 #[repr(C)]
@@ -76,11 +77,11 @@ pub struct SceneGpu {
 const CAMERA_BYTES: usize = 5 * 64 + 5 * 16;
 
 impl SceneGpu {
-    /// Uploads a scene.
+    /// Uploads a scene; `rays`: with the hierarchy that rays need.
     ///
     /// # Errors
-    /// Out of memory.
-    pub fn new(gpu: &Arc<Gpu>, scene: &Scene) -> Result<SceneGpu> {
+    /// Out of memory; a hierarchy that is too deep.
+    pub fn new(gpu: &Arc<Gpu>, scene: &Scene, rays: bool) -> Result<SceneGpu> {
         let mut upload = Upload::new(gpu);
         let textures = materials::upload(gpu, scene, &mut upload)?;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
@@ -115,8 +116,9 @@ impl SceneGpu {
         let instance_blocks = instances(scene, 0.0, None);
         let instances = upload.buffer("instances", bytemuck::cast_slice(&instance_blocks), storage)?;
         let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
-        let buffers = HashMap::from([
+        let mut buffers = HashMap::from([
             ("camera", camera.clone()),
+            ("indices", index_buffer.clone()),
             ("sceneInfo", upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?),
             ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
             ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
@@ -126,6 +128,17 @@ impl SceneGpu {
             ("positions", upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?),
             ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
         ]);
+        if rays {
+            let found = hierarchy(scene, &instance_blocks, &gpu.info.name)?;
+            // Room for the nodes of any pose.
+            let mut nodes = found.nodes;
+            nodes.resize(
+                nodes.len().max(usize::try_from(bvh::node_capacity(info.triangle_count as usize)).unwrap_or(0)),
+                0,
+            );
+            buffers.insert("bvhNodes", upload.buffer("bvhNodes", &nodes, storage)?);
+            buffers.insert("bvhTriangles", upload.buffer("bvhTriangles", &found.triangles, storage)?);
+        }
         let limit = u64::from(gpu.info.limits.max_storage_buffer_range);
         if let Some((name, buffer)) = buffers.iter().find(|(_, b)| b.size > limit) {
             return Err(VulkanError::Limit {
@@ -136,7 +149,7 @@ impl SceneGpu {
             });
         }
         upload.finish()?;
-        let bytes = buffers.values().map(|b| b.size).sum::<u64>() + index_buffer.size + textures.bytes;
+        let bytes = buffers.values().map(|b| b.size).sum::<u64>() + textures.bytes;
         let sampler = Arc::new(Sampler::new(
             gpu,
             &SamplerDesc {
@@ -199,14 +212,29 @@ impl SceneGpu {
     }
 
     /// Buffers that change with time: the poses of animated instances, when they moved.
-    pub fn updates(&mut self, scene: &Scene, time: f64, first: bool) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+    ///
+    /// # Errors
+    /// A pose whose hierarchy is too deep.
+    pub fn updates(&mut self, scene: &Scene, time: f64, first: bool) -> Result<Vec<(Arc<Buffer>, Vec<u8>)>> {
         let previous = (!first).then_some(self.sent.as_slice());
         let now = instances(scene, time as f32, previous);
         if now == self.sent || now.is_empty() {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         self.sent = now;
-        vec![(self.instances.clone(), bytemuck::cast_slice(&self.sent).to_vec())]
+        let mut list = vec![(self.instances.clone(), bytemuck::cast_slice(&self.sent).to_vec())];
+        let rays = [self.resources.buffers.get("bvhNodes"), self.resources.buffers.get("bvhTriangles")];
+        if let [Some(nodes), Some(triangles)] = rays {
+            let found = hierarchy(scene, &self.sent, "this scene")?;
+            list.push((nodes.clone(), found.nodes));
+            list.push((triangles.clone(), found.triangles));
+        }
+        Ok(list)
+    }
+
+    /// Whether it has what rays need.
+    pub fn has_rays(&self) -> bool {
+        self.resources.buffers.contains_key("bvhNodes")
     }
 
     /// Buffers that change with colours, directions, positions and cone angles of the lights, and with the sky. The
@@ -223,6 +251,15 @@ impl SceneGpu {
         let buffer = |name: &str| self.resources.buffers.get(name).cloned();
         contents.iter().filter_map(|(name, bytes)| Some((buffer(name)?, bytes.to_vec()))).collect()
     }
+}
+
+/// The hierarchy over all triangles in the pose of these instances.
+fn hierarchy(scene: &Scene, instances: &[InstanceBlock], device: &str) -> Result<bvh::Hierarchy> {
+    let (positions, _, indices, first_index) = vertices(scene);
+    let draws = draws(scene, &first_index);
+    let soup = Soup { positions: &positions, indices: &indices, draws: &draws, masked: &|d| is_masked(scene, d) };
+    let model = |i: u32| instances.get(i as usize).map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model));
+    bvh::build(&soup, &model, device)
 }
 
 fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {

@@ -4,7 +4,7 @@ mod pictures;
 
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, Seed, Texels};
-use crate::metrics::{Linear, Scores, scores};
+use crate::metrics::{Compared, Kind, Linear, Scores};
 use crate::picture::to_floats;
 use crate::reference::Reference;
 use crate::scene::Scene;
@@ -109,7 +109,10 @@ pub fn measure(
         let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
         for (part, light) in &parts {
             let Some(wanted) = reference.parts.get(part) else { continue };
-            point.scores.insert(part.clone(), scores(light, &wanted.mean)?);
+            let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
+            let compared = Compared::new(light, &wanted.mean, Kind::of_part(part)).map_err(|e| wrong(e.to_string()))?;
+            let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures".into()))?;
+            point.scores.insert(part.clone(), scores);
             point.noise.insert(part.clone(), wanted.noise);
             if part == "total" {
                 error_map = Some(pictures::error_map(light, &wanted.mean)?);
