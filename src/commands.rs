@@ -22,6 +22,7 @@ mod check;
 mod graph;
 mod render;
 mod replay;
+mod report;
 mod save;
 mod screenshot;
 mod sweep;
@@ -54,6 +55,8 @@ enum Command {
     Replay(replay::ReplayArgs),
     /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
     Sweep(sweep::SweepArgs),
+    /// Make a page, charts and a table of sweeps: error against time.
+    Report(report::ReportArgs),
     /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
     Save(save::SaveArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
@@ -107,6 +110,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Save(args) => save::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),

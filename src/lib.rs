@@ -13,6 +13,7 @@ pub mod measure;
 pub mod metrics;
 pub mod picture;
 pub mod reference;
+pub mod report;
 pub mod scene;
 pub mod screenshot;
 pub mod shader;

@@ -217,6 +217,6 @@ fn json(value: &impl Serialize) -> Result<Vec<u8>, LabError> {
     Ok(bytes)
 }
 
-pub(super) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
     write_whole(path, bytes).map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))
 }
