@@ -23,8 +23,10 @@ mod graph;
 mod reference;
 mod render;
 mod replay;
+mod report;
 mod save;
 mod screenshot;
+mod sweep;
 mod view;
 
 use crate::lab::{Lab, LabError};
@@ -52,6 +54,10 @@ enum Command {
     Capture(capture::CaptureArgs),
     /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
     Replay(replay::ReplayArgs),
+    /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
+    Sweep(sweep::SweepArgs),
+    /// Make a page, charts and a table of sweeps: error against time.
+    Report(report::ReportArgs),
     /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
     Save(save::SaveArgs),
     /// Gather ground truth for an experiment by path tracing, into captures/reference.
@@ -106,6 +112,8 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Render(args) => render::run(&args),
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Save(args) => save::run(&args),
         Command::Reference(args) => reference::run(&args),
         Command::Graph(args) => graph::run(&args),
