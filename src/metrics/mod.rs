@@ -3,6 +3,8 @@
 pub mod colour;
 pub mod flip;
 pub mod hdr_flip;
+pub mod maps;
+pub mod region;
 mod sums;
 
 use hdr_flip::{Exposures, exposures, hdr_flip};
@@ -41,12 +43,8 @@ impl Linear {
 /// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
 pub fn relmse(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
     check(test, reference)?;
-    let term = |x: f32, r: f32| {
-        let (x, r) = (f64::from(x), f64::from(r));
-        (x - r).powi(2) / (r * r + 1e-2)
-    };
     let pairs = test.rgb.iter().flatten().zip(reference.rgb.iter().flatten());
-    Ok(pairs.map(|(x, r)| term(*x, *r)).sum::<f64>() / (3 * test.rgb.len()) as f64)
+    Ok(pairs.map(|(x, r)| sums::relative_square(*x, *r)).sum::<f64>() / (3 * test.rgb.len()) as f64)
 }
 
 /// What a picture's numbers are, which says how FLIP shows it to its observer.
