@@ -24,8 +24,11 @@ mod graph;
 mod reference;
 mod render;
 mod replay;
+mod report;
 mod save;
 mod screenshot;
+mod split;
+mod sweep;
 mod view;
 
 use crate::lab::{Lab, LabError};
@@ -53,12 +56,18 @@ enum Command {
     Capture(capture::CaptureArgs),
     /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
     Replay(replay::ReplayArgs),
+    /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
+    Sweep(sweep::SweepArgs),
+    /// Make a page, charts and a table of sweeps: error against time.
+    Report(report::ReportArgs),
     /// Compare pictures or experiments with a reference: table, JSON, maps of the error.
     Compare(compare::CompareArgs),
     /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
     Save(save::SaveArgs),
     /// Gather ground truth for an experiment by path tracing, into captures/reference.
     Reference(reference::ReferenceArgs),
+    /// Split an experiment's error into what voxels, cones and filtering each add.
+    Split(split::SplitArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
     Graph(graph::GraphArgs),
     /// Print a scene's counts, bounds, materials and missing files, or write it to another format.
@@ -109,9 +118,12 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Render(args) => render::run(&args),
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Save(args) => save::run(&args),
         Command::Reference(args) => reference::run(&args),
+        Command::Split(args) => split::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Scene(args) => scene(&args),

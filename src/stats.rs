@@ -4,14 +4,14 @@ use crate::graph::param::Params;
 use crate::graph::run::FrameTimes;
 use crate::lab::Session;
 use crate::vulkan::DeviceInfo;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Version of the schema.
 pub const SCHEMA: &str = "conelab-stats-1";
 
 /// Least, median and 95th percentile, ms.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// Least.
     pub min: f64,
@@ -22,10 +22,13 @@ pub struct Spread {
 }
 
 /// Times of a pass.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PassStats {
     /// Name in the graph.
     pub name: String,
+    /// What tables and charts count it under: the graph's `stage` of the pass, or its name.
+    #[serde(default)]
+    pub stage: String,
     /// On the GPU.
     pub gpu_ms: Spread,
     /// Frames measured.
@@ -33,7 +36,7 @@ pub struct PassStats {
 }
 
 /// The device.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DeviceStats {
     /// Name.
     pub name: String,
@@ -45,8 +48,20 @@ pub struct DeviceStats {
     pub kind: String,
 }
 
+impl DeviceStats {
+    /// Of a device.
+    pub fn of(device: &DeviceInfo) -> DeviceStats {
+        DeviceStats {
+            name: device.name.clone(),
+            driver: device.driver.clone(),
+            api: device.api.clone(),
+            kind: device.kind.into(),
+        }
+    }
+}
+
 /// What `--json` writes.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stats {
     /// [`SCHEMA`].
     pub schema: String,
@@ -107,20 +122,16 @@ pub fn collect(
     for (i, (number, _)) in times.first().map_or(&[][..], |t| &t.passes).iter().enumerate() {
         let values: Vec<f64> = times.iter().filter_map(|t| t.passes.get(i)).map(|p| p.1).collect();
         let frames = values.len();
-        let name = session.graph.passes[*number].value.name.value.clone();
-        passes.push(PassStats { name, gpu_ms: spread(values), frames });
+        let pass = &session.graph.passes[*number].value;
+        let (name, stage) = (pass.name.value.clone(), pass.stage().to_string());
+        passes.push(PassStats { name, stage, gpu_ms: spread(values), frames });
     }
     let bytes: BTreeMap<String, u64> = session.program.memory(&session.graph).into_iter().collect();
     let (width, height) = session.size();
     Stats {
         schema: SCHEMA.into(),
         version: env!("CARGO_PKG_VERSION").into(),
-        device: DeviceStats {
-            name: device.name.clone(),
-            driver: device.driver.clone(),
-            api: device.api.clone(),
-            kind: device.kind.into(),
-        },
+        device: DeviceStats::of(device),
         experiment: experiment.into(),
         graph: session.graph.name.clone(),
         scene: session.scene.name.clone(),

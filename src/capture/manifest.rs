@@ -155,7 +155,7 @@ pub(super) fn hash_file(path: &Path) -> std::io::Result<String> {
 }
 
 /// Bytes in hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
+pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
@@ -181,7 +181,7 @@ pub(super) fn files_below(folder: &Path) -> std::io::Result<Vec<String>> {
 }
 
 /// A moment as RFC 3339 in UTC, to the second.
-pub(super) fn rfc3339(seconds: u64) -> String {
+pub(crate) fn rfc3339(seconds: u64) -> String {
     let (days, rest) = (seconds / 86_400, seconds % 86_400);
     // Days are counted in eras of 400 years that begin on a 1st of March, so that leap days come last.
     let shifted = days + 719_468;

@@ -8,6 +8,7 @@ mod scene_hash;
 mod take;
 
 pub use list::{Summary, list, sweep_partials};
+pub(crate) use manifest::hex;
 pub use manifest::{Image, Manifest, SCHEMA, SceneRecord};
 pub use parts::parts;
 pub use replay::{Difference, Replay, changes, replay};

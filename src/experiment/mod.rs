@@ -6,6 +6,7 @@ mod read;
 mod spans;
 mod write;
 
+pub(crate) use read::scene_path;
 pub(crate) use write::placed_text;
 pub use write::{resolved_text, write};
 

@@ -142,7 +142,7 @@ fn check_light(change: &LightChange) -> Result<(), String> {
 }
 
 /// Names stay; files are looked up beside the experiment first.
-fn scene_path(folder: &Path, scene: &str) -> String {
+pub(crate) fn scene_path(folder: &Path, scene: &str) -> String {
     let beside: PathBuf = folder.join(scene);
     if scene.contains('.') && beside.is_file() { beside.to_string_lossy().into_owned() } else { scene.to_string() }
 }

@@ -40,6 +40,8 @@ pub struct GraphFile {
     pub compare: Items<CompareDecl>,
     /// Settings that show something worth looking into.
     pub views: Items<ViewDecl>,
+    /// Settings from the ideal to the method: what each step costs is the method's error, split.
+    pub ladder: Items<ViewDecl>,
 }
 
 /// An expression with its place.
@@ -163,6 +165,8 @@ pub struct BufferDecl {
 pub struct PassDecl {
     /// Name, for people and timings.
     pub name: Loc<String>,
+    /// What tables of times count it under, where that is not its name.
+    pub stage: Option<String>,
     /// Condition; always when absent.
     pub when: Option<Ex>,
     /// Shader files.
@@ -200,6 +204,13 @@ pub struct PassDecl {
     pub copy: Option<Loc<CopyDecl>>,
     /// A note to readers.
     pub comment: Option<String>,
+}
+
+impl PassDecl {
+    /// What tables of times count it under.
+    pub fn stage(&self) -> &str {
+        self.stage.as_deref().unwrap_or(&self.name.value)
+    }
 }
 
 /// Size of a compute grid.

@@ -25,6 +25,7 @@ use glam::{Mat4, Quat, Vec3, Vec4};
 use indexmap::IndexMap;
 
 pub use error::SceneError;
+pub(crate) use shuffle::splitmix;
 pub use split::MAX_TRIANGLES;
 
 /// Everything that is rendered, and from where.

@@ -22,7 +22,7 @@ impl Scene {
 }
 
 /// Next number of the SplitMix64 sequence (Steele et al. 2014): the same on every machine.
-fn splitmix(state: &mut u64) -> u64 {
+pub(crate) fn splitmix(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mut z = *state;
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);

@@ -1,0 +1,38 @@
+//! `conelab report`.
+
+use crate::lab::LabError;
+use crate::report::{METRICS, write};
+use crate::sweep::collect;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Arguments of `report`.
+#[derive(Debug, Args)]
+pub struct ReportArgs {
+    /// Folders of sweeps: shards of one, or several to be looked at side by side.
+    #[arg(required = true)]
+    folders: Vec<PathBuf>,
+    /// Where the page, the charts and the table go; `report` in the first folder when absent.
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Errors that are charted: relmse, rmse, smape, flip, hdr_flip, energy_ratio, leak, over_occlusion.
+    #[arg(long, value_delimiter = ',', default_values_t = METRICS.map(String::from))]
+    metric: Vec<String>,
+}
+
+/// Writes a report.
+pub fn run(args: &ReportArgs) -> Result<(), LabError> {
+    let collected = collect(&args.folders)?;
+    let folder = match (&args.output, args.folders.first()) {
+        (Some(folder), _) => folder.clone(),
+        (None, Some(first)) => first.join("report"),
+        (None, None) => return Err(LabError::Request("name a sweep's folder".into())),
+    };
+    let files = write(&collected, &args.metric, &folder)?;
+    for file in &files {
+        say!("wrote {}", super::shown(file).display());
+    }
+    let measured = collected.points.iter().filter(|p| p.1.is_some()).count();
+    say!("{measured} of {} points are finished", collected.points.len());
+    Ok(())
+}

@@ -1,0 +1,94 @@
+//! `conelab sweep`.
+
+use super::DeviceArgs;
+use crate::lab::{Home, Lab, LabError};
+use crate::measure::Frames;
+use crate::sweep::{Options, Progress, Shard, Sweep, Tally, run as run_sweep};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+
+/// Arguments of `sweep`.
+#[derive(Debug, Args)]
+pub struct SweepArgs {
+    /// Sweep file, for example configs/sweeps/cones.ron.
+    sweep: PathBuf,
+    /// Where points are kept; captures/sweeps/NAME when absent. What is finished there is not measured again.
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Measure only every N-th point from the I-th on, so that several machines share the work.
+    #[arg(long, value_name = "I/N")]
+    shard: Option<String>,
+    /// Frames of every point, instead of the file's.
+    #[arg(long)]
+    frames: Option<usize>,
+    /// Frames before those of every point, instead of the file's.
+    #[arg(long)]
+    warmup: Option<usize>,
+    /// Measure points again that have failed.
+    #[arg(long)]
+    again: bool,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Runs a sweep; an error if points failed.
+pub fn run(args: &SweepArgs) -> Result<(), LabError> {
+    let sweep = Sweep::read(&args.sweep).map_err(LabError::Input)?;
+    let shard = args.shard.as_deref().map_or(Ok(Shard { number: 1, of: 1 }), parse_shard)?;
+    let frames =
+        Frames { warmup: args.warmup.unwrap_or(sweep.frames.warmup), count: args.frames.unwrap_or(sweep.frames.count) };
+    super::adapt::check_frames(frames.count, frames.warmup, 0.0)?;
+    let home = Home::find()?;
+    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/sweeps").join(&sweep.name));
+    let options = Options { folder, shard, frames, again: args.again };
+    let bar = ProgressBar::new(0).with_style(
+        ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
+    let mut tell = |progress: Progress| match progress {
+        Progress::Begins { todo, before } => {
+            if before > 0 {
+                bar.suspend(|| say!("{before} points are finished already, {todo} to go"));
+            }
+            bar.set_length(todo as u64);
+            bar.reset();
+        }
+        Progress::Note(text) => bar.suspend(|| eprintln!("{text}")),
+        Progress::Finished(point, error) => {
+            if let Some(error) = error {
+                bar.suspend(|| {
+                    eprintln!(
+                        "{} ({}) failed: {}",
+                        point.id,
+                        shown(&point.labels),
+                        error.lines().next().unwrap_or_default()
+                    )
+                });
+            }
+            bar.inc(1);
+        }
+    };
+    let reopen = || Lab::open(home.clone(), args.device.options());
+    let tally = run_sweep(&reopen, &super::open_scene, &sweep, &options, &mut tell);
+    bar.finish_and_clear();
+    let Tally { done, failed, left } = tally?;
+    let of = if shard.of > 1 { format!("shard {}/{}: ", shard.number, shard.of) } else { String::new() };
+    say!("wrote {}", super::shown(&options.folder).display());
+    say!("{of}{} points: {done} done, {failed} failed, {left} left", done + failed + left);
+    match failed {
+        0 => Ok(()),
+        n => Err(LabError::Request(format!("{n} points failed: their errors are in sweep.csv"))),
+    }
+}
+
+fn shown(labels: &[(String, String)]) -> String {
+    labels.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")
+}
+
+fn parse_shard(text: &str) -> Result<Shard, LabError> {
+    let wrong = || LabError::Request(format!("--shard {text}: expected I/N with I from 1 to N, for example 3/16"));
+    let (number, of) = text.split_once('/').ok_or_else(wrong)?;
+    let shard = Shard { number: number.parse().map_err(|_| wrong())?, of: of.parse().map_err(|_| wrong())? };
+    if shard.number == 0 || shard.number > shard.of { Err(wrong()) } else { Ok(shard) }
+}

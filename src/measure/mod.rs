@@ -1,0 +1,155 @@
+//! One experiment, measured: times of its passes, memory, failed checks, and how far its light is from a reference.
+
+mod pictures;
+
+use crate::experiment::Experiment;
+use crate::lab::{Lab, LabError, Loaded, Seed, Texels};
+use crate::metrics::{Compared, Kind, Linear, Scores};
+use crate::picture::to_floats;
+use crate::reference::Reference;
+use crate::scene::Scene;
+use crate::stats::{self, Stats};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+/// How long to measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Frames {
+    /// Frames that run first: caches fill, clocks rise, and what gathers over time settles.
+    pub warmup: usize,
+    /// Frames measured, at least 1.
+    pub count: usize,
+}
+
+/// What one experiment costs and how good it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// Times, memory, settings, device, failed checks.
+    pub stats: Stats,
+    /// Distance of each part of the light from the reference; empty without one.
+    pub scores: BTreeMap<String, Scores>,
+    /// relMSE between the two halves of the reference's samples, by part: what the scores cannot tell apart.
+    pub noise: BTreeMap<String, f64>,
+    /// Samples a pixel of the reference.
+    pub reference_samples: Option<u64>,
+}
+
+/// A point with small pictures, JPEG.
+pub struct Measured {
+    /// The numbers.
+    pub point: Point,
+    /// What the graph shows, if it has an `output`.
+    pub picture: Option<Vec<u8>>,
+    /// Where the light differs from the reference, if there is one.
+    pub error_map: Option<Vec<u8>>,
+}
+
+/// What one measurement leaves to the next: compiled graphs, pipelines, the scene on the device. No content of textures:
+/// a point's result does not depend on the points before it.
+#[derive(Default)]
+pub struct Warm {
+    loaded: HashMap<String, Loaded>,
+    timed: Option<Seed>,
+    scored: Option<(Arc<Scene>, Seed)>,
+}
+
+impl Warm {
+    /// A graph, compiled once.
+    ///
+    /// # Errors
+    /// All mistakes of graph and shaders.
+    pub fn graph(&mut self, home: &crate::lab::Home, name: &str) -> Result<&Loaded, LabError> {
+        if !self.loaded.contains_key(name) {
+            let loaded = home.load(name).map_err(LabError::Input)?;
+            self.loaded.insert(name.to_string(), loaded);
+        }
+        self.loaded.get(name).ok_or_else(|| LabError::Request(format!("graph '{name}' is gone")))
+    }
+
+    /// Lets go of everything on a device that was lost.
+    pub fn leave_device(&mut self) {
+        (self.timed, self.scored) = (None, None);
+    }
+}
+
+/// Measures an experiment on its scene (with the experiment's light, see [`Experiment::adapted`]). The frames that are
+/// timed compute what the picture needs and no more; the parts that are scored come from frames of their own, because
+/// writing them costs time. Every pass runs in every frame.
+///
+/// # Errors
+/// Everything that can be wrong with the experiment; the device was lost; a reference of another size.
+pub fn measure(
+    lab: &Lab,
+    warm: &mut Warm,
+    experiment: &Experiment,
+    scene: &Arc<Scene>,
+    frames: Frames,
+    reference: Option<&Reference>,
+) -> Result<Measured, LabError> {
+    let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
+    let shown = loaded.graph.output.clone();
+    let wanted = shown.clone().or_else(|| loaded.graph.hdr.clone()).into_iter().collect();
+    let mut session = lab.build(experiment, &loaded, scene.clone(), wanted, warm.timed.as_ref())?;
+    let mut times = Vec::new();
+    for _ in 0..frames.warmup + frames.count {
+        times.extend(session.frame(0.0)?);
+    }
+    times.extend(session.finish()?);
+    let times = times.split_off(times.len().saturating_sub(frames.count));
+    let warnings = session.failed_checks()?;
+    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, frames.warmup, warnings);
+    let picture = shown.map(|name| session.texels(&name, 0, 0)).transpose()?;
+    let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
+    warm.timed = Some(session.lend());
+    drop(session);
+    let mut point = Point { stats, scores: BTreeMap::new(), noise: BTreeMap::new(), reference_samples: None };
+    let mut error_map = None;
+    if let Some(reference) = reference {
+        let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
+        for (part, light) in &parts {
+            let Some(wanted) = reference.parts.get(part) else { continue };
+            let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
+            let compared = Compared::new(light, &wanted.mean, Kind::of_part(part)).map_err(|e| wrong(e.to_string()))?;
+            let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures".into()))?;
+            point.scores.insert(part.clone(), scores);
+            point.noise.insert(part.clone(), wanted.noise);
+            if part == "total" {
+                error_map = Some(pictures::error_map(light, &wanted.mean)?);
+            }
+        }
+        point.reference_samples = Some(reference.samples);
+    }
+    Ok(Measured { point, picture, error_map })
+}
+
+/// The parts of an experiment's light, by the graph's names for them.
+fn parts_of(
+    lab: &Lab,
+    warm: &mut Warm,
+    experiment: &Experiment,
+    loaded: &Loaded,
+    scene: &Arc<Scene>,
+    frames: Frames,
+) -> Result<Vec<(String, Linear)>, LabError> {
+    let parts = &loaded.graph.parts;
+    let wanted = parts.iter().map(|p| p.1.clone()).collect();
+    // The timed session's scene is on the device already: another upload of it would cost memory.
+    let seed = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
+    let mut session = lab.build(experiment, loaded, scene.clone(), wanted, seed)?;
+    for _ in 0..frames.warmup + frames.count {
+        session.frame(0.0)?;
+    }
+    session.finish()?;
+    let mut out = Vec::new();
+    for (part, texture) in parts {
+        out.push((part.clone(), linear(&session.texels(texture, 0, 0)?)));
+    }
+    warm.scored = Some((scene.clone(), session.lend()));
+    Ok(out)
+}
+
+fn linear(texels: &Texels) -> Linear {
+    let rgb = to_floats(texels).iter().map(|t| [t[0], t[1], t[2]]).collect();
+    Linear { size: (texels.extent[0], texels.extent[1]), rgb }
+}

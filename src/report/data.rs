@@ -1,0 +1,185 @@
+//! What the page and its charts show, taken from the records of sweeps.
+
+use crate::sweep::{Collected, Outcome, parts_of};
+use indexmap::IndexMap;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Points that are less than this many times the noise of their reference apart are not different (the noise is that of
+/// the reference's halves, relMSE).
+pub const NOISE_FACTOR: f64 = 4.0;
+
+/// Bytes of pictures that go into a page.
+const MAX_PICTURES: usize = 64 << 20;
+
+/// A measured point.
+#[derive(Clone, Debug, Serialize)]
+pub struct Dot {
+    pub id: String,
+    pub labels: IndexMap<String, String>,
+    /// Number of what is looked at, among those of [`Data`].
+    pub subject: usize,
+    /// GPU time of a frame, median and 95th percentile, ms.
+    pub ms: f64,
+    pub p95: f64,
+    /// Device memory of the graph.
+    pub bytes: u64,
+    /// Median of each stage, ms, in the order of the graph.
+    pub stages: Vec<(String, f64)>,
+    /// By part and metric.
+    pub scores: BTreeMap<String, BTreeMap<String, f64>>,
+    /// By part.
+    pub noise: BTreeMap<String, f64>,
+    pub warnings: Vec<String>,
+    /// The experiment, to be saved and run.
+    pub experiment: String,
+    /// JPEG.
+    #[serde(skip)]
+    pub picture: Option<Vec<u8>>,
+    #[serde(skip)]
+    pub error_map: Option<Vec<u8>>,
+}
+
+/// A chart of the page; its points are drawn in this order.
+pub struct Chart {
+    /// File name without its ending.
+    pub name: String,
+    pub subject: usize,
+    pub part: String,
+    pub metric: String,
+    /// Numbers of dots.
+    pub points: Vec<usize>,
+    pub svg: String,
+}
+
+/// A dot of a chart.
+pub struct Scored {
+    /// Number of the dot.
+    pub index: usize,
+    pub ms: f64,
+    /// 0 is perfect.
+    pub error: f64,
+    /// Whether the error is not told apart from the reference's noise.
+    pub noisy: bool,
+}
+
+/// Everything that is shown.
+pub struct Data {
+    pub sweeps: Vec<String>,
+    pub names: Vec<String>,
+    pub dots: Vec<Dot>,
+    /// Scene, size and device: only points of one subject can be compared.
+    pub subjects: Vec<String>,
+    /// How each subject was measured, one line.
+    pub settings: Vec<String>,
+    pub parts: Vec<String>,
+    /// Labels and errors.
+    pub failed: Vec<(IndexMap<String, String>, String)>,
+    /// Points without a result.
+    pub left: usize,
+}
+
+impl Dot {
+    /// Its values.
+    pub fn title(&self) -> String {
+        let pairs: Vec<String> = self.labels.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        if pairs.is_empty() { self.id.chars().take(8).collect() } else { pairs.join(", ") }
+    }
+}
+
+/// The distance from perfection: ratios are perfect at 1, everything else at 0.
+fn error_of(metric: &str, value: f64) -> f64 {
+    if metric == "energy_ratio" { (value - 1.0).abs() } else { value }
+}
+
+impl Data {
+    pub fn new(collected: &Collected) -> Data {
+        let mut data = Data {
+            sweeps: collected.sweeps.clone(),
+            names: collected.names.clone(),
+            dots: Vec::new(),
+            subjects: Vec::new(),
+            settings: Vec::new(),
+            parts: Vec::new(),
+            failed: Vec::new(),
+            left: 0,
+        };
+        let mut keys = Vec::new();
+        let mut room = MAX_PICTURES;
+        for (listed, record) in &collected.points {
+            let Some(record) = record else {
+                data.left += 1;
+                continue;
+            };
+            let point = match &record.outcome {
+                Outcome::Done(point) => point,
+                Outcome::Failed(error) => {
+                    data.failed.push((listed.labels.clone(), error.clone()));
+                    continue;
+                }
+            };
+            let key = (&record.subject, &record.device.name);
+            let subject = keys.iter().position(|k| *k == key).unwrap_or_else(|| {
+                keys.push(key);
+                let (s, device) = (&record.subject, &record.device);
+                let same = keys.iter().filter(|k| k.0.scene == s.scene && k.0.size == s.size && k.1 == key.1).count();
+                let number = if same > 1 { format!(" ({same})") } else { String::new() };
+                data.subjects.push(format!("{}{number} at {}x{}, {}", s.scene, s.size.0, s.size.1, device.name));
+                let samples = point.reference_samples.map_or(String::from("no reference"), |n| format!("reference of {n} samples a pixel"));
+                data.settings.push(format!(
+                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {} frames of warm-up; every pass in every frame; {samples}",
+                    s.camera, s.time, device.driver, device.api, point.stats.version, point.stats.warmup
+                ));
+                keys.len() - 1
+            });
+            let mut stages: IndexMap<&str, f64> = IndexMap::new();
+            for pass in &point.stats.passes {
+                *stages.entry(&pass.stage).or_default() += pass.gpu_ms.median;
+            }
+            let mut picture = |kind| {
+                let bytes = collected.picture(kind, &record.id).filter(|b| b.len() <= room)?;
+                room -= bytes.len();
+                Some(bytes)
+            };
+            data.dots.push(Dot {
+                id: record.id.clone(),
+                labels: listed.labels.clone(),
+                subject,
+                ms: point.stats.total_gpu_ms.median,
+                p95: point.stats.total_gpu_ms.p95,
+                bytes: point.stats.total_bytes,
+                stages: stages.into_iter().map(|(name, ms)| (name.to_string(), ms)).collect(),
+                scores: parts_of(point),
+                noise: point.noise.clone(),
+                warnings: point.stats.warnings.clone(),
+                experiment: record.experiment.clone(),
+                picture: picture("pictures"),
+                error_map: picture("errors"),
+            });
+        }
+        // Total first, then the parts that it is made of.
+        let mut parts: Vec<String> = data.dots.iter().flat_map(|d| d.scores.keys().cloned()).collect();
+        parts.sort_by_key(|p| (p != "total", p.clone()));
+        parts.dedup();
+        data.parts = parts;
+        data
+    }
+
+    /// The points of a subject that have a score, in order.
+    pub fn scored(&self, subject: usize, part: &str, metric: &str) -> Vec<Scored> {
+        let dots = self.dots.iter().enumerate().filter(|d| d.1.subject == subject);
+        dots.filter_map(|(index, dot)| {
+            let error = error_of(metric, *dot.scores.get(part)?.get(metric)?);
+            let floor = dot.noise.get(part).map_or(0.0, |n| n * NOISE_FACTOR);
+            let noisy = metric == "relmse" && error <= floor;
+            (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy })
+        })
+        .collect()
+    }
+
+    /// A file's name for a subject.
+    pub fn name(&self, what: &str, subject: usize) -> String {
+        let what: String = what.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+        if self.subjects.len() > 1 { format!("{what}-{}", subject + 1) } else { what }
+    }
+}

@@ -1,0 +1,90 @@
+//! Error against time, both logarithmic, with the Pareto front.
+
+use super::data::Scored;
+use super::front::front;
+use crate::lab::LabError;
+use plotters::prelude::*;
+
+const SIZE: (u32, u32) = (900, 560);
+const FONT: &str = "sans-serif";
+const DOT: RGBColor = RGBColor(70, 110, 160);
+const FRONT: RGBColor = RGBColor(200, 60, 40);
+
+/// A metric by its usual name.
+pub fn axis_title(metric: &str) -> String {
+    match metric {
+        "relmse" => "relMSE".into(),
+        "rmse" => "RMSE".into(),
+        "flip" => "FLIP".into(),
+        "hdr_flip" => "HDR-FLIP".into(),
+        "smape" => "SMAPE".into(),
+        "energy_ratio" => "|energy ratio - 1|".into(),
+        other => other.replace('_', " "),
+    }
+}
+
+/// The chart as SVG: its circles are the dots in their order; those on the front are red and joined; those that are not
+/// told apart from the reference's noise are hollow.
+pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, LabError> {
+    let mut svg = String::new();
+    draw(&mut svg, title, metric, dots).map_err(|e| LabError::Request(format!("cannot draw '{title}': {e}")))?;
+    Ok(svg)
+}
+
+fn draw(svg: &mut String, title: &str, metric: &str, dots: &[Scored]) -> Result<(), Box<dyn std::error::Error>> {
+    let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
+    area.fill(&WHITE)?;
+    // A perfect point has no logarithm: it is drawn at the bottom, a tenth below the others.
+    let least = dots.iter().map(|d| d.error).filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min).min(1.0);
+    let place = |d: &Scored| (d.ms, d.error.max(least / 10.0));
+    let (xs, ys) = (around(dots.iter().map(|d| place(d).0)), around(dots.iter().map(|d| place(d).1)));
+    let mut chart = ChartBuilder::on(&area)
+        .margin(12)
+        .caption(format!("{title}, {metric} against time ({} points)", dots.len()), (FONT, 20))
+        .x_label_area_size(48)
+        .y_label_area_size(76)
+        .build_cartesian_2d((xs.0..xs.1).log_scale(), (ys.0..ys.1).log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc("GPU time of a frame, ms, median (log)")
+        .y_desc(format!("{metric} (log)"))
+        .x_label_formatter(&|v| short(*v))
+        .y_label_formatter(&|v| short(*v))
+        .axis_desc_style((FONT, 17))
+        .label_style((FONT, 14))
+        .light_line_style(RGBColor(240, 240, 240))
+        .bold_line_style(RGBColor(220, 220, 220))
+        .draw()?;
+    let pairs: Vec<(f64, f64)> = dots.iter().map(|d| (d.ms, d.error)).collect();
+    let front = front(&pairs);
+    let mut steps: Vec<(f64, f64)> = Vec::new();
+    for i in &front {
+        let at = place(&dots[*i]);
+        steps.extend(steps.last().map(|last| (at.0, last.1)));
+        steps.push(at);
+    }
+    chart.draw_series(std::iter::once(PathElement::new(steps, FRONT.stroke_width(1))))?;
+    chart.draw_series(dots.iter().enumerate().map(|(i, d)| {
+        let color = if front.contains(&i) { FRONT } else { DOT };
+        let style = if d.noisy { color.stroke_width(2) } else { color.mix(0.85).filled() };
+        Circle::new(place(d), if front.contains(&i) { 5 } else { 4 }, style)
+    }))?;
+    area.present()?;
+    Ok(())
+}
+
+/// The range of some numbers above 0 with room on both sides, at least a factor of 2.
+fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
+    let room = (high / low).powf(0.05).max(1.5 / (high / low).sqrt()).max(1.05);
+    (low / room, high * room)
+}
+
+/// At most three digits.
+fn short(v: f64) -> String {
+    match v {
+        0.0 => "0".into(),
+        _ if !(1e-3..1e4).contains(&v) => format!("{v:.0e}"),
+        _ => format!("{}", format!("{v:.2e}").parse::<f64>().unwrap_or(v)),
+    }
+}

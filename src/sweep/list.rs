@@ -1,0 +1,168 @@
+//! The points of a sweep, each with the number of everything that its result depends on.
+
+use super::file::Sweep;
+use super::record::Subject;
+use crate::capture::scene_hash;
+use crate::experiment::{Experiment, placed_text};
+use crate::graph::source::Diagnostic;
+use crate::lab::{Home, LabError, Loaded, camera_of};
+use crate::measure::{Frames, Warm};
+use crate::scene::Scene;
+use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+/// A point that is to be measured.
+#[derive(Clone)]
+pub struct Listed {
+    /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time and frames. Points of
+    /// one number have one result, up to times.
+    pub id: String,
+    /// What is run.
+    pub experiment: Experiment,
+    /// The scene, lit as the experiment says.
+    pub scene: Arc<Scene>,
+    /// What is looked at.
+    pub subject: Subject,
+    /// Its values, by the names of what is varied.
+    pub labels: Vec<(String, String)>,
+}
+
+/// What is opened and hashed once for all points.
+pub struct Lister<'a> {
+    home: &'a Home,
+    open: &'a dyn Fn(&str) -> Result<Scene, LabError>,
+    scenes: HashMap<String, Arc<Scene>>,
+    /// Scenes under changed light, by scene and light.
+    lit: HashMap<String, (Arc<Scene>, String)>,
+    graphs: HashMap<String, String>,
+}
+
+impl<'a> Lister<'a> {
+    /// `open` opens a scene by name or path.
+    pub fn new(home: &'a Home, open: &'a dyn Fn(&str) -> Result<Scene, LabError>) -> Lister<'a> {
+        Lister { home, open, scenes: HashMap::new(), lit: HashMap::new(), graphs: HashMap::new() }
+    }
+
+    /// The point of an experiment.
+    ///
+    /// # Errors
+    /// Graph, shaders, parameters, scene or camera that cannot be had.
+    pub fn point(
+        &mut self,
+        warm: &mut Warm,
+        experiment: Experiment,
+        labels: Vec<(String, String)>,
+        frames: Frames,
+    ) -> Result<Listed, LabError> {
+        let loaded = warm.graph(self.home, &experiment.graph)?;
+        let graph = self.graphs.entry(experiment.graph.clone()).or_insert_with(|| graph_hash(loaded)).clone();
+        let params = experiment.params_over(&loaded.graph.params)?;
+        let (scene, sha256) = self.scene(&experiment)?;
+        let camera = camera_of(&experiment, &scene)?;
+        let mut hash = Sha256::new();
+        let values = params.list.iter().zip(&params.values).map(|(p, v)| format!("{}={v}", p.name));
+        let subject = Subject {
+            scene: scene.name.clone(),
+            sha256,
+            camera: placed_text(&camera),
+            size: experiment.size,
+            time: format!("{:?}", experiment.time),
+        };
+        let facts = [
+            format!("conelab {}", env!("CARGO_PKG_VERSION")),
+            graph,
+            subject.sha256.clone(),
+            subject.camera.clone(),
+            format!("{}x{} at {} s", subject.size.0, subject.size.1, subject.time),
+            format!("{} + {} frames", frames.warmup, frames.count),
+        ];
+        for fact in facts.into_iter().chain(values) {
+            hash.update((fact.len() as u64).to_le_bytes());
+            hash.update(fact);
+        }
+        let mut id = crate::capture::hex(&hash.finalize());
+        id.truncate(32);
+        Ok(Listed { id, experiment, scene, subject, labels })
+    }
+
+    /// The scene under the experiment's light, with its hash.
+    fn scene(&mut self, experiment: &Experiment) -> Result<(Arc<Scene>, String), LabError> {
+        let lights: Vec<String> = experiment.lights.iter().map(|(name, l)| format!("{} {l:?}", name.value)).collect();
+        let key = format!("{:?} {:?} {:?}", experiment.scene, experiment.sky, lights);
+        if let Some(found) = self.lit.get(&key) {
+            return Ok(found.clone());
+        }
+        let plain = match self.scenes.get(&experiment.scene) {
+            Some(scene) => scene.clone(),
+            None => {
+                let scene = Arc::new((self.open)(&experiment.scene)?);
+                self.scenes.insert(experiment.scene.clone(), scene.clone());
+                scene
+            }
+        };
+        let scene = experiment.adapted(plain)?;
+        let hash = scene_hash(&scene);
+        self.lit.insert(key, (scene.clone(), hash.clone()));
+        Ok((scene, hash))
+    }
+}
+
+/// All points of a sweep in order, without those that another one equals; and how many those are.
+///
+/// # Errors
+/// Everything that is wrong with the sweep's settings: nothing is measured then.
+pub fn list(
+    lister: &mut Lister,
+    warm: &mut Warm,
+    sweep: &Sweep,
+    frames: Frames,
+) -> Result<(Vec<Listed>, usize), LabError> {
+    let mut points: Vec<Listed> = Vec::new();
+    let mut known = std::collections::HashSet::new();
+    let mut errors: Vec<Diagnostic> = Vec::new();
+    for index in 0..sweep.len() {
+        let point = sweep.point(index).map_err(LabError::Input);
+        match point.and_then(|(experiment, labels)| lister.point(warm, experiment, labels, frames)) {
+            Ok(point) if known.insert(point.id.clone()) => points.push(point),
+            Ok(_) => {}
+            // The same mistake comes back with every combination: it is told once.
+            Err(LabError::Input(list)) => {
+                for diagnostic in list {
+                    if !errors.contains(&diagnostic) {
+                        errors.push(diagnostic);
+                    }
+                }
+            }
+            Err(other) => return Err(other),
+        }
+        if errors.len() >= 20 {
+            break;
+        }
+    }
+    if !errors.is_empty() {
+        return Err(LabError::Input(errors));
+    }
+    let equal = sweep.len() - points.len();
+    Ok((points, equal))
+}
+
+/// SHA-256 over the text of a graph's files and of its shaders with their includes; where they lie is left out.
+fn graph_hash(loaded: &Loaded) -> String {
+    let mut texts: BTreeMap<(String, &str), ()> = BTreeMap::new();
+    for (path, text) in loaded.graph.sources.texts() {
+        let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
+        texts.insert((name, text), ());
+    }
+    for (name, text) in loaded.linked.iter().flat_map(|l| &l.stages).flat_map(|s| s.texts.iter()) {
+        texts.insert((name.clone(), text.as_str()), ());
+    }
+    let mut hash = Sha256::new();
+    for (name, text) in texts.into_keys() {
+        for part in [name.as_str(), text] {
+            hash.update((part.len() as u64).to_le_bytes());
+            hash.update(part);
+        }
+    }
+    crate::capture::hex(&hash.finalize())
+}

@@ -1,0 +1,18 @@
+//! Sweeps: an experiment with everything that is varied about it, measured point by point into a folder that can be
+//! continued, split over machines and merged (docs/sweeps.md).
+
+mod axis;
+mod file;
+mod list;
+mod record;
+mod run;
+mod sample;
+mod settings;
+mod table;
+
+pub use file::{MAX_POINTS, Sweep};
+pub use list::{Listed, Lister, list};
+pub(crate) use record::write_file;
+pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
+pub use run::{Options, Progress, Shard, Tally, run};
+pub use table::{Cell, csv, parts_of};

@@ -1,0 +1,194 @@
+//! Measuring the points of a sweep, one after another.
+
+use super::file::Sweep;
+use super::list::{Listed, Lister, list};
+use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, Subject, collect, write_file};
+use crate::experiment::resolved_text;
+use crate::lab::{Lab, LabError, camera_of};
+use crate::measure::{Frames, Warm, measure};
+use crate::reference::{self, Reference};
+use crate::scene::Scene;
+use crate::stats::DeviceStats;
+use crate::vulkan::VulkanError;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Which of the points: every `of`-th, from the `number`-th on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1 to `of`.
+    pub number: usize,
+    /// At least 1.
+    pub of: usize,
+}
+
+/// How a sweep is run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Where everything is kept.
+    pub folder: PathBuf,
+    /// Which of the points.
+    pub shard: Shard,
+    /// Frames of every point.
+    pub frames: Frames,
+    /// Measure points again that have failed.
+    pub again: bool,
+}
+
+/// What a sweep tells while it runs.
+pub enum Progress<'a> {
+    /// Points of this shard: to measure, and finished before.
+    Begins {
+        /// To measure.
+        todo: usize,
+        /// Finished before.
+        before: usize,
+    },
+    /// Something worth knowing.
+    Note(String),
+    /// A point is finished; with its error, if it failed.
+    Finished(&'a Listed, Option<&'a str>),
+}
+
+/// How far a shard is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Measured.
+    pub done: usize,
+    /// Failed.
+    pub failed: usize,
+    /// Not measured yet.
+    pub left: usize,
+}
+
+/// Measures every point of the shard that is not finished. Each is kept as soon as it is finished; an error that belongs
+/// to a point is kept in its place. A device that is lost is opened again.
+///
+/// # Errors
+/// What is wrong with the sweep as a whole, before anything is measured; a folder that cannot be written to; no device.
+pub fn run(
+    reopen: &dyn Fn() -> Result<Lab, LabError>,
+    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    sweep: &Sweep,
+    options: &Options,
+    tell: &mut dyn FnMut(Progress),
+) -> Result<Tally, LabError> {
+    let mut lab = reopen()?;
+    let home = lab.home.clone();
+    let mut warm = Warm::default();
+    let mut lister = Lister::new(&home, open_scene);
+    let (points, equal) = list(&mut lister, &mut warm, sweep, options.frames)?;
+    if equal > 0 {
+        tell(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
+    }
+    let folder = Folder(options.folder.clone());
+    folder.write_manifest(&Manifest::new(sweep, options.frames, &points))?;
+    let Shard { number, of } = options.shard;
+    let mine: Vec<&Listed> = points.iter().skip(number - 1).step_by(of).collect();
+    let mut references = References::default();
+    let mut tally = Tally::default();
+    let mut todo = Vec::new();
+    let mut elsewhere = 0;
+    for point in mine {
+        let record = folder.read(&point.id);
+        let samples = references.get(&lab, point)?.map(|r| r.samples);
+        match record.as_ref().map(|r| (&r.outcome, &r.device)) {
+            // A reference that has come or grown since makes other scores.
+            Some((Outcome::Done(found), device)) if found.reference_samples == samples => {
+                elsewhere += usize::from(device.name != lab.gpu.info.name);
+                tally.done += 1;
+            }
+            Some((Outcome::Failed(_), _)) if !options.again => tally.failed += 1,
+            _ => todo.push(point),
+        }
+    }
+    if elsewhere > 0 {
+        tell(Progress::Note(format!(
+            "{elsewhere} points were measured on another device; name another folder with -o to measure them here"
+        )));
+    }
+    tell(Progress::Begins { todo: todo.len(), before: tally.done + tally.failed });
+    for point in todo {
+        let reference = references.get(&lab, point)?;
+        let attempt = |lab: &Lab, warm: &mut Warm| {
+            measure(lab, warm, &point.experiment, &point.scene, options.frames, reference.as_deref())
+        };
+        let mut result = attempt(&lab, &mut warm);
+        if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
+            // Often the point before it is to blame; if it is this one, it fails again.
+            tell(Progress::Note(String::from("the device was lost; it is opened again")));
+            warm.leave_device();
+            lab = reopen()?;
+            result = attempt(&lab, &mut warm);
+        }
+        if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
+            warm.leave_device();
+            lab = reopen()?;
+        }
+        let (outcome, measured) = match result {
+            Ok(measured) => (Outcome::Done(Box::new(measured.point.clone())), Some(measured)),
+            Err(error) => (Outcome::Failed(error.to_string()), None),
+        };
+        let record = record_of(&lab, &mut warm, options, point, outcome)?;
+        folder.write(&record, measured.as_ref())?;
+        match &record.outcome {
+            Outcome::Done(_) => tally.done += 1,
+            Outcome::Failed(_) => tally.failed += 1,
+        }
+        tell(Progress::Finished(point, failure(&record)));
+    }
+    let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
+    write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
+    Ok(tally)
+}
+
+fn failure(record: &Record) -> Option<&str> {
+    match &record.outcome {
+        Outcome::Failed(error) => Some(error),
+        Outcome::Done(_) => None,
+    }
+}
+
+fn record_of(
+    lab: &Lab,
+    warm: &mut Warm,
+    options: &Options,
+    point: &Listed,
+    outcome: Outcome,
+) -> Result<Record, LabError> {
+    let params = &warm.graph(&lab.home, &point.experiment.graph)?.graph.params;
+    let camera = camera_of(&point.experiment, &point.scene)?;
+    let text = resolved_text(&point.experiment, params, &camera, &point.scene, &options.folder.join("experiment.ron"))?;
+    Ok(Record {
+        schema: POINT_SCHEMA.into(),
+        id: point.id.clone(),
+        experiment: text,
+        subject: point.subject.clone(),
+        device: DeviceStats::of(&lab.gpu.info),
+        outcome,
+    })
+}
+
+/// Cached references, each read once. Only a few are kept: one of 1920x1080 takes about 125 MB.
+#[derive(Default)]
+struct References {
+    found: BTreeMap<Subject, Option<Arc<Reference>>>,
+}
+
+/// Most references in memory.
+const MAX_REFERENCES: usize = 8;
+
+impl References {
+    fn get(&mut self, lab: &Lab, point: &Listed) -> Result<Option<Arc<Reference>>, LabError> {
+        if let Some(found) = self.found.get(&point.subject) {
+            return Ok(found.clone());
+        }
+        if self.found.len() >= MAX_REFERENCES {
+            self.found.clear();
+        }
+        let found = reference::find(&lab.home, &point.experiment, &point.scene, 1)?.map(Arc::new);
+        self.found.insert(point.subject.clone(), found.clone());
+        Ok(found)
+    }
+}
