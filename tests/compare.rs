@@ -152,6 +152,9 @@ fn experiments_are_compared_by_part_with_each_other_or_with_the_cached_reference
     let before = std::fs::read(home.path().join("c.json")).unwrap();
     run(&pair);
     assert_eq!(std::fs::read(home.path().join("c.json")).unwrap(), before);
+    let more = ["compare", "configs/default.ron", "configs/thesis.ron", "--bounces", "64"];
+    let said = fails(conelab(home.path()).args(more).args(COARSE).args(CORNELL));
+    assert!(said.contains("no cached reference of 64 bounces"), "{said}");
     // With one: both against it.
     run(&["reference", "configs/default.ron", "--spp", "128"]);
     let said = run(&pair);
