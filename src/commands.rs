@@ -20,6 +20,7 @@ mod adapt;
 mod capture;
 mod check;
 mod compare;
+mod fit;
 mod graph;
 mod reference;
 mod render;
@@ -66,6 +67,8 @@ enum Command {
     Save(save::SaveArgs),
     /// Gather ground truth for an experiment by path tracing, into captures/reference.
     Reference(reference::ReferenceArgs),
+    /// Find the cheapest setting of an experiment that stays within an error, or the best within a time.
+    Fit(fit::FitArgs),
     /// Split an experiment's error into what voxels, cones and filtering each add.
     Split(split::SplitArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
@@ -123,6 +126,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Compare(args) => compare::run(&args),
         Command::Save(args) => save::run(&args),
         Command::Reference(args) => reference::run(&args),
+        Command::Fit(args) => fit::run(&args),
         Command::Split(args) => split::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),

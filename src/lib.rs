@@ -8,6 +8,7 @@ pub mod commands;
 pub mod comparison;
 pub mod experiment;
 pub mod files;
+pub mod fit;
 pub mod graph;
 pub mod lab;
 pub mod measure;
