@@ -80,10 +80,11 @@ pub struct Data {
 }
 
 impl Dot {
-    /// Its values.
-    pub fn title(&self) -> String {
-        let pairs: Vec<String> = self.labels.iter().map(|(name, value)| format!("{name} {value}")).collect();
-        if pairs.is_empty() { self.id.chars().take(8).collect() } else { pairs.join(", ") }
+    /// Some of its values.
+    pub fn title(&self, names: &[&String]) -> String {
+        let values = names.iter().filter_map(|n| Some(format!("{n} {}", self.labels.get(*n)?)));
+        let text = values.collect::<Vec<_>>().join(", ");
+        if text.is_empty() { self.id.chars().take(8).collect() } else { text }
     }
 }
 
