@@ -3,7 +3,8 @@
 mod pictures;
 
 use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError, Loaded, Seed, Texels};
+use crate::graph::run::FrameTimes;
+use crate::lab::{Lab, LabError, Loaded, Seed, Session, Texels};
 use crate::metrics::{Compared, Kind, Linear, Scores};
 use crate::picture::to_floats;
 use crate::reference::Reference;
@@ -88,18 +89,10 @@ pub fn measure(
     reference: Option<&Reference>,
 ) -> Result<Measured, LabError> {
     let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
-    let shown = loaded.graph.output.clone();
-    let wanted = shown.clone().or_else(|| loaded.graph.hdr.clone()).into_iter().collect();
-    let mut session = lab.build(experiment, &loaded, scene.clone(), wanted, warm.timed.as_ref())?;
-    let mut times = Vec::new();
-    for _ in 0..frames.warmup + frames.count {
-        times.extend(session.frame(0.0)?);
-    }
-    times.extend(session.finish()?);
-    let times = times.split_off(times.len().saturating_sub(frames.count));
+    let (mut session, times) = timed(lab, &loaded, experiment, scene, frames, warm.timed.as_ref())?;
     let warnings = session.failed_checks()?;
     let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, frames.warmup, warnings);
-    let picture = shown.map(|name| session.texels(&name, 0, 0)).transpose()?;
+    let picture = loaded.graph.output.as_ref().map(|name| session.texels(name, 0, 0)).transpose()?;
     let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
     warm.timed = Some(session.lend());
     drop(session);
@@ -121,6 +114,30 @@ pub fn measure(
         point.reference_samples = Some(reference.samples);
     }
     Ok(Measured { point, picture, error_map })
+}
+
+/// Runs an experiment and keeps the times of its last frames; only what the picture needs is computed.
+///
+/// # Errors
+/// Everything that can be wrong with the experiment; the device was lost.
+pub fn timed(
+    lab: &Lab,
+    loaded: &Loaded,
+    experiment: &Experiment,
+    scene: &Arc<Scene>,
+    frames: Frames,
+    seed: Option<&Seed>,
+) -> Result<(Session, Vec<FrameTimes>), LabError> {
+    let graph = &loaded.graph;
+    let wanted = graph.output.clone().or_else(|| graph.hdr.clone()).into_iter().collect();
+    let mut session = lab.build(experiment, loaded, scene.clone(), wanted, seed)?;
+    let mut times = Vec::new();
+    for _ in 0..frames.warmup + frames.count {
+        times.extend(session.frame(0.0)?);
+    }
+    times.extend(session.finish()?);
+    let times = times.split_off(times.len().saturating_sub(frames.count));
+    Ok((session, times))
 }
 
 /// The parts of an experiment's light, by the graph's names for them.

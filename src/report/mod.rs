@@ -6,7 +6,7 @@ mod front;
 mod page;
 mod scatter;
 
-pub use bars::{Bar, bars};
+pub use bars::{Bar, COLORS, bars};
 pub use front::front;
 
 use crate::lab::LabError;

@@ -71,7 +71,7 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    fn one(name: &Loc<String>, at: At, text: String) -> Choice {
+    pub(super) fn one(name: &Loc<String>, at: At, text: String) -> Choice {
         let setting = Setting { name: Loc { value: name.value.clone(), at }, text };
         Choice { labels: vec![label(&setting)], settings: vec![setting] }
     }

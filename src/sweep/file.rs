@@ -4,7 +4,8 @@ use super::axis::{Axis, Choice, choices};
 use super::settings::Setting;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
-use crate::graph::source::{Diagnostic, Entries, Items, Loc, Severity, Sources};
+use crate::graph::source::{At, Diagnostic, Entries, Items, Loc, Severity, Sources};
+use crate::lab::LabError;
 use crate::measure::Frames;
 use serde::Deserialize;
 use std::path::Path;
@@ -139,6 +140,42 @@ impl Sweep {
         })
     }
 
+    /// A sweep without a file: every experiment with every combination of settings, each with its values as RON.
+    ///
+    /// # Errors
+    /// A setting without values; more than [`MAX_POINTS`] combinations.
+    pub fn of(
+        mut experiments: Vec<Experiment>,
+        axes: &[(String, Vec<String>)],
+        frames: Frames,
+    ) -> Result<Sweep, LabError> {
+        // Messages about values point at the line of their setting.
+        let lines: Vec<String> = axes.iter().map(|(name, values)| format!("{name}={}", values.join(","))).collect();
+        let text = lines.join("\n");
+        for experiment in &mut experiments {
+            experiment.sources.add("--axis".as_ref(), text.clone());
+        }
+        let mut offset = 0;
+        let mut list = Vec::new();
+        for ((name, values), line) in axes.iter().zip(&lines) {
+            if values.is_empty() {
+                return Err(LabError::Request(format!("'{name}' has no values")));
+            }
+            let at = At { file: 0, offset };
+            let name = Loc { value: name.clone(), at };
+            list.push(values.iter().map(|v| Choice::one(&name, at, v.clone())).collect::<Vec<_>>());
+            offset += u32::try_from(line.len() + 1).unwrap_or(0);
+        }
+        let points = list.iter().fold(experiments.len(), |n, l| n.saturating_mul(l.len()));
+        if points > MAX_POINTS {
+            return Err(LabError::Request(format!("{points} combinations are more than the {MAX_POINTS} allowed")));
+        }
+        let names = axes.iter().map(|a| a.0.clone());
+        let names = (experiments.len() > 1).then(|| "experiment".to_string()).into_iter().chain(names).collect();
+        let name = experiments.first().map_or(String::new(), |e| e.name.clone());
+        Ok(Sweep { name, text, experiments, names, frames, fixed: Vec::new(), axes: list, folder: ".".into() })
+    }
+
     /// How many combinations there are.
     pub fn len(&self) -> usize {
         self.axes.iter().map(Vec::len).product::<usize>() * self.experiments.len()
@@ -171,7 +208,7 @@ impl Sweep {
         let mut errors = Vec::new();
         for setting in self.fixed.iter().chain(chosen.iter().flat_map(|c| &c.settings)) {
             if let Err(message) = setting.apply(&mut experiment, file, &self.folder) {
-                let at = crate::graph::source::At { file, offset: setting.name.at.offset };
+                let at = At { file, offset: setting.name.at.offset };
                 errors.push(experiment.sources.error(at, message));
             }
         }
