@@ -7,7 +7,7 @@
 #include "params.glsl"
 #include "direct.glsl"
 #include "hit.glsl"
-#include "frame.glsl"
+#include "ggx.glsl"
 #include "random.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -25,48 +25,6 @@ float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
     vec3 from = offsetPoint(p, face);
     float end = light.kind == LIGHT_DIRECTIONAL ? 1e30 : distance(light.position, from) * 0.9999;
     return blocked(Ray(from, to_light, end)) ? 0.0 : 1.0;
-}
-
-// A direction, and BRDF * cosine / density; the direction is of no use where that is 0.
-struct Bounce {
-    vec3 direction;
-    vec3 weight;
-};
-
-Bounce diffuseBounce(SurfaceHit h, vec2 u) {
-    float r = sqrt(u.x), angle = 2.0 * PI * u.y;
-    vec3 l = frameOf(h.surface.normal) * vec3(r * cos(angle), r * sin(angle), sqrt(max(1.0 - u.x, 0.0)));
-    return Bounce(l, dot(l, h.face) > 0.0 ? h.surface.albedo : vec3(0.0));
-}
-
-// Heitz 2018, "Sampling the GGX Distribution of Visible Normals".
-Bounce specularBounce(SurfaceHit h, vec2 u) {
-    Surface s = h.surface;
-    mat3 frame = frameOf(s.normal);
-    vec3 v = h.view * frame;
-    v = normalize(vec3(v.xy, max(v.z, 1e-4))); // mapped normals may face away
-    float alpha = ggxAlpha(s.roughness);
-    vec3 stretched = normalize(vec3(alpha * v.xy, v.z));
-    float side2 = dot(stretched.xy, stretched.xy);
-    vec3 x = side2 > 0.0 ? vec3(-stretched.y, stretched.x, 0.0) * inversesqrt(side2) : vec3(1, 0, 0);
-    vec3 y = cross(stretched, x);
-    float r = sqrt(u.x), angle = 2.0 * PI * u.y;
-    vec2 t = r * vec2(cos(angle), sin(angle));
-    float blend = 0.5 * (1.0 + stretched.z);
-    t.y = mix(sqrt(max(1.0 - t.x * t.x, 0.0)), t.y, blend);
-    vec3 n = t.x * x + t.y * y + sqrt(max(1.0 - dot(t, t), 0.0)) * stretched;
-    vec3 half_way = normalize(vec3(alpha * n.xy, max(n.z, 0.0)));
-    vec3 local = reflect(-v, half_way);
-    vec3 l = frame * local;
-    if (local.z <= 0.0 || dot(l, h.face) <= 0.0) return Bounce(l, vec3(0.0));
-    float a2 = alpha * alpha;
-    float g1 = 2.0 * v.z / (v.z + sqrt(a2 + (1.0 - a2) * v.z * v.z));
-    if (SHADING_MODEL == SHADING_MODEL_BLINN_PHONG) {
-        float density = g1 * distribution(half_way.z, s.roughness) / (4.0 * v.z);
-        return Bounce(l, specularBrdf(s, frame * v, l) * local.z / max(density, 1e-20));
-    }
-    // D is in the BRDF and in the density, g1 D / (4 n.v), and cancels.
-    return Bounce(l, fresnel(s.f0, dot(v, half_way)) * visibility(local.z, v.z, s.roughness) * 4.0 * local.z * v.z / g1);
 }
 
 float luminance(vec3 c) {
@@ -90,12 +48,12 @@ vec3 incoming(vec3 p, vec3 d, inout Random random, out bool escaped) {
         vec4 u = next4(random);
         float shine = luminance(fresnel(h.surface.f0, max(dot(h.surface.normal, h.view), 0.0)));
         float chance = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
-        Bounce next;
+        LobeSample next;
         if (u.z < chance) {
-            next = specularBounce(h, u.xy);
+            next = specularSample(h.surface, h.face, h.view, u.xy);
             next.weight /= chance;
         } else {
-            next = diffuseBounce(h, u.xy);
+            next = diffuseSample(h.surface, h.face, u.xy);
             next.weight /= 1.0 - chance;
         }
         weight *= next.weight;
@@ -138,7 +96,7 @@ void main() {
         vec3 p = offsetPoint(h.position, h.face);
         direct = directLight(h.surface, h.position, h.face, h.view);
         vec4 v = next4(random);
-        Bounce one = diffuseBounce(h, v.xy), two = specularBounce(h, v.zw);
+        LobeSample one = diffuseSample(h.surface, h.face, v.xy), two = specularSample(h.surface, h.face, h.view, v.zw);
         // Numbers of its own: a path does not depend on how long the other one is.
         Random other = Random(uvec4(random.key.xy, 1u << 16, random.key.w));
         bool sky = false, unused;

@@ -20,19 +20,22 @@ mod adapt;
 mod bench;
 mod capture;
 mod check;
+mod compare;
 mod graph;
+mod reference;
 mod render;
 mod replay;
 mod report;
 mod save;
 mod screenshot;
+mod split;
 mod sweep;
 mod view;
 
 use crate::lab::{Lab, LabError};
 use crate::vulkan::{GpuOptions, list_devices};
 use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A research workbench for voxel cone tracing.
 #[derive(Debug, Parser)]
@@ -60,8 +63,14 @@ enum Command {
     Sweep(sweep::SweepArgs),
     /// Make a page, charts and a table of sweeps: error against time.
     Report(report::ReportArgs),
+    /// Compare pictures or experiments with a reference: table, JSON, maps of the error.
+    Compare(compare::CompareArgs),
     /// Save an experiment under a new name: what differs from the graph's defaults, and no more.
     Save(save::SaveArgs),
+    /// Gather ground truth for an experiment by path tracing, into captures/reference.
+    Reference(reference::ReferenceArgs),
+    /// Split an experiment's error into what voxels, cones and filtering each add.
+    Split(split::SplitArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
     Graph(graph::GraphArgs),
     /// Print a scene's counts, bounds, materials and missing files, or write it to another format.
@@ -115,7 +124,10 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Sweep(args) => sweep::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Compare(args) => compare::run(&args),
         Command::Save(args) => save::run(&args),
+        Command::Reference(args) => reference::run(&args),
+        Command::Split(args) => split::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Scene(args) => scene(&args),
@@ -146,6 +158,37 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
 fn shown(path: &std::path::Path) -> PathBuf {
     let here = std::env::current_dir().ok();
     here.and_then(|h| path.strip_prefix(h).ok()).unwrap_or(path).to_path_buf()
+}
+
+/// The ending, after checking that the folder can be written to before any work is done.
+fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
+    let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
+    if !endings.contains(&ending.as_str()) {
+        let message = format!("'{}': give it a name that ends in .{}", path.display(), endings.join(" or ."));
+        return Err(LabError::Request(message));
+    }
+    let folder = match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    };
+    if path.is_dir() {
+        return Err(LabError::Request(format!("cannot write '{}': it is a folder", path.display())));
+    }
+    if folder.is_file() {
+        return Err(LabError::Request(format!(
+            "cannot write '{}': '{}' is no folder",
+            path.display(),
+            folder.display()
+        )));
+    }
+    let try_folder = || {
+        std::fs::create_dir_all(folder)?;
+        tempfile::Builder::new().prefix(".conelab-").tempfile_in(folder)
+    };
+    match try_folder() {
+        Ok(_) => Ok(ending),
+        Err(e) => Err(LabError::Request(format!("cannot write '{}': {e}", path.display()))),
+    }
 }
 
 /// Every message of the validation layer is an error.

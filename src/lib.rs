@@ -6,6 +6,7 @@ pub mod bench;
 pub mod camera_path;
 pub mod capture;
 pub mod commands;
+pub mod comparison;
 pub mod experiment;
 pub mod files;
 pub mod graph;

@@ -1,6 +1,10 @@
 //! Results as files: PNG for what is display-encoded, EXR for what is linear.
 
+use crate::experiment::MAX_SIZE;
 use crate::lab::{LabError, Texels};
+use crate::metrics::colour::srgb_to_linear;
+use crate::metrics::{Kind, Linear, MAX_PIXELS};
+use crate::vulkan::Format;
 use crate::vulkan::format::Channels;
 use exr::prelude::{
     AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer, LayerAttributes, WritableImage,
@@ -12,6 +16,9 @@ use std::path::Path;
 /// Texels as floats, four a texel, missing channels 0 and missing alpha 1. Slices of volumes follow one another downwards.
 pub fn to_floats(texels: &Texels) -> Vec<[f32; 4]> {
     let f = texels.format;
+    if f.name == "rgba32f" {
+        return bytemuck::pod_collect_to_vec(&texels.bytes);
+    }
     let bytes = f.bytes as usize;
     texels.bytes.chunks_exact(bytes).map(|t| decode(f.name, f.channels, f.count, t)).collect()
 }
@@ -104,6 +111,27 @@ pub fn png(texels: &Texels) -> Result<Vec<u8>, LabError> {
     Ok(out.into_inner())
 }
 
+/// Writes a linear picture as an EXR (32-bit floats).
+///
+/// # Errors
+/// Another ending than .exr, a folder that cannot be written to.
+pub fn write_linear(path: &Path, picture: &Linear) -> Result<(), LabError> {
+    let texels: Vec<[f32; 4]> = picture.rgb.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
+    let format = Format::named("rgba32f").ok_or_else(|| LabError::Request("no format rgba32f".into()))?;
+    let extent = [picture.size.0, picture.size.1, 1];
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+        return Err(LabError::Request(format!("'{}': give it a name that ends in .exr", path.display())));
+    }
+    write(path, &Texels { extent, format, bytes: bytemuck::cast_slice(&texels).to_vec() })
+}
+
+/// Texels as linear RGB; a texture of one channel is grey.
+pub fn to_linear(texels: &Texels) -> Linear {
+    let grey = texels.format.count == 1;
+    let rgb = to_floats(texels).iter().map(|t| if grey { [t[0]; 3] } else { [t[0], t[1], t[2]] }).collect();
+    Linear { size: file_size(texels), rgb }
+}
+
 /// Texels as an EXR file (32-bit floats).
 ///
 /// # Errors
@@ -140,20 +168,62 @@ pub fn read(path: &Path, size: (u32, u32)) -> Result<Vec<f32>, String> {
         let image = open().map_err(|e| e.to_string())?.decode().map_err(|e| e.to_string())?;
         return Ok(image.to_rgb8().as_raw().iter().map(|v| f32::from(*v)).collect());
     }
-    // The header first: its size decides how much memory is taken.
-    let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|e| e.to_string())?;
-    let layer = meta.headers.first().map_or(exr::math::Vec2(0, 0), |h| h.layer_size);
-    if (layer.width(), layer.height()) != (size.0 as usize, size.1 as usize) {
-        return Err(other(layer.width(), layer.height()));
+    let layer = exr_size(path)?;
+    if layer != (size.0 as usize, size.1 as usize) {
+        return Err(other(layer.0, layer.1));
     }
+    Ok(read_exr(path)?.into_flattened())
+}
+
+/// Width and height of an EXR, from its header alone: they decide how much memory is taken.
+fn exr_size(path: &Path) -> Result<(usize, usize), String> {
+    let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|e| e.to_string())?;
+    Ok(meta.headers.first().map_or((0, 0), |h| (h.layer_size.width(), h.layer_size.height())))
+}
+
+fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {
     let image = read_first_rgba_layer_from_file(
         path,
-        |size, _| (size.width(), vec![0.0f32; size.area() * 4]),
-        |(width, texels): &mut (usize, Vec<f32>), at, (r, g, b, a): (f32, f32, f32, f32)| {
-            let start = (at.y() * *width + at.x()) * 4;
-            texels[start..start + 4].copy_from_slice(&[r, g, b, a]);
+        |size, _| (size.width(), vec![[0.0f32; 4]; size.area()]),
+        |(width, texels): &mut (usize, Vec<[f32; 4]>), at, (r, g, b, a): (f32, f32, f32, f32)| {
+            texels[at.y() * *width + at.x()] = [r, g, b, a];
         },
     )
     .map_err(|e| e.to_string())?;
     Ok(image.layer_data.channel_data.pixels.1)
+}
+
+/// Reads a picture of at most [`MAX_PIXELS`] as linear RGB: radiance from an EXR or HDR, decoded sRGB from a PNG.
+///
+/// # Errors
+/// Another ending, no such file, too large, damaged.
+pub fn read_linear(path: &Path) -> Result<(Linear, Kind), LabError> {
+    let failed = |why: String| LabError::Request(format!("cannot read '{}': {why}", path.display()));
+    let fits = |w: usize, h: usize| match w.saturating_mul(h) as u64 {
+        1..=MAX_PIXELS if w <= MAX_SIZE as usize && h <= MAX_SIZE as usize => Ok((w as u32, h as u32)),
+        _ => Err(failed(format!("its size is {w}x{h}; at most {MAX_SIZE} a side and {MAX_PIXELS} pixels can be read"))),
+    };
+    let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
+    if ending == "exr" {
+        let (w, h) = exr_size(path).map_err(failed)?;
+        let size = fits(w, h)?;
+        let rgb = read_exr(path).map_err(failed)?.iter().map(|t| [t[0], t[1], t[2]]).collect();
+        return Ok((Linear { size, rgb }, Kind::Radiance));
+    }
+    if ending != "png" && ending != "hdr" {
+        return Err(failed("a picture ends in .exr, .hdr or .png".into()));
+    }
+    let open = || image::ImageReader::open(path)?.with_guessed_format();
+    let (w, h) = open().map_err(|e| failed(e.to_string()))?.into_dimensions().map_err(|e| failed(e.to_string()))?;
+    let size = fits(w as usize, h as usize)?;
+    let mut reader = open().map_err(|e| failed(e.to_string()))?;
+    // The size has been checked; the reader's own limit would refuse large floats.
+    reader.no_limits();
+    let mut rgb: Vec<[f32; 3]> =
+        reader.decode().map_err(|e| failed(e.to_string()))?.to_rgb32f().pixels().map(|p| p.0).collect();
+    if ending == "hdr" {
+        return Ok((Linear { size, rgb }, Kind::Radiance));
+    }
+    rgb.iter_mut().for_each(|c| *c = c.map(srgb_to_linear));
+    Ok((Linear { size, rgb }, Kind::Displayed))
 }

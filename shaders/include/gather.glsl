@@ -8,6 +8,8 @@
 #include "brdf.glsl"
 #include "cone.glsl"
 #include "cone_sets.glsl"
+#include "exact.glsl"
+#include "ggx.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -48,9 +50,39 @@ vec3 coneRadiance(vec4 cone) {
     return params.multiply_occlusion == MULTIPLY_OCCLUSION_NONE ? l : l * (1.0 - cone.a);
 }
 
+vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number) {
+    return TRACE == TRACE_CONES ? traceCone(o, d, tan_half, steps) : traceExactCone(o, d, tan_half, number);
+}
+
+// Without cones: rays over the whole hemisphere, as dense as the cosine.
+vec4 diffuseRays(ConeOrigin o, vec3 n, vec3 face) {
+    mat3 frame = frameOf(n);
+    vec2 shift = exactShift(1u);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < params.exact_rays; i++) {
+        vec3 d = frame * cosineSample(exactPoint(i, shift));
+        if (dot(d, face) <= 0.0) continue;
+        vec4 ray = traceVoxels(o.position, d);
+        sum += vec4(coneRadiance(ray), 1.0 - ray.a);
+    }
+    return sum / float(params.exact_rays);
+}
+
+// Without a cone: rays as dense as the visible normals of the lobe.
+vec3 specularRays(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    vec2 shift = exactShift(0u);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < params.exact_rays; i++) {
+        LobeSample l = specularSample(s, face, v, exactPoint(i, shift));
+        if (l.weight != vec3(0.0)) sum += l.weight * coneRadiance(traceVoxels(o.position, l.direction));
+    }
+    return sum / float(params.exact_rays);
+}
+
 // rgb: mean radiance over the hemisphere, cosine-weighted; a: how open it is.
 vec4 diffuseCone(ConeOrigin o, Surface s, vec3 face) {
     vec3 n = params.cone_normal == CONE_NORMAL_MAPPED ? s.normal : face;
+    if (TRACE == TRACE_LOBE_RAYS) return diffuseRays(o, n, face);
     ConeSet set = diffuseCones();
     mat3 frame = frameOf(n);
     float turn = 0.0;
@@ -64,7 +96,7 @@ vec4 diffuseCone(ConeOrigin o, Surface s, vec3 face) {
 #ifdef CONE_RECORD
         recordCone(uint(i) + 1u);
 #endif
-        vec4 cone = traceCone(o, d, set.tan_half, params.diffuse_steps);
+        vec4 cone = traceAny(o, d, set.tan_half, params.diffuse_steps, uint(i) + 1u);
         sum += weight * vec4(coneRadiance(cone), 1.0 - cone.a);
     }
     return sum;
@@ -72,6 +104,7 @@ vec4 diffuseCone(ConeOrigin o, Surface s, vec3 face) {
 
 // Radiance from the mirror direction.
 vec3 specularCone(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    if (TRACE == TRACE_LOBE_RAYS) return specularRays(o, s, face, v);
     vec3 d = reflect(-v, s.normal);
     d = normalize(d + face * max(0.02 - dot(d, face), 0.0)); // mapped normals may reflect into the surface
     // Half of a GGX lobe lies within 2 atan(alpha) of the mirror direction; the thesis takes 0.1 pi roughness
@@ -81,7 +114,7 @@ vec3 specularCone(ConeOrigin o, Surface s, vec3 face, vec3 v) {
 #ifdef CONE_RECORD
     recordCone(0u);
 #endif
-    vec3 l = coneRadiance(traceCone(o, d, tan(half_angle), params.specular_steps));
+    vec3 l = coneRadiance(traceAny(o, d, tan(half_angle), params.specular_steps, 0u));
     if (params.specular_weight == SPECULAR_WEIGHT_PLAIN) return l; // as the thesis adds it
     return l * environmentBrdf(s.f0, s.roughness, max(dot(s.normal, v), 0.0));
 }

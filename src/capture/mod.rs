@@ -2,6 +2,7 @@
 
 mod list;
 mod manifest;
+mod parts;
 mod replay;
 mod scene_hash;
 mod take;
@@ -9,6 +10,7 @@ mod take;
 pub use list::{Summary, list, sweep_partials};
 pub(crate) use manifest::hex;
 pub use manifest::{Image, Manifest, SCHEMA, SceneRecord};
+pub use parts::parts;
 pub use replay::{Difference, Replay, changes, replay};
 pub use scene_hash::scene_hash;
 pub use take::{Resource, What, free_name, take};

@@ -5,13 +5,20 @@ use crate::graph::source::{At, Loc};
 use crate::lab::LabError;
 use crate::scene::Scene;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// An experiment, and what is different this time.
 #[derive(Debug, Args)]
 pub struct ExperimentArgs {
     /// Experiment file, for example configs/default.ron.
     experiment: PathBuf,
+    #[command(flatten)]
+    changes: Changes,
+}
+
+/// What the command line changes of an experiment.
+#[derive(Clone, Debug, Args)]
+pub struct Changes {
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long)]
     scene: Option<String>,
@@ -23,7 +30,7 @@ pub struct ExperimentArgs {
     size: Option<String>,
     /// Set a parameter; may be given many times.
     #[arg(long, value_name = "NAME=VALUE")]
-    set: Vec<String>,
+    pub set: Vec<String>,
     /// Time of the first frame, s.
     #[arg(long)]
     time: Option<f64>,
@@ -32,7 +39,14 @@ pub struct ExperimentArgs {
 impl ExperimentArgs {
     /// The experiment with the command line's changes.
     pub fn read(&self) -> Result<Experiment, LabError> {
-        let mut experiment = Experiment::read(&self.experiment).map_err(LabError::Input)?;
+        self.changes.read(&self.experiment)
+    }
+}
+
+impl Changes {
+    /// The experiment of a file, changed.
+    pub fn read(&self, file: &Path) -> Result<Experiment, LabError> {
+        let mut experiment = Experiment::read(file).map_err(LabError::Input)?;
         if let Some(scene) = &self.scene {
             experiment.scene.clone_from(scene);
         }
@@ -58,6 +72,12 @@ impl ExperimentArgs {
         }
         Ok(experiment)
     }
+}
+
+/// Sets a parameter, over whatever the experiment says of it. For values that have been checked.
+pub fn push_setting(experiment: &mut Experiment, name: &str, value: &str) {
+    let file = experiment.sources.add("--set".as_ref(), format!("{name}={value}"));
+    experiment.params.push((Loc { value: name.into(), at: At { file, offset: 0 } }, value.into()));
 }
 
 /// The experiment's scene, lit as the experiment says.

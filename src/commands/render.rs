@@ -1,7 +1,7 @@
 //! `conelab render`.
 
-use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs, parse_resource};
+use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
 use crate::graph::load::Graph;
 use crate::graph::run::FrameTimes;
@@ -140,37 +140,6 @@ fn without_frames(folder: &Path) -> Result<(), LabError> {
         }
     }
     Ok(())
-}
-
-/// The ending, after checking that the folder can be written to before any work is done.
-fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
-    let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
-    if !endings.contains(&ending.as_str()) {
-        let message = format!("'{}': give it a name that ends in .{}", path.display(), endings.join(" or ."));
-        return Err(LabError::Request(message));
-    }
-    let folder = match path.parent() {
-        Some(p) if !p.as_os_str().is_empty() => p,
-        _ => Path::new("."),
-    };
-    if path.is_dir() {
-        return Err(LabError::Request(format!("cannot write '{}': it is a folder", path.display())));
-    }
-    if folder.is_file() {
-        return Err(LabError::Request(format!(
-            "cannot write '{}': '{}' is no folder",
-            path.display(),
-            folder.display()
-        )));
-    }
-    let try_folder = || {
-        std::fs::create_dir_all(folder)?;
-        tempfile::Builder::new().prefix(".conelab-").tempfile_in(folder)
-    };
-    match try_folder() {
-        Ok(_) => Ok(ending),
-        Err(e) => Err(LabError::Request(format!("cannot write '{}': {e}", path.display()))),
-    }
 }
 
 fn result_name(graph: &Graph, exr: bool) -> Result<String, LabError> {

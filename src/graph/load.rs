@@ -57,6 +57,8 @@ pub struct Graph {
     pub compare: Vec<Loc<CompareDecl>>,
     /// Settings that show something worth looking into.
     pub views: Vec<Loc<ViewDecl>>,
+    /// Settings from the ideal to the method as it is set: what each step adds is a part of its error.
+    pub ladder: Vec<Loc<ViewDecl>>,
     /// The files it came from.
     pub sources: Sources,
 }
@@ -106,6 +108,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         tables: Vec::new(),
         compare: Vec::new(),
         views: Vec::new(),
+        ladder: Vec::new(),
         sources,
     };
     let mut wanted = Vec::new();
@@ -122,6 +125,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         checks.extend(file.checks.0);
         graph.compare.extend(file.compare.0);
         graph.views.extend(file.views.0);
+        graph.ladder.extend(file.ladder.0);
         pointer = file.pointer.or(pointer);
         tables.extend(file.tables.0);
         for (slot, name) in [(&mut graph.output, file.output), (&mut graph.hdr, file.hdr)] {
@@ -150,7 +154,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     for compare in &graph.compare {
         check.values(compare.value.a.0.iter().chain(&compare.value.b.0));
     }
-    for view in &graph.views {
+    for view in graph.views.iter().chain(&graph.ladder) {
         check.values(view.value.set.0.iter());
     }
     for item in &checks {

@@ -2,9 +2,11 @@
 
 mod bvh;
 mod materials;
+mod parts;
 mod scene;
 mod view;
 
+pub use parts::parts_of;
 pub use scene::SceneGpu;
 pub use view::Viewpoint;
 

@@ -3,6 +3,8 @@
 pub mod colour;
 pub mod flip;
 pub mod hdr_flip;
+pub mod maps;
+pub mod region;
 mod sums;
 
 use hdr_flip::{Exposures, exposures, hdr_flip};
@@ -26,6 +28,23 @@ pub struct Linear {
     pub size: (u32, u32),
     /// Radiance, or whatever a part holds; rows from the top, `width * height` texels.
     pub rgb: Vec<[f32; 3]>,
+}
+
+impl Linear {
+    /// Mean over pixels and channels.
+    pub fn mean(&self) -> f64 {
+        self.rgb.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / (3 * self.rgb.len().max(1)) as f64
+    }
+}
+
+/// mean (x - r)^2 / (r^2 + .01) alone, for who needs no more.
+///
+/// # Errors
+/// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
+pub fn relmse(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
+    check(test, reference)?;
+    let pairs = test.rgb.iter().flatten().zip(reference.rgb.iter().flatten());
+    Ok(pairs.map(|(x, r)| sums::relative_square(*x, *r)).sum::<f64>() / (3 * test.rgb.len()) as f64)
 }
 
 /// What a picture's numbers are, which says how FLIP shows it to its observer.

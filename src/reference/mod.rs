@@ -1,19 +1,60 @@
-//! Stand-in until the reference is merged.
-#![allow(missing_docs)]
+//! Ground truth for an experiment: the pictures of `passes/reference.ron`, gathered sample by sample, kept under the
+//! content of what they depend on.
+
+mod gather;
+mod key;
+mod store;
+
+pub use gather::{Gathered, Goal, gather};
+pub use key::{GRAPH, experiment_for};
+
 use crate::experiment::Experiment;
 use crate::lab::{Home, LabError};
 use crate::metrics::Linear;
 use crate::scene::Scene;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A reference picture with its parts.
+#[derive(Clone, Debug)]
 pub struct Reference {
+    /// Width and height, pixels.
     pub size: (u32, u32),
+    /// Samples of every pixel.
     pub samples: u64,
+    /// Parts of the graph by name: total, direct, diffuse, specular, occlusion.
     pub parts: BTreeMap<String, ReferencePart>,
+    /// Where it is kept.
+    pub folder: PathBuf,
 }
+
+/// A part of a reference.
+#[derive(Clone, Debug)]
 pub struct ReferencePart {
+    /// Mean of all samples.
     pub mean: Linear,
+    /// Noise floor: relMSE of the mean of the even samples against that of the odd ones. The mean of all is four
+    /// times better.
     pub noise: f64,
 }
-pub fn find(_: &Home, _: &Experiment, _: &Scene, _: u32) -> Result<Option<Reference>, LabError> {
-    Ok(None)
+
+/// The reference of an experiment for so many bounces, if it has been gathered. `scene` is lit as the experiment says.
+///
+/// # Errors
+/// A camera or a graph that cannot be read; a file that cannot be.
+pub fn find(
+    home: &Home,
+    experiment: &Experiment,
+    scene: &Arc<Scene>,
+    bounces: u32,
+) -> Result<Option<Reference>, LabError> {
+    let traced = experiment_for(home, experiment, bounces)?;
+    let loaded = home.load(&traced.graph).map_err(LabError::Input)?;
+    let key = key::key(&traced, &loaded, scene)?;
+    let folder = home.root.join("captures/reference").join(&key);
+    match store::read(&folder, traced.size, &loaded.graph)? {
+        Some(sums) => Ok(Some(sums.reference(&folder)?)),
+        None => Ok(None),
+    }
 }

@@ -1,0 +1,129 @@
+//! `conelab compare`.
+
+mod sides;
+
+use super::adapt::Changes;
+use super::{DeviceArgs, writable};
+use crate::comparison::{Request, Side, compare, table};
+use crate::lab::LabError;
+use crate::metrics::MetricError;
+use crate::metrics::maps::MapFile;
+use crate::metrics::region::Region;
+use crate::picture;
+use clap::Args;
+use sides::Sources;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// A picture (.exr, .hdr, .png), an experiment (.ron), which is rendered, or the folder of a capture.
+    a: PathBuf,
+    /// Another; the reference of A when there is no other reference.
+    b: Option<PathBuf>,
+    /// What both are compared with: a picture, an experiment, a capture, `auto` for the cached reference of A where A is an
+    /// experiment and has one, or `none`.
+    #[arg(long, default_value = "auto")]
+    reference: PathBuf,
+    /// Bounces of the cached reference; the method gathers one.
+    #[arg(long, default_value_t = 1)]
+    bounces: u32,
+    /// Compare only this part (total, direct, diffuse, specular, occlusion); may be given many times.
+    #[arg(long)]
+    part: Vec<String>,
+    /// Score the light pixels of this picture apart; may be given many times.
+    #[arg(long, value_name = "NAME=FILE")]
+    mask: Vec<String>,
+    /// Frames of an experiment to run; the last is compared.
+    #[arg(long, default_value_t = 1)]
+    frames: usize,
+    /// Write everything to this JSON file.
+    #[arg(long)]
+    json: Option<PathBuf>,
+    /// Write maps of the error to this folder, PNG and EXR.
+    #[arg(long, value_name = "FOLDER")]
+    maps: Option<PathBuf>,
+    #[command(flatten)]
+    changes: Changes,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Compares.
+pub fn run(args: &CompareArgs) -> Result<(), LabError> {
+    super::adapt::check_frames(args.frames, 0, 0.0)?;
+    if let Some(json) = &args.json {
+        writable(json, &["json"])?;
+    }
+    let masks = args.mask.iter().map(|m| mask(m)).collect::<Result<Vec<_>, _>>()?;
+    let mut sources = Sources::new(&args.changes, &args.device, args.frames);
+    let a = sources.side(&args.a, true)?;
+    let b = args.b.as_ref().map(|b| sources.side(b, true)).transpose()?;
+    let given = match args.reference.to_str() {
+        // Beside a picture from elsewhere, an experiment is what it is compared with.
+        Some("auto") if args.a.extension().is_some_and(|e| e == "ron") => sources.cached(args.bounces)?,
+        Some("auto") => None,
+        Some("none") => None,
+        _ => Some(sources.side(&args.reference, false)?),
+    };
+    let (pictures, reference) = roles(a, b, given)?;
+    let mut written = Vec::new();
+    let mut keep = |i: usize, part: &str, files: Vec<MapFile>| match &args.maps {
+        Some(folder) => write_maps(folder, i, part, files, &mut written),
+        None => Ok(()),
+    };
+    let request =
+        Request { parts: &args.part, masks: &masks, maps: args.maps.is_some().then_some(&mut keep as &mut _) };
+    let comparison = compare(&pictures, &reference, request)?;
+    say_part!("{}", table(&comparison));
+    for line in &written {
+        say!("{line}");
+    }
+    if let Some(path) = &args.json {
+        let text = serde_json::to_string_pretty(&comparison).map_err(|e| LabError::Request(e.to_string()))?;
+        crate::files::write_whole(path, text.as_bytes())
+            .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
+        say!("wrote {}", path.display());
+    }
+    sources.validated()
+}
+
+/// Who is compared with whom; without a reference, A is compared with B.
+fn roles(a: Side, b: Option<Side>, reference: Option<Side>) -> Result<(Vec<Side>, Side), LabError> {
+    match (b, reference) {
+        (b, Some(reference)) => Ok((std::iter::once(a).chain(b).collect(), reference)),
+        (Some(mut b), None) => {
+            b.name.push_str(" (B: there is no other reference)");
+            Ok((vec![a], b))
+        }
+        (None, None) => Err(LabError::Request(
+            "there is nothing to compare with: give a second picture or --reference; `conelab reference` makes one"
+                .into(),
+        )),
+    }
+}
+
+/// A region painted in a file, `NAME=FILE`.
+fn mask(text: &str) -> Result<Region, LabError> {
+    let Some((name, file)) = text.split_once('=').filter(|(name, _)| !name.is_empty()) else {
+        return Err(LabError::Request(format!("--mask {text}: expected NAME=FILE")));
+    };
+    Ok(Region::painted(name, &picture::read_linear(Path::new(file))?.0))
+}
+
+fn write_maps(
+    folder: &Path,
+    picture: usize,
+    part: &str,
+    files: Vec<MapFile>,
+    written: &mut Vec<String>,
+) -> Result<(), MetricError> {
+    let letter = if picture == 0 { "a" } else { "b" };
+    for file in files {
+        let path = folder.join(format!("{letter}-{part}-{}", file.name));
+        crate::files::write_whole(&path, &file.bytes)
+            .map_err(|e| MetricError(format!("cannot write '{}': {e}", path.display())))?;
+        written.push(format!("wrote {} ({})", path.display(), file.scale));
+    }
+    Ok(())
+}

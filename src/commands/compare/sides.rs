@@ -1,0 +1,114 @@
+//! Pictures from files, experiments and captures.
+
+use super::super::{DeviceArgs, open_scene, shown, validated};
+use crate::capture::{self, Manifest};
+use crate::commands::adapt::Changes;
+use crate::comparison::Side;
+use crate::experiment::Experiment;
+use crate::lab::{Home, Lab, LabError, parts_of};
+use crate::scene::Scene;
+use crate::{picture, reference};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What pictures are made from; the device is opened for the first experiment.
+pub(super) struct Sources<'a> {
+    changes: &'a Changes,
+    device: &'a DeviceArgs,
+    frames: usize,
+    lab: Option<Lab>,
+    scenes: BTreeMap<String, Arc<Scene>>,
+    /// The experiments that were rendered, with their scenes.
+    rendered: Vec<(Experiment, Arc<Scene>)>,
+}
+
+impl<'a> Sources<'a> {
+    pub(super) fn new(changes: &'a Changes, device: &'a DeviceArgs, frames: usize) -> Sources<'a> {
+        Sources { changes, device, frames, lab: None, scenes: BTreeMap::new(), rendered: Vec::new() }
+    }
+
+    /// A picture by its path. `set` says whether `--set` is for it: a reference has other parameters.
+    pub(super) fn side(&mut self, path: &Path, set: bool) -> Result<Side, LabError> {
+        let name = shown(path).display().to_string();
+        if path.is_dir() {
+            let parts = capture::parts(path, &Manifest::read(path)?)?;
+            return Ok(Side { name, kind: Default::default(), parts, noise: BTreeMap::new() });
+        }
+        if path.extension().is_some_and(|e| e == "ron") {
+            let parts = self.render(path, set)?;
+            return Ok(Side { name, kind: Default::default(), parts, noise: BTreeMap::new() });
+        }
+        let (linear, kind) = picture::read_linear(path)?;
+        Ok(Side { name, kind, parts: BTreeMap::from([("total".into(), linear)]), noise: BTreeMap::new() })
+    }
+
+    /// The cached reference of the first experiment, if there are both.
+    pub(super) fn cached(&self, bounces: u32) -> Result<Option<Side>, LabError> {
+        let Some((experiment, scene)) = self.rendered.first() else { return Ok(None) };
+        if let Some((other, _)) = self.rendered.iter().find(|(other, _)| !same_view(experiment, other)) {
+            eprintln!(
+                "warning: '{}' and '{}' differ in scene, camera, time or light, and are compared all the same",
+                experiment.name, other.name
+            );
+        }
+        let found = reference::find(&Home::find()?, experiment, scene, bounces)?;
+        Ok(found.map(|r| Side {
+            name: format!("path traced, {} samples a pixel, bounces {bounces}", r.samples),
+            kind: Default::default(),
+            noise: r.parts.iter().map(|(part, p)| (part.clone(), p.noise)).collect(),
+            parts: r.parts.into_iter().map(|(part, p)| (part, p.mean)).collect(),
+        }))
+    }
+
+    /// Every message of the validation layer is an error.
+    pub(super) fn validated(&self) -> Result<(), LabError> {
+        self.lab.as_ref().map_or(Ok(()), validated)
+    }
+
+    fn render(&mut self, path: &Path, set: bool) -> Result<BTreeMap<String, crate::metrics::Linear>, LabError> {
+        let mut changes = self.changes.clone();
+        if !set {
+            changes.set.clear();
+        }
+        let experiment = changes.read(path)?;
+        let scene = match self.scenes.get(&experiment.scene) {
+            Some(scene) => scene.clone(),
+            None => Arc::new(open_scene(&experiment.scene)?),
+        };
+        self.scenes.insert(experiment.scene.clone(), scene.clone());
+        let scene = experiment.adapted(scene)?;
+        let lab = match &self.lab {
+            Some(lab) => lab.clone(),
+            None => Lab::open(Home::find()?, self.device.options())?,
+        };
+        self.lab = Some(lab.clone());
+        let (mut session, warnings) = lab.prepare(&experiment, scene.clone(), |graph| {
+            let parts = parts_of(graph);
+            if parts.is_empty() {
+                let message =
+                    format!("graph '{}' has neither `parts` nor `hdr`: there is nothing to compare", graph.name);
+                return Err(LabError::Request(message));
+            }
+            Ok(parts.into_iter().map(|p| p.1).collect())
+        })?;
+        for warning in warnings {
+            eprintln!("{warning}");
+        }
+        for _ in 0..self.frames {
+            session.frame(0.0)?;
+        }
+        session.finish()?;
+        for message in session.failed_checks()? {
+            eprintln!("warning: {}: {message}", path.display());
+        }
+        self.rendered.push((experiment, scene));
+        session.parts()
+    }
+}
+
+/// Whether two experiments look at the same: only then can one reference be for both.
+fn same_view(a: &Experiment, b: &Experiment) -> bool {
+    let lights = |e: &Experiment| e.lights.iter().map(|(name, l)| (name.value.clone(), *l)).collect::<Vec<_>>();
+    (&a.scene, &a.camera, a.time, a.sky) == (&b.scene, &b.camera, b.time, b.sky) && lights(a) == lights(b)
+}

@@ -1,0 +1,96 @@
+//! `conelab reference`.
+
+use super::DeviceArgs;
+use super::adapt::{self, ExperimentArgs};
+use crate::lab::{Home, Lab, LabError};
+use crate::reference::{Gathered, Goal, Reference, gather};
+use clap::Args;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Arguments of `reference`.
+#[derive(Debug, Args)]
+pub struct ReferenceArgs {
+    #[command(flatten)]
+    experiment: ExperimentArgs,
+    /// Samples of every pixel, in all; rounded up to a multiple of 32. 256 when neither this nor --until is given.
+    #[arg(long, value_name = "N", conflicts_with = "until")]
+    spp: Option<u64>,
+    /// Go on until the total's relMSE against the truth, estimated from two halves of the samples, is at most this.
+    #[arg(long, value_name = "RELMSE")]
+    until: Option<f64>,
+    /// Turns of a path behind the first surface; 1 is what voxel cones gather.
+    #[arg(long, default_value_t = 1)]
+    bounces: u32,
+    /// Write the mean of a part to this file too (.exr).
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    /// Part for --output: total, direct, diffuse, specular or occlusion.
+    #[arg(long, default_value = "total")]
+    part: String,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Samples when nothing is said.
+const DEFAULT_SAMPLES: u64 = 256;
+
+/// Gathers a reference.
+pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
+    let experiment = args.experiment.read()?;
+    let goal = match (args.spp, args.until) {
+        (_, Some(most)) if most > 0.0 && most.is_finite() => Goal::Noise(most),
+        (_, Some(_)) => return Err(LabError::Request("--until must be a number above 0".into())),
+        (Some(n), _) if (1..=1 << 24).contains(&n) => Goal::Samples(n),
+        (Some(_), _) => return Err(LabError::Request("--spp must be 1 to 16777216".into())),
+        (None, None) => Goal::Samples(DEFAULT_SAMPLES),
+    };
+    let home = Home::find()?;
+    let scene = Arc::new(adapt::open_scene(&experiment)?);
+    let lab = Lab::open(home, args.device.options())?;
+    let reference = with_bar(&lab, &experiment, &scene, args.bounces, goal)?;
+    say!("{} samples a pixel, {} bounces, {}x{}", reference.samples, args.bounces, reference.size.0, reference.size.1);
+    say!("{:<12}{:>14}{:>22}", "part", "mean", "relMSE of the halves");
+    for (name, part) in &reference.parts {
+        say!("{name:<12}{:>14.6}{:>22.3e}", part.mean.mean(), part.noise);
+    }
+    say!("kept in {}", super::shown(&reference.folder).display());
+    if let Some(path) = &args.output {
+        let part = reference.parts.get(&args.part).ok_or_else(|| {
+            let all: Vec<&str> = reference.parts.keys().map(String::as_str).collect();
+            LabError::Request(format!("no part '{}'; there are {}", args.part, all.join(", ")))
+        })?;
+        crate::picture::write_linear(path, &part.mean)?;
+        say!("wrote {}", path.display());
+    }
+    super::validated(&lab)
+}
+
+/// Gathers with a progress bar and the time left.
+pub fn with_bar(
+    lab: &Lab,
+    experiment: &crate::experiment::Experiment,
+    scene: &Arc<crate::scene::Scene>,
+    bounces: u32,
+    goal: Goal,
+) -> Result<Reference, LabError> {
+    let style = indicatif::ProgressStyle::with_template("{bar:30} {pos}/{len} samples, {msg}, {eta} left");
+    let bar =
+        indicatif::ProgressBar::new(1).with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()));
+    let mut first = true;
+    let result = gather(lab, experiment, scene, bounces, goal, &mut |now: Gathered| {
+        if first {
+            // What an earlier run gathered says nothing about this one's speed.
+            bar.set_position(now.samples);
+            bar.reset_eta();
+            first = false;
+        }
+        bar.set_length(now.goal);
+        bar.set_position(now.samples);
+        bar.set_message(format!("relMSE {:.2e}", now.noise));
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
+    result
+}

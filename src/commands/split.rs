@@ -1,0 +1,154 @@
+//! `conelab split`.
+
+use super::DeviceArgs;
+use super::adapt::{self, ExperimentArgs, push_setting};
+use crate::lab::{Home, Lab, LabError, parts_of};
+use crate::metrics::{Linear, relmse};
+use crate::reference::{Goal, Reference};
+use clap::Args;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Arguments of `split`.
+#[derive(Debug, Args)]
+pub struct SplitArgs {
+    #[command(flatten)]
+    experiment: ExperimentArgs,
+    /// Samples of every pixel of the reference, if more are needed than are there.
+    #[arg(long, default_value_t = 256)]
+    spp: u64,
+    /// Bounces of the reference.
+    #[arg(long, default_value_t = 1)]
+    bounces: u32,
+    /// Frames to run; methods that gather over time need more than one.
+    #[arg(long, default_value_t = 1)]
+    frames: usize,
+    /// Write the numbers to this JSON file.
+    #[arg(long)]
+    json: Option<PathBuf>,
+    /// Write the picture of every step and part, as EXR, to this folder.
+    #[arg(long, value_name = "FOLDER")]
+    pictures: Option<PathBuf>,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Version of what `--json` writes.
+const SCHEMA: &str = "conelab-split-1";
+
+/// A step of the ladder.
+#[derive(Serialize)]
+struct Step {
+    title: String,
+    /// By part: relMSE against the reference, and what the step adds: mean (x - y)^2 / (r^2 + .01), y the step before.
+    parts: BTreeMap<String, [f64; 2]>,
+}
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Split {
+    schema: &'static str,
+    version: &'static str,
+    experiment: String,
+    scene: String,
+    device: String,
+    reference_samples: u64,
+    /// relMSE of the halves of the reference, by part.
+    noise: BTreeMap<String, f64>,
+    steps: Vec<Step>,
+}
+
+/// Splits an experiment's error along its graph's ladder.
+pub fn run(args: &SplitArgs) -> Result<(), LabError> {
+    let experiment = args.experiment.read()?;
+    adapt::check_frames(args.frames, 0, 0.0)?;
+    let home = Home::find()?;
+    let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
+    if loaded.graph.ladder.is_empty() {
+        let message = format!("graph '{}' has no `ladder` to split its error along", loaded.graph.name);
+        return Err(LabError::Request(message));
+    }
+    let scene = Arc::new(adapt::open_scene(&experiment)?);
+    let lab = Lab::open(home, args.device.options())?;
+    let reference = super::reference::with_bar(&lab, &experiment, &scene, args.bounces, Goal::Samples(args.spp))?;
+
+    let names = parts_of(&loaded.graph);
+    let (mut steps, mut before): (Vec<Step>, BTreeMap<String, Linear>) = (Vec::new(), BTreeMap::new());
+    for step in loaded.graph.ladder.iter().map(|s| &s.value) {
+        let mut set = experiment.clone();
+        for (name, value) in &step.set.0 {
+            push_setting(&mut set, &name.value, &value.value.0);
+        }
+        let wanted = names.iter().map(|n| n.1.clone()).collect();
+        let mut session = lab.build(&set, &loaded, scene.clone(), wanted, None)?;
+        for _ in 0..args.frames {
+            session.frame(0.0)?;
+        }
+        session.finish()?;
+        let parts = session.parts()?;
+        if let Some(folder) = &args.pictures {
+            for (part, light) in &parts {
+                crate::picture::write_linear(&folder.join(format!("{}-{part}.exr", step.title)), light)?;
+            }
+        }
+        let mut errors = BTreeMap::new();
+        for (part, light) in &parts {
+            let Some(truth) = reference.parts.get(part) else { continue };
+            let fail = |e: crate::metrics::MetricError| LabError::Request(format!("part '{part}': {e}"));
+            let adds = match before.get(part) {
+                Some(y) => added(light, y, &truth.mean),
+                None => relmse(light, &truth.mean).map_err(fail)?,
+            };
+            errors.insert(part.clone(), [relmse(light, &truth.mean).map_err(fail)?, adds]);
+        }
+        steps.push(Step { title: step.title.clone(), parts: errors });
+        before = parts;
+    }
+    print(&reference, &steps);
+    if let Some(path) = &args.json {
+        let split = Split {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            experiment: experiment.name.clone(),
+            scene: scene.name.clone(),
+            device: lab.gpu.info.name.clone(),
+            reference_samples: reference.samples,
+            noise: reference.parts.iter().map(|(n, p)| (n.clone(), p.noise)).collect(),
+            steps,
+        };
+        let text = serde_json::to_string_pretty(&split).map_err(|e| LabError::Request(e.to_string()))?;
+        crate::files::write_whole(path, text.as_bytes())
+            .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
+        say!("wrote {}", path.display());
+    }
+    super::validated(&lab)
+}
+
+/// mean (x - y)^2 / (r^2 + .01): the step from y to x in the measure of relMSE.
+fn added(x: &Linear, y: &Linear, r: &Linear) -> f64 {
+    let texels = x.rgb.iter().flatten().zip(y.rgb.iter().flatten()).zip(r.rgb.iter().flatten());
+    let sum: f64 =
+        texels.map(|((x, y), r)| (f64::from(*x) - f64::from(*y)).powi(2) / (f64::from(*r).powi(2) + 1e-2)).sum();
+    sum / (3 * r.rgb.len().max(1)) as f64
+}
+
+fn print(reference: &Reference, steps: &[Step]) {
+    say!("relMSE against {} samples a pixel; in brackets what the step adds to the one before", reference.samples);
+    let mut line = format!("{:<12}", "part");
+    for step in steps {
+        line += &format!("{:>24}", step.title);
+    }
+    say!("{line}{:>14}", "noise floor");
+    for (part, truth) in &reference.parts {
+        let mut line = format!("{part:<12}");
+        for step in steps {
+            line += &match step.parts.get(part) {
+                Some([error, adds]) => format!("{error:>12.3e} ({adds:.2e})"),
+                None => format!("{:>24}", "-"),
+            };
+        }
+        say!("{line}{:>14.2e}", truth.noise);
+    }
+}

@@ -1,0 +1,106 @@
+//! A comparison as text.
+
+use super::{Comparison, PartComparison, RegionComparison};
+use crate::metrics::Scores;
+use std::fmt::Write as _;
+
+/// Width of a column.
+const WIDTH: usize = 11;
+/// Width of the columns before them: region and picture.
+const TITLE: usize = 30;
+/// Heads of the columns, and the metrics whose verdict stands below them.
+const COLUMNS: [(&str, &str); 9] = [
+    ("relMSE", "relmse"),
+    ("RMSE", "rmse"),
+    ("energy", "energy_ratio"),
+    ("SMAPE", "smape"),
+    ("FLIP", "flip"),
+    ("HDR-FLIP", "hdr_flip"),
+    ("leak", "leak"),
+    ("over-occl.", "over_occlusion"),
+    ("of pixels", "over_occluded"),
+];
+const LETTERS: [&str; 2] = ["A", "B"];
+
+/// The comparison as a table: a block for each part, a row for each region and picture.
+pub fn table(comparison: &Comparison) -> String {
+    let mut out = String::new();
+    for (letter, name) in LETTERS.iter().zip(&comparison.pictures) {
+        let _ = writeln!(out, "{letter}: {name}");
+    }
+    let _ = writeln!(out, "reference: {}", comparison.reference);
+    if comparison.displayed {
+        let _ = writeln!(out, "Pictures for a display: all numbers, HDR-FLIP too, are of the displayed range 0 to 1.");
+    }
+    for part in &comparison.parts {
+        block(&mut out, part, &comparison.pictures);
+    }
+    out
+}
+
+fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
+    let _ = write!(out, "\n{:TITLE$}", part.part);
+    for (head, _) in COLUMNS {
+        let _ = write!(out, "{head:>WIDTH$}");
+    }
+    out.push('\n');
+    for region in &part.regions {
+        rows(out, region);
+    }
+    if let Some(noise) = part.noise {
+        let _ = writeln!(out, "  noise of the reference: relMSE {}", short(noise));
+    }
+    let frame = part.regions.first();
+    for (i, (letter, name)) in LETTERS.iter().zip(pictures).enumerate() {
+        let scores = frame.and_then(|f| f.scores.get(i)?.as_ref());
+        if let Some(bad) = scores.map(|s| s.not_finite).filter(|n| *n > 0) {
+            let _ =
+                writeln!(out, "  {letter}: {bad} pixels are infinite or no number there or in the reference ({name})");
+        }
+        if frame.is_some_and(|f| f.within_noise.get(i) == Some(&true)) {
+            let _ = writeln!(out, "  {letter} cannot be told from the reference: relMSE is below 4 times its noise");
+        }
+    }
+}
+
+fn rows(out: &mut String, region: &RegionComparison) {
+    let mut title = match region.share {
+        1.0 => region.region.clone(),
+        share => format!("{} ({:.1} %)", region.region, 100.0 * share),
+    };
+    for (letter, scores) in LETTERS.iter().zip(&region.scores) {
+        let _ = write!(out, "  {title:<26}{letter} ");
+        match scores {
+            Some(s) => values(s).iter().for_each(|v| {
+                let _ = write!(out, "{:>WIDTH$}", short(*v));
+            }),
+            None => out.push_str(" no pixel is a finite number"),
+        }
+        out.push('\n');
+        title.clear();
+    }
+    if !region.better.is_empty() {
+        let _ = write!(out, "{:<TITLE$}", "    better");
+        for (_, metric) in COLUMNS {
+            let verdict = region.better.get(metric).map(ToString::to_string).unwrap_or_default();
+            let _ = write!(out, "{verdict:>WIDTH$}");
+        }
+        out.push('\n');
+    }
+}
+
+fn values(s: &Scores) -> [f64; 9] {
+    [s.relmse, s.rmse, s.energy_ratio, s.smape, s.flip, s.hdr_flip, s.leak, s.over_occlusion, s.over_occluded]
+}
+
+/// A number to four digits; `-` where there is none.
+fn short(v: f64) -> String {
+    match v.abs() {
+        a if a.is_nan() => "-".into(),
+        0.0 => "0".into(),
+        a if !(1e-3..1e4).contains(&a) => format!("{v:.2e}"),
+        a if a < 10.0 => format!("{v:.4}"),
+        a if a < 1000.0 => format!("{v:.2}"),
+        _ => format!("{v:.0}"),
+    }
+}

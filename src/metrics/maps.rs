@@ -1,0 +1,114 @@
+//! Maps of the error, as pictures for the eye and as numbers.
+
+use super::colour::luminance;
+use super::sums::relative_square;
+use super::{Compared, MetricError};
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
+use std::io::Cursor;
+
+/// Decades of the relative squared error that the map shows, from its darkest to its brightest colour.
+const DECADES: (f64, f64) = (-4.0, 2.0);
+
+/// One map as a file.
+pub struct MapFile {
+    /// End of the file's name, for example `flip.png`.
+    pub name: &'static str,
+    /// The file.
+    pub bytes: Vec<u8>,
+    /// What its colours or channels mean.
+    pub scale: String,
+}
+
+/// The maps of a comparison: FLIP and HDR-FLIP in the colours of NVIDIA's evaluator (magma), the relative squared error
+/// on a logarithmic scale in the same colours, the difference of luminance from blue (too dark) over white to red (too
+/// bright), and all four as the channels of an EXR.
+///
+/// # Errors
+/// A size that PNG or EXR does not have.
+pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
+    let pairs = || compared.test.rgb.iter().zip(&compared.reference.rgb);
+    let relative: Vec<f32> = pairs()
+        .map(|(x, r)| (x.iter().zip(r).map(|(x, r)| relative_square(*x, *r)).sum::<f64>() / 3.0) as f32)
+        .collect();
+    let difference: Vec<f32> = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32).collect();
+    // What is dark is a known part of the mean.
+    let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);
+    let size = compared.test.size;
+    let magma = Magma::new();
+    let logarithmic = |v: &f32| (f64::from(*v).log10() - DECADES.0) / (DECADES.1 - DECADES.0);
+    let flip_scale = "magma, 0 to 1";
+    let png = |name, rgb: Vec<[u8; 3]>, scale: String| {
+        Ok::<_, MetricError>(MapFile { name, bytes: encode_png(size, &rgb)?, scale })
+    };
+    Ok(vec![
+        png("flip.png", compared.flip.iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
+        png("hdr-flip.png", compared.hdr_flip.iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
+        png(
+            "relative-error.png",
+            relative.iter().map(|v| magma.at(logarithmic(v))).collect(),
+            format!("(x - r)^2 / (r^2 + .01), magma, logarithmic from 1e{} to 1e{}", DECADES.0, DECADES.1),
+        )?,
+        png(
+            "luminance.png",
+            difference.iter().map(|v| diverging(f64::from(*v) / full)).collect(),
+            format!("luminance x - r, blue -{full:.4} over white 0 to red +{full:.4}"),
+        )?,
+        MapFile {
+            name: "maps.exr",
+            bytes: encode_exr(
+                size,
+                [
+                    ("flip", &compared.flip),
+                    ("hdrFlip", &compared.hdr_flip),
+                    ("luminanceDifference", &difference),
+                    ("relativeSquaredError", &relative),
+                ],
+            )?,
+            scale: "32-bit floats; channels flip, hdrFlip, luminanceDifference, relativeSquaredError".into(),
+        },
+    ])
+}
+
+/// The colours of NVIDIA's maps.
+struct Magma(Vec<u8>);
+
+impl Magma {
+    fn new() -> Magma {
+        Magma(nv_flip::magma_lut().to_vec())
+    }
+
+    /// The colour of a value, 0 to 1; numbers that are none are as bright as can be.
+    fn at(&self, value: f64) -> [u8; 3] {
+        let value = if value.is_nan() { 1.0 } else { value.clamp(0.0, 1.0) };
+        let i = 3 * (value * 255.0 + 0.5) as usize;
+        self.0.get(i..i + 3).map_or([0; 3], |c| [c[0], c[1], c[2]])
+    }
+}
+
+/// Blue at -1 over white at 0 to red at 1; black where there is no number.
+fn diverging(value: f64) -> [u8; 3] {
+    if value.is_nan() {
+        return [0; 3];
+    }
+    let full = if value < 0.0 { [33.0, 76.0, 190.0] } else { [190.0, 20.0, 38.0] };
+    full.map(|f| (255.0 + value.abs().min(1.0) * (f - 255.0)).round() as u8)
+}
+
+fn encode_png((width, height): (u32, u32), rgb: &[[u8; 3]]) -> Result<Vec<u8>, MetricError> {
+    let mut out = Cursor::new(Vec::new());
+    let (colour, format) = (image::ColorType::Rgb8, image::ImageFormat::Png);
+    image::write_buffer_with_format(&mut out, rgb.as_flattened(), width, height, colour, format)
+        .map_err(|e| MetricError(format!("cannot make the PNG of a map: {e}")))?;
+    Ok(out.into_inner())
+}
+
+fn encode_exr((width, height): (u32, u32), channels: [(&str, &Vec<f32>); 4]) -> Result<Vec<u8>, MetricError> {
+    let channel = |(name, values): (&str, &Vec<f32>)| AnyChannel::new(name, FlatSamples::F32(values.clone()));
+    let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
+    let size = (width as usize, height as usize);
+    let layer = Layer::new(size, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels);
+    let mut out = Cursor::new(Vec::new());
+    let written = Image::from_layer(layer).write().to_buffered(&mut out);
+    written.map_err(|e| MetricError(format!("cannot make the EXR of the maps: {e}")))?;
+    Ok(out.into_inner())
+}

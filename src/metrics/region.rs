@@ -1,0 +1,70 @@
+//! Regions of a picture: a mean over the whole frame hides where a method fails.
+
+use super::colour::luminance;
+use super::{DARK, Linear};
+use std::collections::BTreeMap;
+
+/// Some pixels of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Its name.
+    pub name: String,
+    /// Whether each pixel belongs to it, rows from the top.
+    pub mask: Vec<bool>,
+}
+
+/// Openness below which a pixel lies in a corner or under something.
+const CONCAVE: f64 = 0.5;
+/// Openness from which a pixel sees almost all of its surroundings.
+const OPEN: f64 = 0.9;
+/// A pixel is bright from so many times the mean luminance.
+const BRIGHT: f64 = 4.0;
+
+impl Region {
+    /// The pixels of a mask picture whose luminance is at least one half.
+    pub fn painted(name: &str, mask: &Linear) -> Region {
+        Region { name: name.into(), mask: mask.rgb.iter().map(|c| luminance(*c) >= 0.5).collect() }
+    }
+
+    /// Part of the frame, 0 to 1.
+    pub fn share(&self) -> f64 {
+        self.mask.iter().filter(|m| **m).count() as f64 / self.mask.len().max(1) as f64
+    }
+}
+
+/// The regions that follow from a reference's parts; those without a pixel, or whose parts are missing, are left out.
+///
+/// | Region | Pixels of the reference |
+/// |---|---|
+/// | `dark` | luminance of `total` at most .01 of its mean: behind walls, in deep shadow |
+/// | `bright` | luminance of `total` at least 4 times its mean |
+/// | `indirect only` | luminance of `direct` at most .01 of its mean, but `total` not dark: shadow lit by bounced light |
+/// | `concave corners` | openness (`occlusion`) below .5 |
+/// | `open` | openness at least .9 |
+pub fn regions(reference: &BTreeMap<String, Linear>) -> Vec<Region> {
+    let luminances = |part: &str| -> Option<(Vec<f64>, f64)> {
+        let values: Vec<f64> = reference.get(part)?.rgb.iter().map(|c| luminance(*c)).collect();
+        let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        let mean = finite.iter().sum::<f64>() / finite.len().max(1) as f64;
+        Some((values, mean))
+    };
+    let mut list = Vec::new();
+    let mut add = |name: &str, mask: Vec<bool>| {
+        if mask.contains(&true) {
+            list.push(Region { name: name.into(), mask });
+        }
+    };
+    if let Some((total, mean)) = luminances("total") {
+        add("dark", total.iter().map(|v| *v <= DARK * mean).collect());
+        add("bright", total.iter().map(|v| *v >= BRIGHT * mean && *v > 0.0).collect());
+        if let Some((direct, direct_mean)) = luminances("direct").filter(|d| d.0.len() == total.len()) {
+            let pairs = direct.iter().zip(&total);
+            add("indirect only", pairs.map(|(d, t)| *d <= DARK * direct_mean && *t > DARK * mean).collect());
+        }
+    }
+    if let Some((openness, _)) = luminances("occlusion") {
+        add("concave corners", openness.iter().map(|v| *v < CONCAVE).collect());
+        add("open", openness.iter().map(|v| *v >= OPEN).collect());
+    }
+    list
+}
