@@ -19,7 +19,7 @@ pub fn axis_title(metric: &str) -> String {
         "flip" => "FLIP".into(),
         "hdr_flip" => "HDR-FLIP".into(),
         "smape" => "SMAPE".into(),
-        "energy_ratio" => "|energy ratio - 1|".into(),
+        "energy_ratio" => "|ln energy ratio|".into(),
         other => other.replace('_', " "),
     }
 }

@@ -12,6 +12,8 @@ use std::path::Path;
 
 /// Most points of a sweep.
 pub const MAX_POINTS: usize = 20_000;
+/// What voxel cones gather.
+const DEFAULT_BOUNCES: [u32; 1] = [1];
 /// Most frames of one point.
 const MAX_FRAMES: usize = 100_000;
 
@@ -24,6 +26,9 @@ struct SweepFile {
     warmup: Option<Loc<usize>>,
     #[serde(default)]
     frames: Option<Loc<usize>>,
+    /// Bounces of the references that points are scored against.
+    #[serde(default)]
+    bounces: Items<u32>,
     /// What every point sets.
     #[serde(default)]
     set: Entries<RawText>,
@@ -44,6 +49,8 @@ pub struct Sweep {
     pub names: Vec<String>,
     /// Frames of every point.
     pub frames: Frames,
+    /// Bounces of the references that points are scored against: all parts against the first, the total against all.
+    pub bounces: Vec<u32>,
     pub(super) fixed: Vec<Setting>,
     pub(super) axes: Vec<Vec<Choice>>,
     /// Folder of the sweep's file: scene files are looked up in it.
@@ -96,6 +103,10 @@ impl Sweep {
             None => default,
         };
         let frames = Frames { warmup: count(&parsed.warmup, 10, 0), count: count(&parsed.frames, 50, 1) };
+        let mut bounces: Vec<u32> = parsed.bounces.0.iter().map(|b| b.value).collect();
+        if bounces.is_empty() {
+            bounces = DEFAULT_BOUNCES.to_vec();
+        }
         let fixed: Vec<Setting> = parsed.set.0.into_iter().map(|(name, text)| Setting::new(name, &text)).collect();
         let mut axes: Vec<Vec<Choice>> = Vec::new();
         let mut names: Vec<String> = Vec::new();
@@ -134,6 +145,7 @@ impl Sweep {
             experiments,
             names,
             frames,
+            bounces,
             fixed,
             axes,
             folder: folder.to_path_buf(),
@@ -173,7 +185,8 @@ impl Sweep {
         let names = axes.iter().map(|a| a.0.clone());
         let names = (experiments.len() > 1).then(|| "experiment".to_string()).into_iter().chain(names).collect();
         let name = experiments.first().map_or(String::new(), |e| e.name.clone());
-        Ok(Sweep { name, text, experiments, names, frames, fixed: Vec::new(), axes: list, folder: ".".into() })
+        let bounces = DEFAULT_BOUNCES.to_vec();
+        Ok(Sweep { name, text, experiments, names, frames, bounces, fixed: Vec::new(), axes: list, folder: ".".into() })
     }
 
     /// How many combinations there are.

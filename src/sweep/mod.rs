@@ -5,6 +5,7 @@ mod axis;
 mod file;
 mod list;
 mod record;
+mod references;
 mod run;
 mod sample;
 mod settings;

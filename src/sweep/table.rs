@@ -69,7 +69,8 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
         row.push(record.map_or(String::new(), |r| r.device.driver.clone()));
         row.push(text(&|s| s.total_bytes.to_string()));
         row.push(text(&|s| s.warnings.join("; ")));
-        row.push(point.and_then(|p| p.reference_samples).map_or(String::new(), |n| n.to_string()));
+        let samples = point.iter().flat_map(|p| &p.references).map(|(bounces, n)| format!("{bounces} bounces: {n}"));
+        row.push(samples.collect::<Vec<_>>().join("; "));
         row.push(error.unwrap_or_default().to_string());
         row.push(text(&|s| s.total_gpu_ms.median.to_string()));
         row.push(text(&|s| s.total_gpu_ms.p95.to_string()));
