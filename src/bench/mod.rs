@@ -61,13 +61,16 @@ pub struct Times {
     pub rounds: Vec<f64>,
 }
 
+/// What the frames of all rounds say: every pass, and every stage.
+type Summary = (Stats, IndexMap<String, Spread>);
+
 /// What a configuration has gathered so far.
 #[derive(Default)]
 struct Gathered {
     seed: Option<Seed>,
     times: Vec<FrameTimes>,
     rounds: Vec<f64>,
-    result: Option<Result<(Stats, IndexMap<String, Spread>), String>>,
+    result: Option<Result<Summary, String>>,
 }
 
 /// Measures every configuration `rounds` times in turn. `tick` is called after every turn. Textures are made anew for

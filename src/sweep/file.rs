@@ -36,6 +36,9 @@ struct SweepFile {
     axes: Items<Axis>,
 }
 
+/// The values of a point, by the names of what is varied.
+pub type Labels = Vec<(String, String)>;
+
 /// A sweep: every experiment with every combination of the axes' choices.
 #[derive(Clone, Debug)]
 pub struct Sweep {
@@ -203,7 +206,7 @@ impl Sweep {
     ///
     /// # Errors
     /// Settings that are none, with their places.
-    pub fn point(&self, index: usize) -> Result<(Experiment, Vec<(String, String)>), Vec<Diagnostic>> {
+    pub fn point(&self, index: usize) -> Result<(Experiment, Labels), Vec<Diagnostic>> {
         let mut rest = index;
         let mut chosen = Vec::new();
         for axis in self.axes.iter().rev() {

@@ -5,10 +5,7 @@ use crate::lab::LabError;
 use crate::measure::Point;
 use std::collections::BTreeMap;
 
-/// A number of a table or chart: its column and its value.
-pub type Cell = (String, f64);
-
-/// Scores of a point as flat cells, `part metric`.
+/// Scores of a point, by part and metric.
 pub fn parts_of(point: &Point) -> BTreeMap<String, BTreeMap<String, f64>> {
     let numbers = |scores: &crate::metrics::Scores| match serde_json::to_value(scores) {
         Ok(serde_json::Value::Object(map)) => map.into_iter().filter_map(|(k, v)| Some((k, v.as_f64()?))).collect(),
