@@ -80,14 +80,17 @@ pub struct RegionComparison {
     pub better: BTreeMap<&'static str, Verdict>,
 }
 
+/// Takes the maps of a picture (0 is A) and part.
+pub type TakeMaps<'a> = dyn FnMut(usize, &str, Vec<MapFile>) -> Result<(), MetricError> + 'a;
+
 /// What a comparison is made of, beside the pictures.
 pub struct Request<'a> {
     /// Parts; all that are there when empty.
     pub parts: &'a [String],
     /// Regions beside those that follow from the reference.
     pub masks: &'a [Region],
-    /// Takes the maps of picture (0 is A) and part.
-    pub maps: Option<&'a mut dyn FnMut(usize, &str, Vec<MapFile>) -> Result<(), MetricError>>,
+    /// Where maps go; none are made without.
+    pub maps: Option<&'a mut TakeMaps<'a>>,
 }
 
 /// Compares one or two pictures with a reference.

@@ -175,10 +175,15 @@ pub fn read(path: &Path, size: (u32, u32)) -> Result<Vec<f32>, String> {
     Ok(read_exr(path)?.into_flattened())
 }
 
-/// Width and height of an EXR, from its header alone: they decide how much memory is taken.
+/// Width and height of an EXR, from its headers alone: they decide how much memory is taken.
 fn exr_size(path: &Path) -> Result<(usize, usize), String> {
     let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|e| e.to_string())?;
-    Ok(meta.headers.first().map_or((0, 0), |h| (h.layer_size.width(), h.layer_size.height())))
+    let size = meta.headers.first().map_or(exr::math::Vec2(0, 0), |h| h.layer_size);
+    // Which layer has the colours is known only after reading.
+    match meta.headers.iter().all(|h| h.layer_size == size) {
+        true => Ok((size.width(), size.height())),
+        false => Err("its layers have different sizes".into()),
+    }
 }
 
 fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {

@@ -160,7 +160,7 @@ const RADIANCE: [(&str, f64, Floats, Floats); 4] = [
 ];
 
 fn bars(x: u32) -> [u8; 3] {
-    if x / 8 % 2 == 0 { [230, 200, 160] } else { [30, 40, 70] }
+    if (x / 8).is_multiple_of(2) { [230, 200, 160] } else { [30, 40, 70] }
 }
 
 fn ramp(x: u32, y: u32) -> [u8; 3] {
@@ -173,7 +173,7 @@ fn points(x: u32, y: u32) -> [u8; 3] {
 
 /// Brightness doubles every twelve pixels; the sun is a thousand times brighter.
 fn sky(x: u32, y: u32) -> [f32; 3] {
-    if (x - x.min(60)).pow(2) + (y - y.min(10)).pow(2) < 9 && x >= 60 && y >= 10 {
+    if x >= 60 && y >= 10 && (x - 60).pow(2) + (y - 10).pow(2) < 9 {
         return [900.0, 800.0, 600.0];
     }
     let v = (1u32 << (x / 12)) as f32 / 64.0;

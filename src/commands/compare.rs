@@ -25,9 +25,9 @@ pub struct CompareArgs {
     /// experiment and has one, or `none`.
     #[arg(long, default_value = "auto")]
     reference: PathBuf,
-    /// Bounces of the cached reference; the method gathers one.
-    #[arg(long, default_value_t = 1)]
-    bounces: u32,
+    /// Bounces of the cached reference: 1, which is what the method gathers, unless given; then it must be there.
+    #[arg(long)]
+    bounces: Option<u32>,
     /// Compare only this part (total, direct, diffuse, specular, occlusion); may be given many times.
     #[arg(long)]
     part: Vec<String>,
@@ -61,11 +61,15 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
     let b = args.b.as_ref().map(|b| sources.side(b, true)).transpose()?;
     let given = match args.reference.to_str() {
         // Beside a picture from elsewhere, an experiment is what it is compared with.
-        Some("auto") if args.a.extension().is_some_and(|e| e == "ron") => sources.cached(args.bounces)?,
+        Some("auto") if args.a.extension().is_some_and(|e| e == "ron") => sources.cached(args.bounces.unwrap_or(1))?,
         Some("auto") => None,
         Some("none") => None,
         _ => Some(sources.side(&args.reference, false)?),
     };
+    if let (Some(n), None) = (args.bounces, &given) {
+        let message = format!("A has no cached reference of {n} bounces; `conelab reference --bounces {n}` makes one");
+        return Err(LabError::Request(message));
+    }
     let (pictures, reference) = roles(a, b, given)?;
     let mut written = Vec::new();
     let mut keep = |i: usize, part: &str, files: Vec<MapFile>| match &args.maps {
