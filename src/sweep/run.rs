@@ -87,6 +87,7 @@ pub fn run(
         tell(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
     }
     let folder = Folder(options.folder.clone());
+    folder.clean();
     folder.write_manifest(&Manifest::new(sweep, options.frames, &points))?;
     let Shard { number, of } = options.shard;
     let mine: Vec<&Listed> = points.iter().skip(number - 1).step_by(of).collect();
