@@ -17,6 +17,7 @@ macro_rules! say_part {
 }
 
 mod adapt;
+mod bench;
 mod capture;
 mod check;
 mod compare;
@@ -57,6 +58,8 @@ enum Command {
     Capture(capture::CaptureArgs),
     /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
     Replay(replay::ReplayArgs),
+    /// Time configurations in turn and print tables of their stages and totals; exit 1 if one failed.
+    Bench(bench::BenchArgs),
     /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
     Sweep(sweep::SweepArgs),
     /// Make a page, charts and a table of sweeps: error against time.
@@ -122,6 +125,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Save(args) => save::run(&args),

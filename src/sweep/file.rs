@@ -4,13 +4,16 @@ use super::axis::{Axis, Choice, choices};
 use super::settings::Setting;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
-use crate::graph::source::{Diagnostic, Entries, Items, Loc, Severity, Sources};
+use crate::graph::source::{At, Diagnostic, Entries, Items, Loc, Severity, Sources};
+use crate::lab::LabError;
 use crate::measure::Frames;
 use serde::Deserialize;
 use std::path::Path;
 
 /// Most points of a sweep.
 pub const MAX_POINTS: usize = 20_000;
+/// What voxel cones gather.
+const DEFAULT_BOUNCES: [u32; 1] = [1];
 /// Most frames of one point.
 const MAX_FRAMES: usize = 100_000;
 
@@ -23,12 +26,18 @@ struct SweepFile {
     warmup: Option<Loc<usize>>,
     #[serde(default)]
     frames: Option<Loc<usize>>,
+    /// Bounces of the references that points are scored against.
+    #[serde(default)]
+    bounces: Items<u32>,
     /// What every point sets.
     #[serde(default)]
     set: Entries<RawText>,
     #[serde(default)]
     axes: Items<Axis>,
 }
+
+/// The values of a point, by the names of what is varied.
+pub type Labels = Vec<(String, String)>;
 
 /// A sweep: every experiment with every combination of the axes' choices.
 #[derive(Clone, Debug)]
@@ -43,6 +52,8 @@ pub struct Sweep {
     pub names: Vec<String>,
     /// Frames of every point.
     pub frames: Frames,
+    /// Bounces of the references that points are scored against: all parts against the first, the total against all.
+    pub bounces: Vec<u32>,
     pub(super) fixed: Vec<Setting>,
     pub(super) axes: Vec<Vec<Choice>>,
     /// Folder of the sweep's file: scene files are looked up in it.
@@ -95,6 +106,10 @@ impl Sweep {
             None => default,
         };
         let frames = Frames { warmup: count(&parsed.warmup, 10, 0), count: count(&parsed.frames, 50, 1) };
+        let mut bounces: Vec<u32> = parsed.bounces.0.iter().map(|b| b.value).collect();
+        if bounces.is_empty() {
+            bounces = DEFAULT_BOUNCES.to_vec();
+        }
         let fixed: Vec<Setting> = parsed.set.0.into_iter().map(|(name, text)| Setting::new(name, &text)).collect();
         let mut axes: Vec<Vec<Choice>> = Vec::new();
         let mut names: Vec<String> = Vec::new();
@@ -133,10 +148,48 @@ impl Sweep {
             experiments,
             names,
             frames,
+            bounces,
             fixed,
             axes,
             folder: folder.to_path_buf(),
         })
+    }
+
+    /// A sweep without a file: every experiment with every combination of settings, each with its values as RON.
+    ///
+    /// # Errors
+    /// A setting without values; more than [`MAX_POINTS`] combinations.
+    pub fn of(
+        mut experiments: Vec<Experiment>,
+        axes: &[(String, Vec<String>)],
+        frames: Frames,
+    ) -> Result<Sweep, LabError> {
+        // Messages about values point at the line of their setting.
+        let lines: Vec<String> = axes.iter().map(|(name, values)| format!("{name}={}", values.join(","))).collect();
+        let text = lines.join("\n");
+        for experiment in &mut experiments {
+            experiment.sources.add("--axis".as_ref(), text.clone());
+        }
+        let mut offset = 0;
+        let mut list = Vec::new();
+        for ((name, values), line) in axes.iter().zip(&lines) {
+            if values.is_empty() {
+                return Err(LabError::Request(format!("'{name}' has no values")));
+            }
+            let at = At { file: 0, offset };
+            let name = Loc { value: name.clone(), at };
+            list.push(values.iter().map(|v| Choice::one(&name, at, v.clone())).collect::<Vec<_>>());
+            offset += u32::try_from(line.len() + 1).unwrap_or(0);
+        }
+        let points = list.iter().fold(experiments.len(), |n, l| n.saturating_mul(l.len()));
+        if points > MAX_POINTS {
+            return Err(LabError::Request(format!("{points} combinations are more than the {MAX_POINTS} allowed")));
+        }
+        let names = axes.iter().map(|a| a.0.clone());
+        let names = (experiments.len() > 1).then(|| "experiment".to_string()).into_iter().chain(names).collect();
+        let name = experiments.first().map_or(String::new(), |e| e.name.clone());
+        let bounces = DEFAULT_BOUNCES.to_vec();
+        Ok(Sweep { name, text, experiments, names, frames, bounces, fixed: Vec::new(), axes: list, folder: ".".into() })
     }
 
     /// How many combinations there are.
@@ -153,7 +206,7 @@ impl Sweep {
     ///
     /// # Errors
     /// Settings that are none, with their places.
-    pub fn point(&self, index: usize) -> Result<(Experiment, Vec<(String, String)>), Vec<Diagnostic>> {
+    pub fn point(&self, index: usize) -> Result<(Experiment, Labels), Vec<Diagnostic>> {
         let mut rest = index;
         let mut chosen = Vec::new();
         for axis in self.axes.iter().rev() {
@@ -171,7 +224,7 @@ impl Sweep {
         let mut errors = Vec::new();
         for setting in self.fixed.iter().chain(chosen.iter().flat_map(|c| &c.settings)) {
             if let Err(message) = setting.apply(&mut experiment, file, &self.folder) {
-                let at = crate::graph::source::At { file, offset: setting.name.at.offset };
+                let at = At { file, offset: setting.name.at.offset };
                 errors.push(experiment.sources.error(at, message));
             }
         }

@@ -1,6 +1,6 @@
 //! The points of a sweep, each with the number of everything that its result depends on.
 
-use super::file::Sweep;
+use super::file::{Labels, Sweep};
 use super::record::Subject;
 use crate::capture::scene_hash;
 use crate::experiment::{Experiment, placed_text};
@@ -25,7 +25,7 @@ pub struct Listed {
     /// What is looked at.
     pub subject: Subject,
     /// Its values, by the names of what is varied.
-    pub labels: Vec<(String, String)>,
+    pub labels: Labels,
 }
 
 /// What is opened and hashed once for all points.
@@ -52,7 +52,7 @@ impl<'a> Lister<'a> {
         &mut self,
         warm: &mut Warm,
         experiment: Experiment,
-        labels: Vec<(String, String)>,
+        labels: Labels,
         frames: Frames,
     ) -> Result<Listed, LabError> {
         let loaded = warm.graph(self.home, &experiment.graph)?;

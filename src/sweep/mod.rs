@@ -5,14 +5,15 @@ mod axis;
 mod file;
 mod list;
 mod record;
+mod references;
 mod run;
 mod sample;
 mod settings;
 mod table;
 
-pub use file::{MAX_POINTS, Sweep};
+pub use file::{Labels, MAX_POINTS, Sweep};
 pub use list::{Listed, Lister, list};
 pub(crate) use record::write_file;
 pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
 pub use run::{Options, Progress, Shard, Tally, run};
-pub use table::{Cell, csv, parts_of};
+pub use table::{csv, parts_of};
