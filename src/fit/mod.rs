@@ -8,7 +8,7 @@ pub use search::{Found, Limits, Step, Stop, Trial, search};
 
 use crate::experiment::Experiment;
 use crate::graph::load::Graph;
-use crate::graph::param::Params;
+use crate::graph::param::{Params, Value};
 use crate::lab::LabError;
 
 /// A parameter that may be varied, and the values to choose from in the order in which neighbours are alike.
@@ -43,17 +43,25 @@ pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
     Ok(axes)
 }
 
-/// The place on the axes nearest to an experiment's own values: those that an axis does not have begin at its first.
+/// The place on the axes nearest to an experiment's own values; the first of an axis where there is no nearest.
 pub fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
-    let place = |axis: &Axis| {
-        let own = params.index(&axis.name).map(|i| &params.values[i]);
-        let same = |text: &String| {
-            let mut tried = params.clone();
-            tried.set(&axis.name, text).is_ok() && tried.index(&axis.name).map(|i| &tried.values[i]) == own
-        };
-        axis.values.iter().position(same).unwrap_or(0)
+    let number = |value: &Value| match value {
+        Value::Int(v) => Some(*v as f64),
+        Value::Float(v) => Some(*v),
+        _ => None,
     };
-    axes.iter().map(place).collect()
+    let place = |axis: &Axis| {
+        let own = params.index(&axis.name).map(|i| &params.values[i])?;
+        let distance = |text: &String| {
+            let mut tried = params.clone();
+            tried.set(&axis.name, text).ok()?;
+            let value = &tried.values[tried.index(&axis.name)?];
+            if value == own { Some(0.0) } else { Some((number(value)? - number(own)?).abs()) }
+        };
+        let near = axis.values.iter().enumerate().filter_map(|(i, v)| Some((i, distance(v)?)));
+        near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)
+    };
+    axes.iter().map(|axis| place(axis).unwrap_or(0)).collect()
 }
 
 /// The experiment with the values of a place on the axes.
