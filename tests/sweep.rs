@@ -213,6 +213,13 @@ fn axes_are_walked_in_the_order_of_the_file() {
     let (experiment, _) = sweep.point(23).unwrap();
     let last = |name: &str| experiment.params.iter().rev().find(|p| p.0.value == name).unwrap().1.clone();
     assert_eq!((last("voxel_dim"), last("bias"), last("shadow_dim")), ("64".into(), "2".into(), "256".into()));
+    // What stands beside comes first, once, and moves nothing else.
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replace("warmup: 1", "beside: [\"configs/thesis.ron\"], warmup: 1")).unwrap();
+    let more = Sweep::read(&file).unwrap();
+    assert_eq!((more.len(), more.names[0].as_str()), (25, "experiment"));
+    assert_eq!(more.point(0).unwrap().1, [("experiment".to_string(), "thesis".to_string())]);
+    assert_eq!(more.point(24).unwrap().1[1..], sweep.point(23).unwrap().1);
 }
 
 #[test]
@@ -243,6 +250,11 @@ fn mistakes_of_a_sweep_are_told_with_their_place_before_anything_is_measured() {
         let said = fails(&mut sweep(home.path(), &file, &home.path().join("out"), &[]));
         assert!(said.contains(message), "{axes}:\n{said}");
         assert!(!home.path().join("out").exists(), "{axes}");
+        // A camera is known with its scene only.
+        if !axes.contains("camera") {
+            let output = conelab(home.path()).arg("check").arg(&file).output().unwrap();
+            assert!(String::from_utf8_lossy(&output.stdout).contains(message), "{axes}: `check` does not say so");
+        }
     }
 }
 

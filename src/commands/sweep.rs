@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use crate::lab::{Home, Lab, LabError};
 use crate::measure::Frames;
-use crate::sweep::{Options, Progress, Shard, Sweep, Tally, run as run_sweep};
+use crate::sweep::{Options, Outcome, Progress, Shard, Sweep, Tally, run as run_sweep};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -65,16 +65,14 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
             bar.set_message("samples of a reference");
         }
         Progress::Note(text) => bar.suspend(|| eprintln!("{text}")),
-        Progress::Finished(point, error) => {
-            if let Some(error) = error {
-                bar.suspend(|| {
-                    eprintln!(
-                        "{} ({}) failed: {}",
-                        point.id,
-                        shown(&point.labels),
-                        error.lines().next().unwrap_or_default()
-                    )
-                });
+        Progress::Finished(point, record) => {
+            let say = |text: &str| {
+                let first = text.lines().next().unwrap_or_default();
+                bar.suspend(|| eprintln!("{} ({}) {first}", point.id, shown(&point.labels)));
+            };
+            match &record.outcome {
+                Outcome::Failed(error) => say(&format!("failed: {error}")),
+                Outcome::Done(measured) => measured.stats.warnings.iter().for_each(|w| say(&format!("warning: {w}"))),
             }
             bar.inc(1);
         }

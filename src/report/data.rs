@@ -129,8 +129,9 @@ impl Data {
                     true => String::from("no reference"),
                     false => format!("reference: {}", references.join("; ")),
                 };
+                let frames = point.stats.passes.first().map_or(0, |p| p.frames);
                 data.settings.push(format!(
-                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {} frames of warm-up; every pass in every frame; {samples}",
+                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {frames} frames after {} of warm-up; every pass in every frame; {samples}",
                     s.camera, s.time, device.driver, device.api, point.stats.version, point.stats.warmup
                 ));
                 keys.len() - 1

@@ -1,6 +1,6 @@
 //! Axes of a sweep: lists, ranges, named settings, lists that go together, samples.
 
-use super::file::{Labels, MAX_POINTS};
+use super::points::{Labels, MAX_POINTS};
 use super::sample::latin_hypercube;
 use super::settings::Setting;
 use crate::graph::file::RawText;

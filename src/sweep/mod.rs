@@ -4,6 +4,7 @@
 mod axis;
 mod file;
 mod list;
+mod points;
 mod record;
 mod references;
 mod run;
@@ -11,8 +12,8 @@ mod sample;
 mod settings;
 mod table;
 
-pub use file::{Labels, MAX_POINTS, Sweep};
-pub use list::{Listed, Lister, list};
+pub use list::{Listed, Lister, check, list};
+pub use points::{Labels, MAX_POINTS, Sweep};
 pub(crate) use record::write_file;
 pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
 pub use run::{Options, Progress, Shard, Tally, run};

@@ -1,7 +1,7 @@
 //! Measuring the points of a sweep, one after another.
 
-use super::file::Sweep;
 use super::list::{Listed, Lister, list};
+use super::points::Sweep;
 use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, collect, write_file};
 use super::references::References;
 use crate::experiment::resolved_text;
@@ -51,8 +51,8 @@ pub enum Progress<'a> {
     Note(String),
     /// A reference is being gathered.
     Gathers(Gathered),
-    /// A point is finished; with its error, if it failed.
-    Finished(&'a Listed, Option<&'a str>),
+    /// A point is finished.
+    Finished(&'a Listed, &'a Record),
 }
 
 /// How far a shard is.
@@ -141,18 +141,11 @@ pub fn run(
             Outcome::Done(_) => tally.done += 1,
             Outcome::Failed(_) => tally.failed += 1,
         }
-        tell(Progress::Finished(point, failure(&record)));
+        tell(Progress::Finished(point, &record));
     }
     let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
     write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
     Ok(tally)
-}
-
-fn failure(record: &Record) -> Option<&str> {
-    match &record.outcome {
-        Outcome::Failed(error) => Some(error),
-        Outcome::Done(_) => None,
-    }
 }
 
 fn record_of(
