@@ -47,20 +47,27 @@ class World:
         self.sky = mi.Color3f(sky)
         self.lights = gltf.lights
         self.texels, self.places = [np.ones((1, 4))], {}
-        self.constants = np.array([self.constant(gltf, m) for m in gltf.json["materials"]], np.float32)
-        self.masks = bool((self.constants[:, 9] > 0).any())
-        self.width = self.constants.shape[1]
-        self.constants, self.atlas = store(self.constants), store(np.concatenate(self.texels).astype(np.float32))
+        constants = np.array([self.constant(m) for m in gltf.json["materials"]], np.float32)
+        self.masks = bool((constants[:, 9] > 0).any())
+        self.constants = store(constants)
+        self.images = store(np.array([self.textures(gltf, m) for m in gltf.json["materials"]], np.int32), mi.Int32)
+        self.atlas = store(np.concatenate(self.texels).astype(np.float32))
 
-    def constant(self, gltf, m):
+    @staticmethod
+    def constant(m):
         """Numbers of a material: 0 base colour, 4 emission, 7 roughness, 8 metallic, 9 alpha cutoff, 10 scale of the
-        normal map, then first texel, width and height of the four textures; without one, a single white texel."""
+        normal map, negative without one."""
         pbr = m.get("pbrMetallicRoughness", {})
         strength = m.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
         row = list(pbr.get("baseColorFactor", [1] * 4)) + [c * strength for c in m.get("emissiveFactor", [0] * 3)]
         row += [pbr.get("roughnessFactor", 1), pbr.get("metallicFactor", 1)]
         row += [m.get("alphaCutoff", 0.5) if m.get("alphaMode") == "MASK" else 0]
-        row += [m["normalTexture"].get("scale", 1) if "normalTexture" in m else -1]
+        return row + [m["normalTexture"].get("scale", 1) if "normalTexture" in m else -1]
+
+    def textures(self, gltf, m):
+        """First texel, width and height of base colour, emission, roughness with metallic, and normal; without a
+        texture, those of one white texel."""
+        pbr, row = m.get("pbrMetallicRoughness", {}), []
         for texture, srgb in ((pbr.get("baseColorTexture"), True), (m.get("emissiveTexture"), True),
                               (pbr.get("metallicRoughnessTexture"), False), (m.get("normalTexture"), False)):
             row += [0, 1, 1] if texture is None else self.place(gltf, texture["index"], srgb)
@@ -77,19 +84,18 @@ class World:
 
     def texture(self, material, number, uv):
         """Bilinear, repeated, of the full resolution."""
-        column = self.width * material + 11 + 3 * number
-        first, w, h = (mi.Int32(dr.gather(mi.Float, self.constants, column + i)) for i in range(3))
+        first, w, h = (dr.gather(mi.Int32, self.images, 12 * material + 3 * number + i) for i in range(3))
+        uv = uv - dr.floor(uv)
         x, y = uv.x * w - 0.5, uv.y * h - 0.5
         i, j = mi.Int32(dr.floor(x)), mi.Int32(dr.floor(y))
-        fx, fy = x - dr.floor(x), y - dr.floor(y)
-        wrap = lambda a, n: ((a % n) + n) % n  # noqa: E731
+        fx, fy = x - i, y - j
+        wrap = lambda a, n: dr.select(a < 0, a + n, dr.select(a >= n, a - n, a))  # noqa: E731
         at = lambda i, j: dr.gather(mi.Vector4f, self.atlas, mi.UInt32(first + wrap(j, h) * w + wrap(i, w)))  # noqa: E731
         return dr.lerp(dr.lerp(at(i, j), at(i + 1, j), fx), dr.lerp(at(i, j + 1), at(i + 1, j + 1), fx), fy)
 
     def numbers(self, material, column, kind=mi.Float):
-        if kind is mi.Float:
-            return dr.gather(mi.Float, self.constants, self.width * material + column)
-        return kind(*(self.numbers(material, column + i) for i in range(dr.size_v(kind))))
+        at = lambda i: dr.gather(mi.Float, self.constants, 11 * material + column + i)  # noqa: E731
+        return at(0) if kind is mi.Float else kind(at(0), at(1), at(2))
 
     def mix(self, key, kind, triangle, b):
         """An attribute at weights b of the second and third corner."""
@@ -97,8 +103,9 @@ class World:
         return at(0) * (1 - b.x - b.y) + at(1) * b.x + at(2) * b.y
 
     def cut_out(self, hit):
-        material = dr.gather(mi.UInt32, self.material_of, hit.prim_index, hit.is_valid())
-        alpha = self.numbers(material, 3) * self.texture(material, 0, self.mix("uv", mi.Point2f, hit.prim_index, hit.prim_uv)).w
+        triangle = dr.select(hit.is_valid(), hit.prim_index, 0)
+        material = dr.gather(mi.UInt32, self.material_of, triangle)
+        alpha = self.numbers(material, 3) * self.texture(material, 0, self.mix("uv", mi.Point2f, triangle, hit.prim_uv)).w
         return hit.is_valid() & (alpha < self.numbers(material, 9))
 
     @dr.syntax
