@@ -221,9 +221,19 @@ class Surface:
         return total
 
 
-def camera_rays(gltf, name, size, seed, samples):
+def placed(numbers):
+    """Eye, target and vertical field of view in degrees, as a camera of Gltf that stands upright."""
+    eye, target, fov = np.array(numbers[:3]), np.array(numbers[3:6]), numbers[6]
+    back = (eye - target) / np.linalg.norm(eye - target)
+    right = np.cross([0, 1, 0], back) / np.linalg.norm(np.cross([0, 1, 0], back))
+    world = np.eye(4)
+    world[:3] = np.stack([right, np.cross(back, right), back, eye], 1)
+    return world, {"yfov": math.radians(fov), "znear": 0.01}
+
+
+def camera_rays(camera, size, seed, samples):
     """Origins on the near plane and directions, `samples` for each pixel, spread evenly over it."""
-    world, lens = gltf.cameras[name]
+    world, lens = camera
     count = size[0] * size[1] * samples
     random = mi.PCG32(size=count, initstate=seed)
     index = dr.arange(mi.UInt32, count) // samples
@@ -237,10 +247,10 @@ def camera_rays(gltf, name, size, seed, samples):
     return random, origin, d
 
 
-def paths(world, gltf, camera, size, bounces, seed, samples):
+def paths(world, camera, size, bounces, seed, samples):
     """One array of pixels a quantity: direct, occlusion, seen (emission and sky met by camera rays) and for each bounce
     the light that its ray brings, by the lobe of the first surface."""
-    random, o, d = camera_rays(gltf, camera, size, seed, samples)
+    random, o, d = camera_rays(camera, size, seed, samples)
     active, triangle, b = world.trace(o, d, mi.Float(dr.inf), mi.Bool(True))
     met, s = mi.Bool(active), Surface(world, triangle, b, -d)
     out = {"seen": dr.select(active, s.emission, world.sky), "direct": dr.select(active, s.direct(world, active), 0)}
@@ -275,14 +285,14 @@ def fold(color, samples):
     return np.stack([np.array(dr.block_sum(c, samples)) / samples for c in color], 1)
 
 
-def render(world, gltf, args):
+def render(world, camera, args):
     """Means over the even and the odd passes: quantity -> 2 x pixels x 3."""
     pixels = args.size[0] * args.size[1]
     samples = max(1, min(args.spp // 2, 1 << (PATHS_AT_ONCE // pixels).bit_length() - 1))
     passes = 2 * max(1, round(args.spp / samples / 2))
     sums = {}
     for number in range(passes):
-        means = paths(world, gltf, args.camera, args.size, args.bounces, args.seed * 100003 + number, samples)
+        means = paths(world, camera, args.size, args.bounces, args.seed * 100003 + number, samples)
         for key, value in means.items():
             sums.setdefault(key, np.zeros((2, pixels, 3)))[number % 2] += value.astype(float) * 2 / passes
         print(f"\r{(number + 1) * samples} of {passes * samples} samples", end="", file=sys.stderr, flush=True)
@@ -348,7 +358,7 @@ def report(found, expected):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", help=".gltf with the files beside it")
-    parser.add_argument("--camera", default="default")
+    parser.add_argument("--camera", default="default", help="a name, or EX,EY,EZ,TX,TY,TZ,FOV: eye, target, degrees; near plane at 1 cm")
     parser.add_argument("--size", type=lambda s: tuple(map(int, s.split("x"))), default=(128, 96), metavar="WxH")
     parser.add_argument("--spp", type=int, default=256)
     parser.add_argument("--bounces", type=int, default=3)
@@ -357,7 +367,8 @@ def main():
     parser.add_argument("--against", nargs="*", default=[], metavar="FOLDER", help="references of 1, 2, ... bounces")
     args = parser.parse_args()
     gltf = Gltf(args.scene)
-    found = render(World(gltf, args.sky), gltf, args)
+    camera = placed([float(n) for n in args.camera.split(",")]) if "," in args.camera else gltf.cameras[args.camera]
+    found = render(World(gltf, args.sky), camera, args)
     print(f"Mitsuba {mi.__version__}, {args.scene}, camera {args.camera}, {args.size[0]}x{args.size[1]}, {args.spp} samples a pixel")
     report(found, by_bounce(args.against))
 
