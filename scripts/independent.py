@@ -336,12 +336,8 @@ def mean_and_error(halves):
     return halves.mean(), math.sqrt((difference**2).sum()) / 2 / len(difference)
 
 
-def relmse(x, r):
-    return ((x - r) ** 2 / (r**2 + 1e-2)).mean()
-
-
 def report(found, expected):
-    """A line a quantity. `floor`: the relMSE that the noise of both pictures alone would give."""
+    """A line a quantity. `floor`: the relMSE that the noise of both pictures alone would give, from their halves."""
     print(f"{'':12}{'mitsuba':>12}{'+-':>10}{'conelab':>12}{'+-':>10}{'ratio':>10}{'+-':>9}{'relMSE':>11}{'floor':>11}")
     for key in sorted(found, key=lambda k: (k[-1].isdigit(), k)):
         mean, error = mean_and_error(found[key])
@@ -349,9 +345,10 @@ def report(found, expected):
         if key in expected:
             other, spread = mean_and_error(expected[key])
             of = math.hypot(error / max(mean, 1e-9), spread / max(other, 1e-9))
-            floor = (relmse(*found[key]) + relmse(*expected[key])) / 4
-            error = relmse(expected[key].mean(0), found[key].mean(0))
-            line += f"{other:12.6f}{spread:10.2g}{other / max(mean, 1e-9):10.5f}{of:9.5f}{error:11.3e}{floor:11.3e}"
+            r, x = found[key].mean(0), expected[key].mean(0)
+            noise = sum((halves[0] - halves[1]) ** 2 / 4 for halves in (found[key], expected[key]))
+            relmse, floor = (((v / (r**2 + 1e-2)).mean()) for v in ((x - r) ** 2, noise))
+            line += f"{other:12.6f}{spread:10.2g}{other / max(mean, 1e-9):10.5f}{of:9.5f}{relmse:11.3e}{floor:11.3e}"
         print(line)
 
 
