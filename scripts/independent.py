@@ -183,8 +183,9 @@ class Surface:
         d = a2 / (dr.pi * dr.square(nh * nh * (a2 - 1) + 1))
         g = nl / (nl * (1 - k) + k) * nv / (nv * (1 - k) + k)
         f = self.f0 + (1 - self.f0) * dr.power(1 - dr.minimum(vh, 1), 5)
-        above = dr.select((cosine > 0) & (dr.dot(self.face, l) > 0), cosine, 0)
-        return self.albedo * (dr.inv_pi * above), f * (d * g / (4 * nl * nv) * above)
+        above = (cosine > 0) & (dr.dot(self.face, l) > 0)
+        shiny = f * (d * g / (4 * nl * nv) * cosine)
+        return dr.select(above, self.albedo * (dr.inv_pi * cosine), 0), dr.select(above, shiny, 0)
 
     def sample(self, choice, u):
         """A direction and its density: from the cosine or from the visible normals, whichever `choice` says."""
@@ -235,7 +236,8 @@ def camera_rays(camera, size, seed, samples):
     """Origins on the near plane and directions, `samples` for each pixel, spread evenly over it."""
     world, lens = camera
     count = size[0] * size[1] * samples
-    random = mi.PCG32(size=count, initstate=seed)
+    # Scrambled: PCG streams of neighbouring numbers are correlated.
+    random = mi.PCG32(1, *mi.sample_tea_32(dr.arange(mi.UInt32, count), seed))
     index = dr.arange(mi.UInt32, count) // samples
     half = math.tan(0.5 * lens["yfov"])
     x = (2 * (mi.Float(index % size[0]) + random.next_float32()) / size[0] - 1) * half * size[0] / size[1]
@@ -274,7 +276,8 @@ def paths(world, camera, size, bounces, seed, samples):
         s = Surface(world, triangle, b, -d)
         light = dr.select(found, s.emission + s.direct(world, found), world.sky)
         light = dr.select(active, light, 0)
-        out[f"diffuse {bounce}"], out[f"specular {bounce}"] = diffuse * light, specular * light
+        for lobe, weight in (("diffuse", diffuse), ("specular", specular)):
+            out[f"{lobe} {bounce}"] = dr.select(active, weight * light, 0)
         active &= found
         dr.eval(s.__dict__, active, out)
     return {k: fold(v, samples) for k, v in out.items()}

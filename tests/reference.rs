@@ -52,7 +52,7 @@ type Means = &'static [(&'static str, f64, f64)];
 /// samples together.
 const CORNELL: Means = &[
     ("direct", 0.009896, 0.0010),
-    ("occlusion", 0.492377, 0.0007),
+    ("occlusion", 0.492377, 0.0008),
     ("bounce 1", 0.011310, 0.0060),
     ("bounce 2", 0.005045, 0.0075),
     ("bounce 3", 0.002577, 0.0095),
@@ -61,7 +61,7 @@ const CORNELL: Means = &[
 /// The same of `atrium` with `--size 32x24 --camera=5.5,3.5,1,4.9,0.3,2.2,35 --spp 16384 --sky 0.5,0.68,0.95`: a plant
 /// with alpha masks in the sun, on textured tiles with normal maps.
 const PLANT: Means = &[
-    ("direct", 0.860122, 0.0030),
+    ("direct", 0.860122, 0.0018),
     ("occlusion", 0.139815, 0.0090),
     ("bounce 1", 0.078855, 0.0120),
     ("bounce 2", 0.033479, 0.0190),
