@@ -12,131 +12,27 @@ written from the papers.
 
 The sky is not part of glTF: --sky 0.5,0.68,0.95 gives its radiance.
 """
+
 import argparse
-import json
 import math
-import os
 import sys
 
 import mitsuba as mi
 import numpy as np
-import OpenEXR
 
 mi.set_variant("llvm_ad_rgb")
 import drjit as dr  # noqa: E402  (wants the variant)
-from independent_gltf import Gltf, srgb_to_linear  # noqa: E402
+from independent_compare import by_bounce, report  # noqa: E402
+from independent_gltf import Gltf, placed  # noqa: E402
+from independent_world import World, epsilon  # noqa: E402
 
 PATHS_AT_ONCE = 1 << 20
 
 
-class World:
-    """The scene on the device."""
-
-    def __init__(self, gltf, sky):
-        soup = gltf.soup
-        corners = len(soup["position"])
-        mesh = mi.Mesh("scene", corners, corners // 3)
-        params = mi.traverse(mesh)
-        params["vertex_positions"] = mi.Float(soup["position"].ravel().astype(np.float32))
-        params["faces"] = mi.UInt32(np.arange(corners, dtype=np.uint32))
-        params.update()
-        self.scene = mi.load_dict({"type": "scene", "mesh": mesh})
-        store = lambda a, kind=mi.Float: kind(np.ascontiguousarray(a).ravel())  # noqa: E731
-        self.data = {k: store(soup[k].astype(np.float32)) for k in ("position", "normal", "tangent", "uv")}
-        self.material_of = store(soup["material"].astype(np.uint32), mi.UInt32)
-        self.sky = mi.Color3f(sky)
-        self.lights = gltf.lights
-        self.texels, self.places = [np.ones((1, 4))], {}
-        constants = np.array([self.constant(m) for m in gltf.json["materials"]], np.float32)
-        self.masks = bool((constants[:, 9] > 0).any())
-        self.constants = store(constants)
-        self.images = store(np.array([self.textures(gltf, m) for m in gltf.json["materials"]], np.int32), mi.Int32)
-        self.atlas = store(np.concatenate(self.texels).astype(np.float32))
-
-    @staticmethod
-    def constant(m):
-        """Numbers of a material: 0 base colour, 4 emission, 7 roughness, 8 metallic, 9 alpha cutoff, 10 scale of the
-        normal map, negative without one."""
-        pbr = m.get("pbrMetallicRoughness", {})
-        strength = m.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
-        row = list(pbr.get("baseColorFactor", [1] * 4)) + [c * strength for c in m.get("emissiveFactor", [0] * 3)]
-        row += [pbr.get("roughnessFactor", 1), pbr.get("metallicFactor", 1)]
-        row += [m.get("alphaCutoff", 0.5) if m.get("alphaMode") == "MASK" else 0]
-        return row + [m["normalTexture"].get("scale", 1) if "normalTexture" in m else -1]
-
-    def textures(self, gltf, m):
-        """First texel, width and height of base colour, emission, roughness with metallic, and normal; without a
-        texture, those of one white texel."""
-        pbr, row = m.get("pbrMetallicRoughness", {}), []
-        for texture, srgb in ((pbr.get("baseColorTexture"), True), (m.get("emissiveTexture"), True),
-                              (pbr.get("metallicRoughnessTexture"), False), (m.get("normalTexture"), False)):
-            row += [0, 1, 1] if texture is None else self.place(gltf, texture["index"], srgb)
-        return row
-
-    def place(self, gltf, texture, srgb):
-        if (texture, srgb) not in self.places:
-            image = gltf.image(texture) / 255.0
-            if srgb:
-                image[..., :3] = srgb_to_linear(image[..., :3])
-            self.places[texture, srgb] = [sum(map(len, self.texels)), image.shape[1], image.shape[0]]
-            self.texels.append(image.reshape(-1, 4))
-        return self.places[texture, srgb]
-
-    def texture(self, material, number, uv):
-        """Bilinear, repeated, of the full resolution."""
-        first, w, h = (dr.gather(mi.Int32, self.images, 12 * material + 3 * number + i) for i in range(3))
-        uv = uv - dr.floor(uv)
-        x, y = uv.x * w - 0.5, uv.y * h - 0.5
-        i, j = mi.Int32(dr.floor(x)), mi.Int32(dr.floor(y))
-        fx, fy = x - i, y - j
-        wrap = lambda a, n: dr.select(a < 0, a + n, dr.select(a >= n, a - n, a))  # noqa: E731
-        at = lambda i, j: dr.gather(mi.Vector4f, self.atlas, mi.UInt32(first + wrap(j, h) * w + wrap(i, w)))  # noqa: E731
-        return dr.lerp(dr.lerp(at(i, j), at(i + 1, j), fx), dr.lerp(at(i, j + 1), at(i + 1, j + 1), fx), fy)
-
-    def numbers(self, material, column, kind=mi.Float):
-        at = lambda i: dr.gather(mi.Float, self.constants, 11 * material + column + i)  # noqa: E731
-        return at(0) if kind is mi.Float else kind(at(0), at(1), at(2))
-
-    def mix(self, key, kind, triangle, b):
-        """An attribute at weights b of the second and third corner."""
-        at = lambda i: dr.gather(kind, self.data[key], 3 * triangle + i)  # noqa: E731
-        return at(0) * (1 - b.x - b.y) + at(1) * b.x + at(2) * b.y
-
-    def cut_out(self, hit):
-        triangle = dr.select(hit.is_valid(), hit.prim_index, 0)
-        material = dr.gather(mi.UInt32, self.material_of, triangle)
-        alpha = self.numbers(material, 3) * self.texture(material, 0, self.mix("uv", mi.Point2f, triangle, hit.prim_uv)).w
-        return hit.is_valid() & (alpha < self.numbers(material, 9))
-
-    @dr.syntax
-    def trace(self, origin, direction, end, active):
-        """(valid, triangle, weights) of the first surface that no mask cuts out, nearer than `end`."""
-        o, left, walking = mi.Point3f(origin), mi.Float(end), mi.Bool(active)
-        valid, triangle, weights = mi.Bool(False), mi.UInt32(0), mi.Point2f(0)
-        while walking:
-            ray = mi.Ray3f(o, direction)
-            ray.maxt = left
-            hit = self.scene.ray_intersect_preliminary(ray, coherent=False, active=walking)
-            again = walking & self.cut_out(hit) if dr.hint(self.masks, mode="scalar") else mi.Bool(False)
-            found = walking & hit.is_valid() & ~again
-            valid |= found
-            triangle = dr.select(found, hit.prim_index, triangle)
-            weights = dr.select(found, hit.prim_uv, weights)
-            step = hit.t + epsilon(o + direction * hit.t)
-            o = dr.select(again, o + direction * step, o)
-            left = dr.select(again, left - step, left)
-            walking = again & (left > 0)
-        return valid, triangle, weights
-
-
-def epsilon(p):
-    return 2e-5 * (1 + dr.max(dr.abs(p)))
-
-
 class Surface:
     """A hit with its BRDF: Lambert's albedo/pi plus Cook-Torrance microfacets (Cook and Torrance 1982) with the GGX
-    distribution of Walter et al. 2007, alpha = roughness^2 (Burley 2012), Schlick's Fresnel term (1994) and Smith's G as
-    Schlick fits it, k = (roughness + 1)^2 / 8 (Karis 2013). The diffuse part is not scaled by 1 - F."""
+    distribution of Walter et al. 2007, alpha = roughness^2 (Burley 2012), Schlick's Fresnel term (1994) and Smith's G
+    as Schlick fits it, k = (roughness + 1)^2 / 8 (Karis 2013). The diffuse part is not scaled by 1 - F."""
 
     def __init__(self, world, triangle, b, view):
         material = dr.gather(mi.UInt32, world.material_of, triangle)
@@ -213,23 +109,15 @@ class Surface:
                     color *= dr.clip(1 - dr.power(far / light["range"], 4), 0, 1)
             if light["type"] == "spot":
                 inner, outer = math.cos(light["spot"]["innerConeAngle"]), math.cos(light["spot"]["outerConeAngle"])
-                color *= dr.square(dr.clip((-dr.dot(to_light, mi.Vector3f(forward)) - outer) / max(inner - outer, 1e-4), 0, 1))
+                color *= dr.square(
+                    dr.clip((-dr.dot(to_light, mi.Vector3f(forward)) - outer) / max(inner - outer, 1e-4), 0, 1)
+                )
             diffuse, specular = self.eval(to_light)
             lit = (diffuse + specular) * color
             asked = active & dr.any(lit > 0)
             shadowed, _, _ = world.trace(self.start(), to_light, far * 0.9999, asked)
             total += dr.select(asked & ~shadowed, lit, 0)
         return total
-
-
-def placed(numbers):
-    """Eye, target and vertical field of view in degrees, as a camera of Gltf that stands upright."""
-    eye, target, fov = np.array(numbers[:3]), np.array(numbers[3:6]), numbers[6]
-    back = (eye - target) / np.linalg.norm(eye - target)
-    right = np.cross([0, 1, 0], back) / np.linalg.norm(np.cross([0, 1, 0], back))
-    world = np.eye(4)
-    world[:3] = np.stack([right, np.cross(back, right), back, eye], 1)
-    return world, {"yfov": math.radians(fov), "znear": 0.01}
 
 
 def camera_rays(camera, size, seed, samples):
@@ -305,60 +193,12 @@ def render(world, camera, args):
     return sums
 
 
-def kept(folder):
-    """The samples that `conelab reference` keeps in a folder: part -> 2 x pixels x 3, means of its halves."""
-    with open(os.path.join(folder, "reference.json"), encoding="utf-8") as file:
-        record = json.load(file)
-    layers = OpenEXR.File(os.path.join(folder, record["sums"]), separate_channels=True).parts
-    layers = {layer.name(): {c: layer.channels[c].pixels.ravel().astype(float) for c in "RGBA"} for layer in layers}
-    mean = lambda layer: np.stack([layer[c] / layer["A"] for c in "RGB"], 1)  # noqa: E731
-    return record, {part: np.stack([mean(layers[f"{part}.{half}"]) for half in range(2)])
-                    for part in ("total", "direct", "diffuse", "specular", "occlusion")}
-
-
-def by_bounce(folders):
-    """What each bounce adds, from references of 1, 2, ... bounces."""
-    out, before = {}, None
-    for number, folder in enumerate(folders, 1):
-        record, parts = kept(folder)
-        if (record["params"].get("bounces"), record["params"].get("pixel")) != (str(number), "box"):
-            sys.exit(f"{folder}: not a reference of {number} bounces with pixel=box")
-        if before is None:
-            out["direct"], out["occlusion"] = parts["direct"], parts["occlusion"]
-            out["seen"] = parts["total"] - parts["direct"] - parts["diffuse"] - parts["specular"]
-        for lobe in ("diffuse", "specular"):
-            out[f"{lobe} {number}"] = parts[lobe] - (before[lobe] if before else 0)
-        out[f"bounce {number}"] = out[f"diffuse {number}"] + out[f"specular {number}"]
-        before = parts
-    return out
-
-
-def mean_and_error(halves):
-    """Mean over the picture and its standard error, from the differences of the halves."""
-    difference = (halves[0] - halves[1]).mean(1)
-    return halves.mean(), math.sqrt((difference**2).sum()) / 2 / len(difference)
-
-
-def report(found, expected):
-    """A line a quantity. `floor`: the relMSE that the noise of both pictures alone would give, from their halves."""
-    print(f"{'':12}{'mitsuba':>12}{'+-':>10}{'conelab':>12}{'+-':>10}{'ratio':>10}{'+-':>9}{'relMSE':>11}{'floor':>11}")
-    for key in sorted(found, key=lambda k: (k[-1].isdigit(), k)):
-        mean, error = mean_and_error(found[key])
-        line = f"{key:12}{mean:12.6f}{error:10.2g}"
-        if key in expected:
-            other, spread = mean_and_error(expected[key])
-            of = math.hypot(error / max(mean, 1e-9), spread / max(other, 1e-9))
-            r, x = found[key].mean(0), expected[key].mean(0)
-            noise = sum((halves[0] - halves[1]) ** 2 / 4 for halves in (found[key], expected[key]))
-            relmse, floor = (((v / (r**2 + 1e-2)).mean()) for v in ((x - r) ** 2, noise))
-            line += f"{other:12.6f}{spread:10.2g}{other / max(mean, 1e-9):10.5f}{of:9.5f}{relmse:11.3e}{floor:11.3e}"
-        print(line)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", help=".gltf with the files beside it")
-    parser.add_argument("--camera", default="default", help="a name, or EX,EY,EZ,TX,TY,TZ,FOV: eye, target, degrees; near plane at 1 cm")
+    parser.add_argument(
+        "--camera", default="default", help="a name, or EX,EY,EZ,TX,TY,TZ,FOV: eye, target, degrees; near plane at 1 cm"
+    )
     parser.add_argument("--size", type=lambda s: tuple(map(int, s.split("x"))), default=(128, 96), metavar="WxH")
     parser.add_argument("--spp", type=int, default=256)
     parser.add_argument("--bounces", type=int, default=3)
@@ -369,7 +209,8 @@ def main():
     gltf = Gltf(args.scene)
     camera = placed([float(n) for n in args.camera.split(",")]) if "," in args.camera else gltf.cameras[args.camera]
     found = render(World(gltf, args.sky), camera, args)
-    print(f"Mitsuba {mi.__version__}, {args.scene}, camera {args.camera}, {args.size[0]}x{args.size[1]}, {args.spp} samples a pixel")
+    width, height = args.size
+    print(f"Mitsuba {mi.__version__}, {args.scene}, camera {args.camera}, {width}x{height}, {args.spp} samples a pixel")
     report(found, by_bounce(args.against))
 
 

@@ -1,6 +1,8 @@
 """glTF 2.0 as `conelab scene --export` writes it, read without anything of conelab, for independent.py."""
+
 import base64
 import json
+import math
 import os
 import tempfile
 import urllib.parse
@@ -34,14 +36,15 @@ class Gltf:
 
     def view(self, index):
         v = self.json["bufferViews"][index]
-        return self.buffers[v["buffer"]][v.get("byteOffset", 0):][: v["byteLength"]], v.get("byteStride")
+        return self.buffers[v["buffer"]][v.get("byteOffset", 0) :][: v["byteLength"]], v.get("byteStride")
 
     def accessor(self, index):
         a = self.json["accessors"][index]
         data, stride = self.view(a["bufferView"])
         kind, n = np.dtype(NUMBERS[a["componentType"]]), COMPONENTS[a["type"]]
-        return np.ndarray((a["count"], n), kind, data, a.get("byteOffset", 0),
-                          (stride or n * kind.itemsize, kind.itemsize)).copy()
+        return np.ndarray(
+            (a["count"], n), kind, data, a.get("byteOffset", 0), (stride or n * kind.itemsize, kind.itemsize)
+        ).copy()
 
     def visit(self, index, parent):
         node = self.json["nodes"][index]
@@ -50,10 +53,13 @@ class Gltf:
             local = np.array(node["matrix"], float).reshape(4, 4).T
         else:
             x, y, z, w = node.get("rotation", [0, 0, 0, 1])
-            local[:3, :3] = np.array([
-                [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]) * node.get("scale", [1, 1, 1])
+            local[:3, :3] = np.array(
+                [
+                    [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                    [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                    [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+                ]
+            ) * node.get("scale", [1, 1, 1])
             local[:3, 3] = node.get("translation", [0, 0, 0])
         world = parent @ local
         if "mesh" in node:
@@ -71,8 +77,10 @@ class Gltf:
 
     def triangles(self, primitive, world):
         index = self.accessor(primitive["indices"]).ravel()
-        get = {k: self.accessor(primitive["attributes"][n])[index].astype(float) for k, n in (
-            ("position", "POSITION"), ("normal", "NORMAL"), ("tangent", "TANGENT"), ("uv", "TEXCOORD_0"))}
+        get = {
+            k: self.accessor(primitive["attributes"][n])[index].astype(float)
+            for k, n in (("position", "POSITION"), ("normal", "NORMAL"), ("tangent", "TANGENT"), ("uv", "TEXCOORD_0"))
+        }
         turn = world[:3, :3]
         get["position"] = get["position"] @ turn.T + world[:3, 3]
         get["normal"] = get["normal"] @ np.linalg.inv(turn)
@@ -94,3 +102,13 @@ class Gltf:
 
 def srgb_to_linear(c):
     return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+
+
+def placed(numbers):
+    """Eye, target and vertical field of view in degrees, as a camera of Gltf that stands upright."""
+    eye, target, fov = np.array(numbers[:3]), np.array(numbers[3:6]), numbers[6]
+    back = (eye - target) / np.linalg.norm(eye - target)
+    right = np.cross([0, 1, 0], back) / np.linalg.norm(np.cross([0, 1, 0], back))
+    world = np.eye(4)
+    world[:3] = np.stack([right, np.cross(back, right), back, eye], 1)
+    return world, {"yfov": math.radians(fov), "znear": 0.01}
