@@ -281,6 +281,9 @@ fn files(home: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     files
 }
 
+/// A scene's part, and what changes in it.
+type Change = (&'static str, fn(&mut Scene));
+
 #[test]
 fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
     let home = empty_home();
@@ -307,7 +310,7 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
     assert_eq!(found(&lab.home, &moved, &cornell, 1), None, "camera");
     assert_eq!(found(&lab.home, &experiment("cornell", (12, 16), &[]), &cornell, 1), None, "size");
     assert_eq!(found(&lab.home, &plain(), &cornell, 2), None, "bounces");
-    let changes: [(&str, fn(&mut Scene)); 4] = [
+    let changes: [Change; 4] = [
         ("light", |s| s.lights[0].color.x *= 1.001),
         ("sky", |s| s.sky.z = 0.1),
         ("material", |s| s.materials[1].roughness *= 0.5),

@@ -62,7 +62,7 @@ pub fn gather(
     if now.samples >= now.goal {
         return sums.reference(&folder);
     }
-    let per_frame = samples_per_frame(&lab.gpu.info.kind, traced.size);
+    let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
     key::push(&mut traced, "samples", &per_frame.to_string());
     let wanted = parts.iter().map(|p| store::sum_texture(p)).collect();
     let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, None)?;
@@ -72,7 +72,7 @@ pub fn gather(
         now = state(&sums, goal)?;
         let stop = progress(now).is_break();
         // Whole blocks only: then the sums do not depend on where a run was stopped.
-        let whole = sums.samples % store::BLOCK == 0;
+        let whole = sums.samples.is_multiple_of(store::BLOCK);
         if whole && (stop || now.samples >= now.goal || kept.elapsed() > KEEP_EVERY) {
             store::write(&folder, &sums, &traced, &lab.gpu.info)?;
             kept = Instant::now();
@@ -90,7 +90,7 @@ fn state(sums: &Sums, goal: Goal) -> Result<Gathered, LabError> {
     let blocks = |samples: u64| samples.max(1).next_multiple_of(store::BLOCK);
     let goal = match goal {
         Goal::Samples(n) => blocks(n),
-        Goal::Noise(most) if noise <= most && sums.samples % store::BLOCK == 0 => sums.samples,
+        Goal::Noise(most) if noise <= most && sums.samples.is_multiple_of(store::BLOCK) => sums.samples,
         // The square of the error falls with the number of samples.
         Goal::Noise(most) => {
             let factor = if noise.is_finite() && most > 0.0 { (noise / most).clamp(1.0, 1e6) } else { 2.0 };
