@@ -17,9 +17,11 @@ macro_rules! say_part {
 }
 
 mod adapt;
+mod bench;
 mod capture;
 mod check;
 mod compare;
+mod fit;
 mod graph;
 mod reference;
 mod render;
@@ -56,6 +58,8 @@ enum Command {
     Capture(capture::CaptureArgs),
     /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
     Replay(replay::ReplayArgs),
+    /// Time configurations in turn and print tables of their stages and totals; exit 1 if one failed.
+    Bench(bench::BenchArgs),
     /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
     Sweep(sweep::SweepArgs),
     /// Make a page, charts and a table of sweeps: error against time.
@@ -66,6 +70,8 @@ enum Command {
     Save(save::SaveArgs),
     /// Gather ground truth for an experiment by path tracing, into captures/reference.
     Reference(reference::ReferenceArgs),
+    /// Find the cheapest setting of an experiment that stays within an error, or the best within a time.
+    Fit(fit::FitArgs),
     /// Split an experiment's error into what voxels, cones and filtering each add.
     Split(split::SplitArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
@@ -119,10 +125,12 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Save(args) => save::run(&args),
         Command::Reference(args) => reference::run(&args),
+        Command::Fit(args) => fit::run(&args),
         Command::Split(args) => split::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),

@@ -4,7 +4,7 @@ mod table;
 mod verdict;
 
 pub use table::table;
-pub use verdict::Verdict;
+pub use verdict::{Verdict, within_noise};
 
 use crate::metrics::maps::{MapFile, maps};
 use crate::metrics::region::{Region, regions};

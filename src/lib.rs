@@ -2,12 +2,14 @@
 //!
 //! Knowledge flows one way: [`vulkan`], [`shader`], [`graph`] know no scene; [`scene`] knows no device; [`lab`] joins
 //! them to run an [`experiment`]; the commands and the [`workbench`] in its [`window`] are thin users of the lab.
+pub mod bench;
 pub mod camera_path;
 pub mod capture;
 pub mod commands;
 pub mod comparison;
 pub mod experiment;
 pub mod files;
+pub mod fit;
 pub mod graph;
 pub mod lab;
 pub mod measure;

@@ -74,12 +74,6 @@ impl Changes {
     }
 }
 
-/// Sets a parameter, over whatever the experiment says of it. For values that have been checked.
-pub fn push_setting(experiment: &mut Experiment, name: &str, value: &str) {
-    let file = experiment.sources.add("--set".as_ref(), format!("{name}={value}"));
-    experiment.params.push((Loc { value: name.into(), at: At { file, offset: 0 } }, value.into()));
-}
-
 /// The experiment's scene, lit as the experiment says.
 pub fn open_scene(experiment: &Experiment) -> Result<Scene, LabError> {
     let mut scene = super::open_scene(&experiment.scene)?;

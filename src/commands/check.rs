@@ -27,10 +27,12 @@ pub enum FileKind {
     Scene,
     /// A camera path.
     Path,
+    /// A sweep.
+    Sweep,
 }
 
 /// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights,
-/// camera paths hold keys.
+/// camera paths hold keys, sweeps name experiments.
 pub fn kind(path: &str) -> FileKind {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let has = |field: &str| {
@@ -38,6 +40,8 @@ pub fn kind(path: &str) -> FileKind {
     };
     if has("graph") {
         FileKind::Experiment
+    } else if has("experiments") {
+        FileKind::Sweep
     } else if has("models") || has("lights") || has("cameras") {
         FileKind::Scene
     } else if has("keys") {
@@ -69,7 +73,11 @@ fn own_files(home: &Home) -> Vec<PathBuf> {
         }
     }
     let mut files: Vec<PathBuf> = graphs.into_iter().filter(|g| !included.contains(g)).collect();
-    files.extend(["configs", "configs/scenes", "configs/paths"].iter().flat_map(|f| ron_files(&home.root.join(f))));
+    files.extend(
+        ["configs", "configs/scenes", "configs/paths", "configs/sweeps"]
+            .iter()
+            .flat_map(|f| ron_files(&home.root.join(f))),
+    );
     files
 }
 
@@ -90,6 +98,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
                 Err(errors) => errors,
             },
             FileKind::Path => crate::camera_path::CameraPath::read(file).err().unwrap_or_default(),
+            FileKind::Sweep => crate::sweep::check(&home, file).err().unwrap_or_default(),
             FileKind::Experiment => check_experiment(&home, file),
             FileKind::Scene => {
                 match crate::scene::Scene::open(&name, &|_, _| ControlFlow::Continue(())) {

@@ -1,7 +1,7 @@
 //! `conelab split`.
 
 use super::DeviceArgs;
-use super::adapt::{self, ExperimentArgs, push_setting};
+use super::adapt::{self, ExperimentArgs};
 use crate::lab::{Home, Lab, LabError, parts_of};
 use crate::metrics::{Linear, relmse};
 use crate::reference::{Goal, Reference};
@@ -79,7 +79,7 @@ pub fn run(args: &SplitArgs) -> Result<(), LabError> {
     for step in loaded.graph.ladder.iter().map(|s| &s.value) {
         let mut set = experiment.clone();
         for (name, value) in &step.set.0 {
-            push_setting(&mut set, &name.value, &value.value.0);
+            set.set(&name.value, &value.value.0);
         }
         let wanted = names.iter().map(|n| n.1.clone()).collect();
         let mut session = lab.build(&set, &loaded, scene.clone(), wanted, None)?;

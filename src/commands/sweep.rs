@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use crate::lab::{Home, Lab, LabError};
 use crate::measure::Frames;
-use crate::sweep::{Options, Progress, Shard, Sweep, Tally, run as run_sweep};
+use crate::sweep::{Options, Outcome, Progress, Shard, Sweep, Tally, run as run_sweep};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -25,6 +25,10 @@ pub struct SweepArgs {
     /// Frames before those of every point, instead of the file's.
     #[arg(long)]
     warmup: Option<usize>,
+    /// Gather the references of the points to this many samples a pixel first; those that are cached are used as they
+    /// are when absent.
+    #[arg(long, value_name = "SAMPLES")]
+    reference: Option<u64>,
     /// Measure points again that have failed.
     #[arg(long)]
     again: bool,
@@ -41,7 +45,7 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
     super::adapt::check_frames(frames.count, frames.warmup, 0.0)?;
     let home = Home::find()?;
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/sweeps").join(&sweep.name));
-    let options = Options { folder, shard, frames, again: args.again };
+    let options = Options { folder, shard, frames, again: args.again, samples: args.reference };
     let bar = ProgressBar::new(0).with_style(
         ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
@@ -51,20 +55,24 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
             if before > 0 {
                 bar.suspend(|| say!("{before} points are finished already, {todo} to go"));
             }
-            bar.set_length(todo as u64);
             bar.reset();
+            bar.set_length(todo as u64);
+            bar.set_message("points");
+        }
+        Progress::Gathers(now) => {
+            bar.set_length(now.goal);
+            bar.set_position(now.samples);
+            bar.set_message("samples of a reference");
         }
         Progress::Note(text) => bar.suspend(|| eprintln!("{text}")),
-        Progress::Finished(point, error) => {
-            if let Some(error) = error {
-                bar.suspend(|| {
-                    eprintln!(
-                        "{} ({}) failed: {}",
-                        point.id,
-                        shown(&point.labels),
-                        error.lines().next().unwrap_or_default()
-                    )
-                });
+        Progress::Finished(point, record) => {
+            let say = |text: &str| {
+                let first = text.lines().next().unwrap_or_default();
+                bar.suspend(|| eprintln!("{} ({}) {first}", point.id, shown(&point.labels)));
+            };
+            match &record.outcome {
+                Outcome::Failed(error) => say(&format!("failed: {error}")),
+                Outcome::Done(measured) => measured.stats.warnings.iter().for_each(|w| say(&format!("warning: {w}"))),
             }
             bar.inc(1);
         }

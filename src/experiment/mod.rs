@@ -11,7 +11,7 @@ pub(crate) use write::placed_text;
 pub use write::{resolved_text, write};
 
 use crate::graph::param::Params;
-use crate::graph::source::{Loc, Sources};
+use crate::graph::source::{At, Loc, Sources};
 use crate::lab::LabError;
 use crate::scene::Camera;
 use glam::Vec3;
@@ -139,6 +139,12 @@ const DEFAULT_SIZE: (u32, u32) = (1280, 720);
 const DEFAULT_CAMERA: &str = "default";
 
 impl Experiment {
+    /// Sets a parameter to a value in RON, over whatever is said of it now.
+    pub fn set(&mut self, name: &str, value: &str) {
+        let file = self.sources.add("set by the program".as_ref(), format!("{name} = {value}"));
+        self.params.push((Loc { value: name.into(), at: At { file, offset: 0 } }, value.into()));
+    }
+
     /// The values of all parameters: `defaults`, then what the experiment sets.
     ///
     /// # Errors

@@ -40,6 +40,8 @@ pub struct GraphFile {
     pub compare: Items<CompareDecl>,
     /// Settings that show something worth looking into.
     pub views: Items<ViewDecl>,
+    /// Parameters that cost time and quality, and the values worth trying.
+    pub fit: Entries<Items<RawText>>,
     /// Settings from the ideal to the method: what each step costs is the method's error, split.
     pub ladder: Items<ViewDecl>,
 }

@@ -57,6 +57,8 @@ pub struct Graph {
     pub compare: Vec<Loc<CompareDecl>>,
     /// Settings that show something worth looking into.
     pub views: Vec<Loc<ViewDecl>>,
+    /// Parameters that trade time for quality, and the values worth trying, neighbours alike.
+    pub fit: Vec<(String, Vec<String>)>,
     /// Settings from the ideal to the method as it is set: what each step adds is a part of its error.
     pub ladder: Vec<Loc<ViewDecl>>,
     /// The files it came from.
@@ -109,6 +111,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         compare: Vec::new(),
         views: Vec::new(),
         ladder: Vec::new(),
+        fit: Vec::new(),
         sources,
     };
     let mut wanted = Vec::new();
@@ -116,6 +119,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let mut checks = Vec::new();
     let mut pointer = None;
     let mut tables = Vec::new();
+    let mut fit: Vec<(Loc<String>, Loc<RawText>)> = Vec::new();
     for file in files {
         decls.extend(file.params.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
@@ -126,6 +130,11 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         graph.compare.extend(file.compare.0);
         graph.views.extend(file.views.0);
         graph.ladder.extend(file.ladder.0);
+        for (name, values) in file.fit.0 {
+            let texts = values.value.0.iter().map(|v| v.value.0.clone()).collect();
+            graph.fit.push((name.value.clone(), texts));
+            fit.extend(values.value.0.into_iter().map(|v| (name.clone(), v)));
+        }
         pointer = file.pointer.or(pointer);
         tables.extend(file.tables.0);
         for (slot, name) in [(&mut graph.output, file.output), (&mut graph.hdr, file.hdr)] {
@@ -154,6 +163,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     for compare in &graph.compare {
         check.values(compare.value.a.0.iter().chain(&compare.value.b.0));
     }
+    check.values(fit.iter());
     for view in graph.views.iter().chain(&graph.ladder) {
         check.values(view.value.set.0.iter());
     }

@@ -3,9 +3,10 @@
 mod pictures;
 
 use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError, Loaded, Seed, Texels};
+use crate::graph::run::FrameTimes;
+use crate::lab::{Lab, LabError, Loaded, Seed, Session};
 use crate::metrics::{Compared, Kind, Linear, Scores};
-use crate::picture::to_floats;
+use crate::picture::to_linear;
 use crate::reference::Reference;
 use crate::scene::Scene;
 use crate::stats::{self, Stats};
@@ -31,8 +32,8 @@ pub struct Point {
     pub scores: BTreeMap<String, Scores>,
     /// relMSE between the two halves of the reference's samples, by part: what the scores cannot tell apart.
     pub noise: BTreeMap<String, f64>,
-    /// Samples a pixel of the reference.
-    pub reference_samples: Option<u64>,
+    /// Samples a pixel of each reference, by its number of bounces.
+    pub references: BTreeMap<u32, u64>,
 }
 
 /// A point with small pictures, JPEG.
@@ -76,6 +77,7 @@ impl Warm {
 /// Measures an experiment on its scene (with the experiment's light, see [`Experiment::adapted`]). The frames that are
 /// timed compute what the picture needs and no more; the parts that are scored come from frames of their own, because
 /// writing them costs time. Every pass runs in every frame.
+/// All parts are scored against the first reference, and the total against the others: (bounces, reference).
 ///
 /// # Errors
 /// Everything that can be wrong with the experiment; the device was lost; a reference of another size.
@@ -85,42 +87,63 @@ pub fn measure(
     experiment: &Experiment,
     scene: &Arc<Scene>,
     frames: Frames,
-    reference: Option<&Reference>,
+    references: &[(u32, Arc<Reference>)],
 ) -> Result<Measured, LabError> {
     let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
-    let shown = loaded.graph.output.clone();
-    let wanted = shown.clone().or_else(|| loaded.graph.hdr.clone()).into_iter().collect();
-    let mut session = lab.build(experiment, &loaded, scene.clone(), wanted, warm.timed.as_ref())?;
+    let (mut session, times) = timed(lab, &loaded, experiment, scene, frames, warm.timed.as_ref())?;
+    let warnings = session.failed_checks()?;
+    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, frames.warmup, warnings);
+    let picture = loaded.graph.output.as_ref().map(|name| session.texels(name, 0, 0)).transpose()?;
+    let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
+    warm.timed = Some(session.lend());
+    drop(session);
+    let mut point = Point { stats, scores: BTreeMap::new(), noise: BTreeMap::new(), references: BTreeMap::new() };
+    let mut error_map = None;
+    if !references.is_empty() {
+        let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
+        for (number, (bounces, reference)) in references.iter().enumerate() {
+            for (part, light) in &parts {
+                let Some(truth) = reference.parts.get(part).filter(|_| number == 0 || part == "total") else {
+                    continue;
+                };
+                let wrong = |why: &str| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
+                let compared = Compared::new(light, &truth.mean, Kind::of_part(part)).map_err(|e| wrong(&e.0))?;
+                let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
+                let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
+                point.scores.insert(name.clone(), scores);
+                point.noise.insert(name, truth.noise);
+                if number == 0 && part == "total" {
+                    error_map = Some(pictures::error_map(light, &truth.mean)?);
+                }
+            }
+            point.references.insert(*bounces, reference.samples);
+        }
+    }
+    Ok(Measured { point, picture, error_map })
+}
+
+/// Runs an experiment and keeps the times of its last frames; only what the picture needs is computed.
+///
+/// # Errors
+/// Everything that can be wrong with the experiment; the device was lost.
+pub fn timed(
+    lab: &Lab,
+    loaded: &Loaded,
+    experiment: &Experiment,
+    scene: &Arc<Scene>,
+    frames: Frames,
+    seed: Option<&Seed>,
+) -> Result<(Session, Vec<FrameTimes>), LabError> {
+    let graph = &loaded.graph;
+    let wanted = graph.output.clone().or_else(|| graph.hdr.clone()).into_iter().collect();
+    let mut session = lab.build(experiment, loaded, scene.clone(), wanted, seed)?;
     let mut times = Vec::new();
     for _ in 0..frames.warmup + frames.count {
         times.extend(session.frame(0.0)?);
     }
     times.extend(session.finish()?);
     let times = times.split_off(times.len().saturating_sub(frames.count));
-    let warnings = session.failed_checks()?;
-    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, frames.warmup, warnings);
-    let picture = shown.map(|name| session.texels(&name, 0, 0)).transpose()?;
-    let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
-    warm.timed = Some(session.lend());
-    drop(session);
-    let mut point = Point { stats, scores: BTreeMap::new(), noise: BTreeMap::new(), reference_samples: None };
-    let mut error_map = None;
-    if let Some(reference) = reference {
-        let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
-        for (part, light) in &parts {
-            let Some(wanted) = reference.parts.get(part) else { continue };
-            let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
-            let compared = Compared::new(light, &wanted.mean, Kind::of_part(part)).map_err(|e| wrong(e.to_string()))?;
-            let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures".into()))?;
-            point.scores.insert(part.clone(), scores);
-            point.noise.insert(part.clone(), wanted.noise);
-            if part == "total" {
-                error_map = Some(pictures::error_map(light, &wanted.mean)?);
-            }
-        }
-        point.reference_samples = Some(reference.samples);
-    }
-    Ok(Measured { point, picture, error_map })
+    Ok((session, times))
 }
 
 /// The parts of an experiment's light, by the graph's names for them.
@@ -143,13 +166,8 @@ fn parts_of(
     session.finish()?;
     let mut out = Vec::new();
     for (part, texture) in parts {
-        out.push((part.clone(), linear(&session.texels(texture, 0, 0)?)));
+        out.push((part.clone(), to_linear(&session.texels(texture, 0, 0)?)));
     }
     warm.scored = Some((scene.clone(), session.lend()));
     Ok(out)
-}
-
-fn linear(texels: &Texels) -> Linear {
-    let rgb = to_floats(texels).iter().map(|t| [t[0], t[1], t[2]]).collect();
-    Linear { size: (texels.extent[0], texels.extent[1]), rgb }
 }

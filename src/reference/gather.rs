@@ -63,7 +63,7 @@ pub fn gather(
         return sums.reference(&folder);
     }
     let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
-    key::push(&mut traced, "samples", &per_frame.to_string());
+    traced.set("samples", &per_frame.to_string());
     let wanted = parts.iter().map(|p| store::sum_texture(p)).collect();
     let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, None)?;
     let mut kept = Instant::now();

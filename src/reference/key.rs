@@ -3,7 +3,6 @@
 use crate::capture::scene_hash;
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
-use crate::graph::source::{At, Loc};
 use crate::lab::{Home, LabError, Loaded, camera_of, params_of};
 use crate::scene::Scene;
 use sha2::{Digest, Sha256};
@@ -29,16 +28,10 @@ pub fn experiment_for(home: &Home, experiment: &Experiment, bounces: u32) -> Res
     traced.graph = GRAPH.into();
     traced.params.retain(|(name, _)| graph.params.index(&name.value).is_some());
     traced.params.retain(|(name, _)| name.value != "bounces" && !WHICH_SAMPLES.contains(&name.value.as_str()));
-    push(&mut traced, "bounces", &bounces.to_string());
+    traced.set("bounces", &bounces.to_string());
     // Told now, with the place where it stands.
     params_of(&graph, &traced)?;
     Ok(traced)
-}
-
-/// Sets a parameter, over whatever the experiment says of it.
-pub(super) fn push(experiment: &mut Experiment, name: &str, value: &str) {
-    let at = At { file: experiment.sources.add("reference".as_ref(), format!("{name} = {value}")), offset: 0 };
-    experiment.params.push((Loc { value: name.into(), at }, value.into()));
 }
 
 /// 16 hexadecimal digits of everything that the samples of an experiment of [`GRAPH`] depend on: the compiled shaders,

@@ -19,8 +19,9 @@ pub struct Bar {
 const FONT: &str = "sans-serif";
 const WIDTH: i32 = 1100;
 const ROW: i32 = 22;
-/// Pixels for labels; about 46 characters.
-const LEFT: i32 = 330;
+/// Pixels for labels, and the characters that fit.
+const LEFT: i32 = 400;
+const LABEL: usize = 60;
 const RIGHT: i32 = 70;
 
 /// Colours of stages in the order in which they come, told apart by people who see red and green alike (Okabe and Ito).
@@ -121,5 +122,9 @@ fn color(i: usize) -> RGBColor {
 }
 
 fn cut(label: &str) -> String {
-    if label.chars().count() <= 46 { label.to_string() } else { label.chars().take(45).chain(['…']).collect() }
+    if label.chars().count() <= LABEL {
+        label.to_string()
+    } else {
+        label.chars().take(LABEL - 1).chain(['…']).collect()
+    }
 }

@@ -1,13 +1,10 @@
 //! What the page and its charts show, taken from the records of sweeps.
 
+use crate::comparison::within_noise;
 use crate::sweep::{Collected, Outcome, parts_of};
 use indexmap::IndexMap;
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// Points that are less than this many times the noise of their reference apart are not different (the noise is that of
-/// the reference's halves, relMSE).
-pub const NOISE_FACTOR: f64 = 4.0;
 
 /// Bytes of pictures that go into a page.
 const MAX_PICTURES: usize = 64 << 20;
@@ -59,7 +56,7 @@ pub struct Scored {
     pub ms: f64,
     /// 0 is perfect.
     pub error: f64,
-    /// Whether the error is not told apart from the reference's noise.
+    /// Whether its relMSE is not told apart from the reference's noise.
     pub noisy: bool,
 }
 
@@ -80,16 +77,17 @@ pub struct Data {
 }
 
 impl Dot {
-    /// Its values.
-    pub fn title(&self) -> String {
-        let pairs: Vec<String> = self.labels.iter().map(|(name, value)| format!("{name} {value}")).collect();
-        if pairs.is_empty() { self.id.chars().take(8).collect() } else { pairs.join(", ") }
+    /// Some of its values.
+    pub fn title(&self, names: &[&String]) -> String {
+        let values = names.iter().filter_map(|n| Some(format!("{n} {}", self.labels.get(*n)?)));
+        let text = values.collect::<Vec<_>>().join(", ");
+        if text.is_empty() { self.id.chars().take(8).collect() } else { text }
     }
 }
 
-/// The distance from perfection: ratios are perfect at 1, everything else at 0.
+/// The distance from perfection: a ratio is as far from 1 as its inverse, everything else is perfect at 0.
 fn error_of(metric: &str, value: f64) -> f64 {
-    if metric == "energy_ratio" { (value - 1.0).abs() } else { value }
+    if metric == "energy_ratio" { value.ln().abs() } else { value }
 }
 
 impl Data {
@@ -125,9 +123,15 @@ impl Data {
                 let same = keys.iter().filter(|k| k.0.scene == s.scene && k.0.size == s.size && k.1 == key.1).count();
                 let number = if same > 1 { format!(" ({same})") } else { String::new() };
                 data.subjects.push(format!("{}{number} at {}x{}, {}", s.scene, s.size.0, s.size.1, device.name));
-                let samples = point.reference_samples.map_or(String::from("no reference"), |n| format!("reference of {n} samples a pixel"));
+                let references: Vec<String> =
+                    point.references.iter().map(|(bounces, n)| format!("{n} samples a pixel of {bounces} bounces")).collect();
+                let samples = match references.is_empty() {
+                    true => String::from("no reference"),
+                    false => format!("reference: {}", references.join("; ")),
+                };
+                let frames = point.stats.passes.first().map_or(0, |p| p.frames);
                 data.settings.push(format!(
-                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {} frames of warm-up; every pass in every frame; {samples}",
+                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {frames} frames after {} of warm-up; every pass in every frame; {samples}",
                     s.camera, s.time, device.driver, device.api, point.stats.version, point.stats.warmup
                 ));
                 keys.len() - 1
@@ -169,9 +173,9 @@ impl Data {
     pub fn scored(&self, subject: usize, part: &str, metric: &str) -> Vec<Scored> {
         let dots = self.dots.iter().enumerate().filter(|d| d.1.subject == subject);
         dots.filter_map(|(index, dot)| {
-            let error = error_of(metric, *dot.scores.get(part)?.get(metric)?);
-            let floor = dot.noise.get(part).map_or(0.0, |n| n * NOISE_FACTOR);
-            let noisy = metric == "relmse" && error <= floor;
+            let scores = dot.scores.get(part)?;
+            let error = error_of(metric, *scores.get(metric)?);
+            let noisy = within_noise(*scores.get("relmse").unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
             (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy })
         })
         .collect()

@@ -6,7 +6,7 @@ mod front;
 mod page;
 mod scatter;
 
-pub use bars::{Bar, bars};
+pub use bars::{Bar, COLORS, bars};
 pub use front::front;
 
 use crate::lab::LabError;
@@ -80,6 +80,10 @@ fn passes(data: &Data, subject: usize) -> Result<String, LabError> {
     }
     chosen.sort_by(|a, b| data.dots[*a].ms.total_cmp(&data.dots[*b].ms));
     chosen.truncate(MAX_BARS);
-    let rows = chosen.iter().map(|i| Bar { label: data.dots[*i].title(), parts: data.dots[*i].stages.clone() });
+    // What all of them share tells none of them apart.
+    let value = |i: usize, name: &String| data.dots[i].labels.get(name);
+    let differs = |name: &&String| chosen.iter().any(|i| value(*i, name) != value(chosen[0], name));
+    let names: Vec<&String> = data.names.iter().filter(differs).collect();
+    let rows = chosen.iter().map(|i| Bar { label: data.dots[*i].title(&names), parts: data.dots[*i].stages.clone() });
     bars(&format!("{}: {what}, ms of each stage (medians)", data.subjects[subject]), &rows.collect::<Vec<_>>())
 }

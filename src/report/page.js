@@ -68,7 +68,7 @@ choice("Error", "metric", [...new Set(data.charts.map((c) => c.metric))].map((m)
 
 const errorOf = (d) => {
   const v = ((d.scores[state.part] || {})[state.metric]);
-  return v === undefined || v === null ? undefined : state.metric === "energy_ratio" ? Math.abs(v - 1) : v;
+  return v === undefined || v === null ? undefined : state.metric === "energy_ratio" ? Math.abs(Math.log(v)) : v;
 };
 // The points that none of those shown beats in both time and error.
 function front(indices) {

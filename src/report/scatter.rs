@@ -3,6 +3,7 @@
 use super::data::Scored;
 use super::front::front;
 use crate::lab::LabError;
+use plotters::coord::combinators::BindKeyPoints;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (900, 560);
@@ -18,7 +19,7 @@ pub fn axis_title(metric: &str) -> String {
         "flip" => "FLIP".into(),
         "hdr_flip" => "HDR-FLIP".into(),
         "smape" => "SMAPE".into(),
-        "energy_ratio" => "|energy ratio - 1|".into(),
+        "energy_ratio" => "|ln energy ratio|".into(),
         other => other.replace('_', " "),
     }
 }
@@ -43,7 +44,10 @@ fn draw(svg: &mut String, title: &str, metric: &str, dots: &[Scored]) -> Result<
         .caption(format!("{title}, {metric} against time ({} points)", dots.len()), (FONT, 20))
         .x_label_area_size(48)
         .y_label_area_size(76)
-        .build_cartesian_2d((xs.0..xs.1).log_scale(), (ys.0..ys.1).log_scale())?;
+        .build_cartesian_2d(
+            (xs.0..xs.1).log_scale().with_key_points(ticks(xs)),
+            (ys.0..ys.1).log_scale().with_key_points(ticks(ys)),
+        )?;
     chart
         .configure_mesh()
         .x_desc("GPU time of a frame, ms, median (log)")
@@ -78,6 +82,19 @@ fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
     let room = (high / low).powf(0.05).max(1.5 / (high / low).sqrt()).max(1.05);
     (low / room, high * room)
+}
+
+/// Round numbers in a range, 3 to about 12 of them.
+fn ticks((low, high): (f64, f64)) -> Vec<f64> {
+    let inside = |steps: &[f64]| -> Vec<f64> {
+        let decades = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
+        let all = decades.flat_map(|e| steps.iter().map(move |s| s * 10f64.powi(e)));
+        all.filter(|v| (low..=high).contains(v)).collect()
+    };
+    let tenths: Vec<f64> = (10..100).map(|i| f64::from(i) / 10.0).collect();
+    let halves: Vec<f64> = (2..20).map(|i| f64::from(i) / 2.0).collect();
+    let sets: [&[f64]; 5] = [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 3.0, 5.0, 7.0], &halves, &tenths];
+    sets.iter().map(|s| inside(s)).find(|t| t.len() >= 4).unwrap_or_else(|| inside(&tenths))
 }
 
 /// At most three digits.

@@ -1,6 +1,6 @@
 //! Axes of a sweep: lists, ranges, named settings, lists that go together, samples.
 
-use super::file::MAX_POINTS;
+use super::points::{Labels, MAX_POINTS};
 use super::sample::latin_hypercube;
 use super::settings::Setting;
 use crate::graph::file::RawText;
@@ -66,12 +66,12 @@ pub(super) enum Distribution {
 #[derive(Clone, Debug)]
 pub(super) struct Choice {
     /// Name of what is varied, and its value for people.
-    pub labels: Vec<(String, String)>,
+    pub labels: Labels,
     pub settings: Vec<Setting>,
 }
 
 impl Choice {
-    fn one(name: &Loc<String>, at: At, text: String) -> Choice {
+    pub(super) fn one(name: &Loc<String>, at: At, text: String) -> Choice {
         let setting = Setting { name: Loc { value: name.value.clone(), at }, text };
         Choice { labels: vec![label(&setting)], settings: vec![setting] }
     }

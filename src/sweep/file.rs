@@ -1,52 +1,40 @@
 //! Sweep files: which experiments, and what is varied (docs/sweeps.md).
 
 use super::axis::{Axis, Choice, choices};
+use super::points::{DEFAULT_BOUNCES, MAX_POINTS, Sweep};
 use super::settings::Setting;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
-use crate::graph::source::{Diagnostic, Entries, Items, Loc, Severity, Sources};
+use crate::graph::source::{Diagnostic, Entries, Items, Loc, Place, Severity, Sources};
 use crate::measure::Frames;
 use serde::Deserialize;
 use std::path::Path;
 
-/// Most points of a sweep.
-pub const MAX_POINTS: usize = 20_000;
 /// Most frames of one point.
 const MAX_FRAMES: usize = 100_000;
+/// Frames when nothing is said.
+const DEFAULT_FRAMES: Frames = Frames { warmup: 10, count: 50 };
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SweepFile {
     /// Experiment files, relative to the sweep's folder.
     experiments: Items<String>,
+    /// Experiments that are measured once, without the axes.
+    #[serde(default)]
+    beside: Items<String>,
     #[serde(default)]
     warmup: Option<Loc<usize>>,
     #[serde(default)]
     frames: Option<Loc<usize>>,
+    /// Bounces of the references that points are scored against.
+    #[serde(default)]
+    bounces: Items<u32>,
     /// What every point sets.
     #[serde(default)]
     set: Entries<RawText>,
     #[serde(default)]
     axes: Items<Axis>,
-}
-
-/// A sweep: every experiment with every combination of the axes' choices.
-#[derive(Clone, Debug)]
-pub struct Sweep {
-    /// The file's stem.
-    pub name: String,
-    /// The file's text.
-    pub text: String,
-    /// The experiments; their sources hold the sweep's text too, at [`Sweep::source`].
-    pub experiments: Vec<Experiment>,
-    /// Names of what is varied, in order.
-    pub names: Vec<String>,
-    /// Frames of every point.
-    pub frames: Frames,
-    pub(super) fixed: Vec<Setting>,
-    pub(super) axes: Vec<Vec<Choice>>,
-    /// Folder of the sweep's file: scene files are looked up in it.
-    pub(super) folder: std::path::PathBuf,
 }
 
 impl Sweep {
@@ -64,27 +52,11 @@ impl Sweep {
         let Some(parsed) = parsed.filter(|_| !errors.iter().any(|e| e.severity == Severity::Error)) else {
             return Err(errors);
         };
-        let folder = path.parent().unwrap_or(Path::new("."));
-        let text = sources.texts().next().map_or(String::new(), |t| t.1.to_string());
-        let mut experiments = Vec::new();
-        for name in &parsed.experiments.0 {
-            match Experiment::read(&folder.join(&name.value)) {
-                Ok(mut experiment) => {
-                    // Settings keep their places in the sweep: their file gets the number that follows the experiment's.
-                    experiment.sources.add(path, text.clone());
-                    experiments.push(experiment);
-                }
-                Err(list) if list.iter().all(|d| d.place.line == 0) => {
-                    errors.extend(list.iter().map(|d| sources.error(name.at, d.to_string())));
-                }
-                Err(list) => errors.extend(list),
-            }
-        }
+        let swept = experiments(path, &parsed.experiments, &sources, &mut errors);
+        let beside = experiments(path, &parsed.beside, &sources, &mut errors);
         if parsed.experiments.0.is_empty() {
-            errors.push(Diagnostic::error(
-                crate::graph::source::Place { file: path.to_path_buf(), ..Default::default() },
-                "`experiments` is empty: name at least one",
-            ));
+            let place = Place { file: path.to_path_buf(), ..Place::default() };
+            errors.push(Diagnostic::error(place, "`experiments` is empty: name at least one"));
         }
         let mut count = |value: &Option<Loc<usize>>, default: usize, least: usize| match value {
             Some(v) if v.value < least || v.value > MAX_FRAMES => {
@@ -94,87 +66,86 @@ impl Sweep {
             Some(v) => v.value,
             None => default,
         };
-        let frames = Frames { warmup: count(&parsed.warmup, 10, 0), count: count(&parsed.frames, 50, 1) };
-        let fixed: Vec<Setting> = parsed.set.0.into_iter().map(|(name, text)| Setting::new(name, &text)).collect();
-        let mut axes: Vec<Vec<Choice>> = Vec::new();
-        let mut names: Vec<String> = Vec::new();
-        let mut points = experiments.len();
-        for axis in &parsed.axes.0 {
-            match choices(&axis.value) {
-                Ok(list) => {
-                    for (name, _) in list.first().map_or(&[][..], |c| &c.labels) {
-                        if names.contains(name) {
-                            errors.push(sources.error(axis.at, format!("'{name}' is varied by two axes")));
-                        }
-                        names.push(name.clone());
-                    }
-                    points = points.saturating_mul(list.len());
-                    axes.push(list);
-                }
-                Err((at, message)) => errors.push(sources.error(at.unwrap_or(axis.at), message)),
-            }
-            if points > MAX_POINTS {
-                errors.push(sources.error(
-                    axis.at,
-                    format!("with this axis there are {points} points, more than the {MAX_POINTS} allowed"),
-                ));
-                break;
-            }
-        }
+        let warmup = count(&parsed.warmup, DEFAULT_FRAMES.warmup, 0);
+        let frames = Frames { warmup, count: count(&parsed.frames, DEFAULT_FRAMES.count, 1) };
+        let (axes, mut names) = axes(&parsed.axes, swept.len(), &sources, &mut errors);
         if !errors.is_empty() {
             return Err(errors);
         }
-        if experiments.len() > 1 {
+        if swept.len() + beside.len() > 1 {
             names.insert(0, "experiment".into());
+        }
+        let mut bounces: Vec<u32> = parsed.bounces.0.iter().map(|b| b.value).collect();
+        if bounces.is_empty() {
+            bounces = DEFAULT_BOUNCES.to_vec();
         }
         Ok(Sweep {
             name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
-            text,
-            experiments,
+            text: text_of(&sources),
+            experiments: swept,
+            beside,
             names,
             frames,
-            fixed,
+            bounces,
+            fixed: parsed.set.0.into_iter().map(|(name, text)| Setting::new(name, &text)).collect(),
             axes,
-            folder: folder.to_path_buf(),
+            folder: path.parent().unwrap_or(Path::new(".")).to_path_buf(),
         })
     }
+}
 
-    /// How many combinations there are.
-    pub fn len(&self) -> usize {
-        self.axes.iter().map(Vec::len).product::<usize>() * self.experiments.len()
-    }
+fn text_of(sources: &Sources) -> String {
+    sources.texts().next().map_or(String::new(), |t| t.1.to_string())
+}
 
-    /// Whether there is nothing to measure.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// One combination: its experiment, and its values by the names of what is varied. The last axis varies fastest.
-    ///
-    /// # Errors
-    /// Settings that are none, with their places.
-    pub fn point(&self, index: usize) -> Result<(Experiment, Vec<(String, String)>), Vec<Diagnostic>> {
-        let mut rest = index;
-        let mut chosen = Vec::new();
-        for axis in self.axes.iter().rev() {
-            chosen.push(&axis[rest % axis.len()]);
-            rest /= axis.len();
-        }
-        chosen.reverse();
-        let mut experiment = self.experiments[rest % self.experiments.len()].clone();
-        let mut labels = Vec::new();
-        if self.experiments.len() > 1 {
-            labels.push(("experiment".to_string(), experiment.name.clone()));
-        }
-        labels.extend(chosen.iter().flat_map(|c| c.labels.clone()));
-        let file = u32::try_from(experiment.sources.paths().count().saturating_sub(1)).unwrap_or(0);
-        let mut errors = Vec::new();
-        for setting in self.fixed.iter().chain(chosen.iter().flat_map(|c| &c.settings)) {
-            if let Err(message) = setting.apply(&mut experiment, file, &self.folder) {
-                let at = crate::graph::source::At { file, offset: setting.name.at.offset };
-                errors.push(experiment.sources.error(at, message));
+/// Reads experiments. The sweep's text is the last of their sources, so that settings keep their places.
+fn experiments(path: &Path, names: &Items<String>, sources: &Sources, errors: &mut Vec<Diagnostic>) -> Vec<Experiment> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let mut list = Vec::new();
+    for name in &names.0 {
+        match Experiment::read(&folder.join(&name.value)) {
+            Ok(mut experiment) => {
+                experiment.sources.add(path, text_of(sources));
+                list.push(experiment);
             }
+            // A file that cannot be read is a mistake of the sweep.
+            Err(found) if found.iter().all(|d| d.place.line == 0) => {
+                errors.extend(found.iter().map(|d| sources.error(name.at, d.to_string())));
+            }
+            Err(found) => errors.extend(found),
         }
-        if errors.is_empty() { Ok((experiment, labels)) } else { Err(errors) }
     }
+    list
+}
+
+/// The choices of all axes, and the names of what they vary.
+fn axes(
+    list: &Items<Axis>,
+    experiments: usize,
+    sources: &Sources,
+    errors: &mut Vec<Diagnostic>,
+) -> (Vec<Vec<Choice>>, Vec<String>) {
+    let (mut axes, mut names): (Vec<Vec<Choice>>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut points = experiments;
+    for axis in &list.0 {
+        match choices(&axis.value) {
+            Ok(choices) => {
+                for (name, _) in choices.first().map_or(&[][..], |c| &c.labels) {
+                    if names.contains(name) {
+                        errors.push(sources.error(axis.at, format!("'{name}' is varied by two axes")));
+                    }
+                    names.push(name.clone());
+                }
+                points = points.saturating_mul(choices.len());
+                axes.push(choices);
+            }
+            Err((at, message)) => errors.push(sources.error(at.unwrap_or(axis.at), message)),
+        }
+        if points > MAX_POINTS {
+            let message = format!("with this axis there are {points} points, more than the {MAX_POINTS} allowed");
+            errors.push(sources.error(axis.at, message));
+            break;
+        }
+    }
+    (axes, names)
 }

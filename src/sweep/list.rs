@@ -1,6 +1,6 @@
 //! The points of a sweep, each with the number of everything that its result depends on.
 
-use super::file::Sweep;
+use super::points::{Labels, Sweep};
 use super::record::Subject;
 use crate::capture::scene_hash;
 use crate::experiment::{Experiment, placed_text};
@@ -10,6 +10,7 @@ use crate::measure::{Frames, Warm};
 use crate::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
 use std::sync::Arc;
 
 /// A point that is to be measured.
@@ -25,7 +26,7 @@ pub struct Listed {
     /// What is looked at.
     pub subject: Subject,
     /// Its values, by the names of what is varied.
-    pub labels: Vec<(String, String)>,
+    pub labels: Labels,
 }
 
 /// What is opened and hashed once for all points.
@@ -52,7 +53,7 @@ impl<'a> Lister<'a> {
         &mut self,
         warm: &mut Warm,
         experiment: Experiment,
-        labels: Vec<(String, String)>,
+        labels: Labels,
         frames: Frames,
     ) -> Result<Listed, LabError> {
         let loaded = warm.graph(self.home, &experiment.graph)?;
@@ -126,14 +127,7 @@ pub fn list(
         match point.and_then(|(experiment, labels)| lister.point(warm, experiment, labels, frames)) {
             Ok(point) if known.insert(point.id.clone()) => points.push(point),
             Ok(_) => {}
-            // The same mistake comes back with every combination: it is told once.
-            Err(LabError::Input(list)) => {
-                for diagnostic in list {
-                    if !errors.contains(&diagnostic) {
-                        errors.push(diagnostic);
-                    }
-                }
-            }
+            Err(LabError::Input(list)) => add_new(&mut errors, list),
             Err(other) => return Err(other),
         }
         if errors.len() >= 20 {
@@ -145,6 +139,35 @@ pub fn list(
     }
     let equal = sweep.len() - points.len();
     Ok((points, equal))
+}
+
+/// Checks a sweep without opening its scenes: experiments, graphs, and the parameters of every point.
+///
+/// # Errors
+/// All mistakes, each once.
+pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
+    let sweep = Sweep::read(path)?;
+    let mut warm = Warm::default();
+    let mut errors: Vec<Diagnostic> = Vec::new();
+    for index in 0..sweep.len() {
+        let checked = sweep.point(index).map_err(LabError::Input).and_then(|(experiment, _)| {
+            let graph = &warm.graph(home, &experiment.graph)?.graph;
+            experiment.params_over(&graph.params)
+        });
+        if let Err(LabError::Input(list)) = checked {
+            add_new(&mut errors, list);
+        }
+    }
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// The same mistake comes back with every combination: it is told once.
+fn add_new(errors: &mut Vec<Diagnostic>, list: Vec<Diagnostic>) {
+    for diagnostic in list {
+        if !errors.contains(&diagnostic) {
+            errors.push(diagnostic);
+        }
+    }
 }
 
 /// SHA-256 over the text of a graph's files and of its shaders with their includes; where they lie is left out.

@@ -4,15 +4,17 @@
 mod axis;
 mod file;
 mod list;
+mod points;
 mod record;
+mod references;
 mod run;
 mod sample;
 mod settings;
 mod table;
 
-pub use file::{MAX_POINTS, Sweep};
-pub use list::{Listed, Lister, list};
+pub use list::{Listed, Lister, check, list};
+pub use points::{Labels, MAX_POINTS, Sweep};
 pub(crate) use record::write_file;
 pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
 pub use run::{Options, Progress, Shard, Tally, run};
-pub use table::{Cell, csv, parts_of};
+pub use table::{csv, parts_of};

@@ -112,6 +112,21 @@ impl Folder {
         write_file(&self.point(&record.id), &json(record)?)
     }
 
+    /// Removes what runs that were killed left half written. Other shards may be writing here: only what is an hour old.
+    pub fn clean(&self) {
+        let old = |e: &std::fs::DirEntry| {
+            let age = e.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
+            e.file_name().to_string_lossy().starts_with(".conelab-") && age.is_some_and(|a| a.as_secs() > 3600)
+        };
+        for kind in ["points", "pictures", "errors"] {
+            let entries = std::fs::read_dir(self.0.join(kind)).into_iter().flatten().flatten();
+            for entry in entries.filter(old) {
+                // What cannot be deleted only takes room.
+                let _ = std::fs::remove_file(entry.path());
+            }
+        }
+    }
+
     pub fn write_manifest(&self, manifest: &Manifest) -> Result<(), LabError> {
         write_file(&self.0.join("sweep.json"), &json(manifest)?)
     }

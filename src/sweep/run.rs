@@ -1,18 +1,18 @@
 //! Measuring the points of a sweep, one after another.
 
-use super::file::Sweep;
 use super::list::{Listed, Lister, list};
-use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, Subject, collect, write_file};
+use super::points::Sweep;
+use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, collect, write_file};
+use super::references::References;
 use crate::experiment::resolved_text;
 use crate::lab::{Lab, LabError, camera_of};
 use crate::measure::{Frames, Warm, measure};
-use crate::reference::{self, Reference};
+use crate::reference::Gathered;
 use crate::scene::Scene;
 use crate::stats::DeviceStats;
 use crate::vulkan::VulkanError;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Which of the points: every `of`-th, from the `number`-th on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +34,8 @@ pub struct Options {
     pub frames: Frames,
     /// Measure points again that have failed.
     pub again: bool,
+    /// Gather references to so many samples a pixel first; those that are cached are used as they are when absent.
+    pub samples: Option<u64>,
 }
 
 /// What a sweep tells while it runs.
@@ -47,8 +49,10 @@ pub enum Progress<'a> {
     },
     /// Something worth knowing.
     Note(String),
-    /// A point is finished; with its error, if it failed.
-    Finished(&'a Listed, Option<&'a str>),
+    /// A reference is being gathered.
+    Gathers(Gathered),
+    /// A point is finished.
+    Finished(&'a Listed, &'a Record),
 }
 
 /// How far a shard is.
@@ -83,19 +87,21 @@ pub fn run(
         tell(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
     }
     let folder = Folder(options.folder.clone());
+    folder.clean();
     folder.write_manifest(&Manifest::new(sweep, options.frames, &points))?;
     let Shard { number, of } = options.shard;
     let mine: Vec<&Listed> = points.iter().skip(number - 1).step_by(of).collect();
-    let mut references = References::default();
+    let mut references = References::new(&sweep.bounces, options.samples);
     let mut tally = Tally::default();
     let mut todo = Vec::new();
     let mut elsewhere = 0;
     for point in mine {
         let record = folder.read(&point.id);
-        let samples = references.get(&lab, point)?.map(|r| r.samples);
+        let known = references.get(&lab, &mut warm, point, tell)?;
+        let samples: BTreeMap<u32, u64> = known.iter().map(|(bounces, r)| (*bounces, r.samples)).collect();
         match record.as_ref().map(|r| (&r.outcome, &r.device)) {
             // A reference that has come or grown since makes other scores.
-            Some((Outcome::Done(found), device)) if found.reference_samples == samples => {
+            Some((Outcome::Done(found), device)) if found.references == samples => {
                 elsewhere += usize::from(device.name != lab.gpu.info.name);
                 tally.done += 1;
             }
@@ -110,10 +116,9 @@ pub fn run(
     }
     tell(Progress::Begins { todo: todo.len(), before: tally.done + tally.failed });
     for point in todo {
-        let reference = references.get(&lab, point)?;
-        let attempt = |lab: &Lab, warm: &mut Warm| {
-            measure(lab, warm, &point.experiment, &point.scene, options.frames, reference.as_deref())
-        };
+        let known = references.get(&lab, &mut warm, point, tell)?;
+        let attempt =
+            |lab: &Lab, warm: &mut Warm| measure(lab, warm, &point.experiment, &point.scene, options.frames, &known);
         let mut result = attempt(&lab, &mut warm);
         if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
             // Often the point before it is to blame; if it is this one, it fails again.
@@ -136,18 +141,11 @@ pub fn run(
             Outcome::Done(_) => tally.done += 1,
             Outcome::Failed(_) => tally.failed += 1,
         }
-        tell(Progress::Finished(point, failure(&record)));
+        tell(Progress::Finished(point, &record));
     }
     let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
     write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
     Ok(tally)
-}
-
-fn failure(record: &Record) -> Option<&str> {
-    match &record.outcome {
-        Outcome::Failed(error) => Some(error),
-        Outcome::Done(_) => None,
-    }
 }
 
 fn record_of(
@@ -168,27 +166,4 @@ fn record_of(
         device: DeviceStats::of(&lab.gpu.info),
         outcome,
     })
-}
-
-/// Cached references, each read once. Only a few are kept: one of 1920x1080 takes about 125 MB.
-#[derive(Default)]
-struct References {
-    found: BTreeMap<Subject, Option<Arc<Reference>>>,
-}
-
-/// Most references in memory.
-const MAX_REFERENCES: usize = 8;
-
-impl References {
-    fn get(&mut self, lab: &Lab, point: &Listed) -> Result<Option<Arc<Reference>>, LabError> {
-        if let Some(found) = self.found.get(&point.subject) {
-            return Ok(found.clone());
-        }
-        if self.found.len() >= MAX_REFERENCES {
-            self.found.clear();
-        }
-        let found = reference::find(&lab.home, &point.experiment, &point.scene, 1)?.map(Arc::new);
-        self.found.insert(point.subject.clone(), found.clone());
-        Ok(found)
-    }
 }

@@ -5,10 +5,7 @@ use crate::lab::LabError;
 use crate::measure::Point;
 use std::collections::BTreeMap;
 
-/// A number of a table or chart: its column and its value.
-pub type Cell = (String, f64);
-
-/// Scores of a point as flat cells, `part metric`.
+/// Scores of a point, by part and metric.
 pub fn parts_of(point: &Point) -> BTreeMap<String, BTreeMap<String, f64>> {
     let numbers = |scores: &crate::metrics::Scores| match serde_json::to_value(scores) {
         Ok(serde_json::Value::Object(map)) => map.into_iter().filter_map(|(k, v)| Some((k, v.as_f64()?))).collect(),
@@ -69,7 +66,8 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
         row.push(record.map_or(String::new(), |r| r.device.driver.clone()));
         row.push(text(&|s| s.total_bytes.to_string()));
         row.push(text(&|s| s.warnings.join("; ")));
-        row.push(point.and_then(|p| p.reference_samples).map_or(String::new(), |n| n.to_string()));
+        let samples = point.iter().flat_map(|p| &p.references).map(|(bounces, n)| format!("{bounces} bounces: {n}"));
+        row.push(samples.collect::<Vec<_>>().join("; "));
         row.push(error.unwrap_or_default().to_string());
         row.push(text(&|s| s.total_gpu_ms.median.to_string()));
         row.push(text(&|s| s.total_gpu_ms.p95.to_string()));

@@ -1,0 +1,149 @@
+//! Benchmarks: configurations measured in turn, round after round, so that what drifts (clocks, heat, other programs)
+//! meets all of them alike, and each round compares like with like.
+
+mod charts;
+mod tables;
+
+pub use charts::charts;
+pub use tables::{csv, text};
+
+use crate::graph::run::FrameTimes;
+use crate::lab::{Lab, LabError, Seed, Session};
+use crate::measure::{Frames, Warm, timed};
+use crate::stats::{self, DeviceStats, Spread, Stats, spread};
+use crate::sweep::Listed;
+use indexmap::IndexMap;
+use serde::Serialize;
+
+/// Version of the JSON file.
+pub const SCHEMA: &str = "conelab-bench-1";
+
+/// What was measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct Bench {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// The device.
+    pub device: DeviceStats,
+    /// How often every configuration had its turn.
+    pub rounds: usize,
+    /// Frames of every turn.
+    pub frames: Frames,
+    /// Names of what differs, in order.
+    pub names: Vec<String>,
+    /// In order.
+    pub configurations: Vec<Configuration>,
+}
+
+/// One of the configurations.
+#[derive(Clone, Debug, Serialize)]
+pub struct Configuration {
+    /// Its values, by the names of what differs.
+    pub labels: IndexMap<String, String>,
+    /// Its picture, pixels.
+    pub size: (u32, u32),
+    /// Name of its experiment.
+    pub experiment: String,
+    /// Its times; absent where it failed.
+    pub times: Option<Times>,
+    /// Why it failed.
+    pub error: Option<String>,
+}
+
+/// Times over all rounds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Times {
+    /// Of every pass, with settings and memory.
+    pub stats: Stats,
+    /// Of every stage (passes that the graph counts together, added up frame by frame), ms.
+    pub stages: IndexMap<String, Spread>,
+    /// Median of the total in every round, ms: pairs with those of other configurations.
+    pub rounds: Vec<f64>,
+}
+
+/// What the frames of all rounds say: every pass, and every stage.
+type Summary = (Stats, IndexMap<String, Spread>);
+
+/// What a configuration has gathered so far.
+#[derive(Default)]
+struct Gathered {
+    seed: Option<Seed>,
+    times: Vec<FrameTimes>,
+    rounds: Vec<f64>,
+    result: Option<Result<Summary, String>>,
+}
+
+/// Measures every configuration `rounds` times in turn. `tick` is called after every turn. Textures are made anew for
+/// each turn, as all of them together might not fit; pipelines and scenes are kept.
+///
+/// # Errors
+/// A graph that cannot be read. A configuration that fails is left out of the rounds that follow, with its error.
+pub fn bench(
+    lab: &Lab,
+    warm: &mut Warm,
+    names: Vec<String>,
+    points: &[Listed],
+    rounds: usize,
+    frames: Frames,
+    tick: &dyn Fn(),
+) -> Result<Bench, LabError> {
+    let mut all: Vec<Gathered> = points.iter().map(|_| Gathered::default()).collect();
+    for round in 0..rounds {
+        let mut last: Option<Seed> = None;
+        for (point, gathered) in points.iter().zip(&mut all) {
+            let failed_before = matches!(gathered.result, Some(Err(_)));
+            if !failed_before {
+                let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
+                let seed = gathered.seed.as_ref().or(last.as_ref());
+                match timed(lab, loaded, &point.experiment, &point.scene, frames, seed) {
+                    Ok((mut session, times)) => {
+                        gathered.rounds.push(spread(times.iter().map(|t| t.gpu_ms).collect()).median);
+                        gathered.times.extend(times);
+                        if round + 1 == rounds {
+                            let warnings = session.failed_checks()?;
+                            let (times, name) = (&gathered.times, &point.experiment.name);
+                            let stats = stats::collect(&lab.gpu.info, name, &session, times, frames.warmup, warnings);
+                            gathered.result = Some(Ok((stats, stages(&session, times))));
+                        }
+                        // The next configuration's first turn starts from this one's pipelines and scene.
+                        last = (round == 0).then(|| session.lend());
+                        gathered.seed = Some(session.lend());
+                    }
+                    Err(error) => gathered.result = Some(Err(error.to_string())),
+                }
+            }
+            tick();
+        }
+    }
+    let configurations = points.iter().zip(all).map(|(point, gathered)| {
+        let (times, error) = match gathered.result {
+            Some(Ok((stats, stages))) => (Some(Times { stats, stages, rounds: gathered.rounds }), None),
+            Some(Err(error)) => (None, Some(error)),
+            None => (None, None),
+        };
+        let experiment = &point.experiment;
+        let labels = point.labels.iter().cloned().collect();
+        Configuration { labels, size: experiment.size, experiment: experiment.name.clone(), times, error }
+    });
+    Ok(Bench {
+        schema: SCHEMA.into(),
+        device: DeviceStats::of(&lab.gpu.info),
+        rounds,
+        frames,
+        names,
+        configurations: configurations.collect(),
+    })
+}
+
+/// Times of the stages, in the order of the graph.
+fn stages(session: &Session, times: &[FrameTimes]) -> IndexMap<String, Spread> {
+    let mut all: IndexMap<String, Vec<f64>> = IndexMap::new();
+    for (frame, time) in times.iter().enumerate() {
+        for (number, ms) in &time.passes {
+            let values = all.entry(session.graph.passes[*number].value.stage().to_string()).or_default();
+            values.resize(frame + 1, 0.0);
+            values[frame] += ms;
+        }
+    }
+    all.into_iter().map(|(stage, values)| (stage, spread(values))).collect()
+}

@@ -1,0 +1,269 @@
+//! `conelab fit`.
+
+use super::DeviceArgs;
+use super::adapt::{self, ExperimentArgs};
+use crate::experiment::Experiment;
+use crate::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
+use crate::lab::{Home, Lab, LabError, params_of};
+use crate::measure::Frames;
+use crate::reference;
+use clap::Args;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Arguments of `fit`.
+#[derive(Debug, Args)]
+pub struct FitArgs {
+    #[command(flatten)]
+    experiment: ExperimentArgs,
+    /// The least time with at most this error.
+    #[arg(long, value_name = "ERROR", required_unless_present = "max_ms", conflicts_with = "max_ms")]
+    max_error: Option<f64>,
+    /// The least error in at most this GPU time, ms.
+    #[arg(long, value_name = "MS")]
+    max_ms: Option<f64>,
+    /// How the error is measured.
+    #[arg(long, value_enum, default_value = "relmse")]
+    metric: Metric,
+    /// Part of the light that is judged.
+    #[arg(long, default_value = "total")]
+    part: String,
+    /// Vary this parameter over these values, neighbours alike; may be given many times. The graph's own list when
+    /// absent.
+    #[arg(long, value_name = "NAME=VALUE,VALUE")]
+    vary: Vec<String>,
+    /// Most settings to try.
+    #[arg(long, default_value_t = 150)]
+    evaluations: usize,
+    /// Frames that are timed for each setting.
+    #[arg(long, default_value_t = 9)]
+    frames: usize,
+    /// Frames before them.
+    #[arg(long, default_value_t = 3)]
+    warmup: usize,
+    /// Samples of every pixel of the reference, if more are needed than are there.
+    #[arg(long, default_value_t = 1024)]
+    spp: u64,
+    /// Turns of the reference's paths.
+    #[arg(long, default_value_t = 1)]
+    bounces: u32,
+    /// The experiment to write; captures/fit/NAME.ron when absent. What was tried goes beside it, as JSON.
+    #[arg(short, long)]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Gains below this part of a time or an error are taken for noise.
+const LEAST_GAIN: f64 = 0.01;
+
+/// Version of the JSON.
+const SCHEMA: &str = "conelab-fit-1";
+
+/// What the JSON holds.
+#[derive(Serialize)]
+struct Log {
+    schema: &'static str,
+    version: &'static str,
+    device: String,
+    scene: String,
+    size: (u32, u32),
+    goal: String,
+    why_it_ended: &'static str,
+    /// Settings of the whole grid.
+    grid: u64,
+    reference_samples: u64,
+    noise: f64,
+    axes: Vec<(String, Vec<String>)>,
+    /// Settings in the order in which they were tried: values by axis, ms, error.
+    tried: Vec<Tried>,
+    best: Tried,
+}
+
+#[derive(Serialize)]
+struct Tried {
+    set: Vec<String>,
+    ms: Option<f64>,
+    error: Option<f64>,
+}
+
+/// Finds the cheapest setting within a bound.
+pub fn run(args: &FitArgs) -> Result<(), LabError> {
+    let experiment = args.experiment.read()?;
+    adapt::check_frames(args.frames, args.warmup, 0.0)?;
+    let goal = match (args.max_error, args.max_ms) {
+        (Some(bound), _) => Goal::Error(bound),
+        (None, Some(bound)) => Goal::Time(bound),
+        (None, None) => return Err(LabError::Request("give --max-error or --max-ms".into())),
+    };
+    if !(goal.bound() > 0.0 && goal.bound().is_finite()) || args.evaluations == 0 {
+        return Err(LabError::Request("the bound and --evaluations must be above 0".into()));
+    }
+    let home = Home::find()?;
+    let output = match &args.output {
+        Some(path) if path.extension().is_some_and(|e| e == "ron") => path.clone(),
+        Some(path) => return Err(LabError::Request(format!("'{}': give it a name that ends in .ron", path.display()))),
+        None => home.root.join("captures/fit").join(format!("{}.ron", experiment.name)),
+    };
+    let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
+    let given = args.vary.iter().map(|text| axis(text)).collect::<Result<Vec<_>, _>>()?;
+    let axes = fit::axes(&loaded.graph, &given)?;
+    let scene = Arc::new(adapt::open_scene(&experiment)?);
+    let lab = Lab::open(home, args.device.options())?;
+    let wanted = reference::Goal::Samples(args.spp);
+    let reference = super::reference::with_bar(&lab, &experiment, &scene, args.bounces, wanted)?;
+    let noise = reference.parts.get(&args.part).map_or(0.0, |p| p.noise);
+    if let (Goal::Error(bound), Metric::Relmse) = (goal, args.metric)
+        && bound < 4.0 * noise
+    {
+        eprintln!(
+            "warning: an error of {bound} is below four times the reference's noise ({noise:.2e}) and cannot be told \
+             from it: raise --spp"
+        );
+    }
+    let start = fit::start(&axes, &params_of(&loaded.graph, &experiment)?);
+    let sizes: Vec<usize> = axes.iter().map(|a| a.values.len()).collect();
+    let subject = Subject {
+        lab: &lab,
+        loaded: &loaded,
+        scene: scene.clone(),
+        experiment: &experiment,
+        axes: &axes,
+        reference: &reference,
+        part: &args.part,
+        metric: args.metric,
+        frames: Frames { warmup: args.warmup, count: args.frames },
+        goal,
+    };
+    let mut evaluator = Evaluator::new(&subject)?;
+    let bar = indicatif::ProgressBar::new_spinner();
+    let limits = Limits { bound: goal.bound(), evaluations: args.evaluations, least_gain: LEAST_GAIN };
+    let mut number = 0;
+    let found = fit::search(&sizes, &start, limits, &mut |place| {
+        let trial = evaluator.evaluate(place)?;
+        number += 1;
+        let what = match (trial, &evaluator.refused) {
+            (Some(trial), _) => {
+                let (ms, error) = goal.time_and_error(trial);
+                format!("{ms:9.3} ms {error:11.4e}")
+            }
+            (None, why) => format!("cannot be run: {}", why.as_deref().unwrap_or("").lines().next().unwrap_or("")),
+        };
+        bar.suspend(|| say!("{number:4} {what}  {}", names(&axes, place)));
+        bar.tick();
+        Ok::<_, LabError>(trial)
+    })?;
+    bar.finish_and_clear();
+    let found = found.ok_or_else(|| {
+        let why = evaluator.refused.clone().unwrap_or_default();
+        LabError::Request(format!("the setting to start from cannot be run: {why}"))
+    })?;
+    let best = fit::at(&experiment, &axes, &found.place);
+    let told = told(&found, goal, args, &sizes);
+    crate::experiment::write(&best, &loaded.graph.params, &output, true)?;
+    comment(&output, &told, &best, &loaded.graph.params)?;
+    let log = log(&found, goal, &subject, &told, &sizes, noise);
+    let json = output.with_extension("json");
+    let text = serde_json::to_string_pretty(&log).map_err(|e| LabError::Request(e.to_string()))?;
+    crate::files::write_whole(&json, text.as_bytes())
+        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", json.display())))?;
+    say!("{}", told.join("\n"));
+    say!("wrote {} and {}", super::shown(&output).display(), super::shown(&json).display());
+    let within = found.trial.bounded <= goal.bound();
+    super::validated(&lab)?;
+    if within { Ok(()) } else { Err(LabError::Request("no setting that was tried is within the bound".into())) }
+}
+
+/// `NAME=VALUE,VALUE`; values with commas in parentheses stay whole.
+fn axis(text: &str) -> Result<Axis, LabError> {
+    let wrong = || LabError::Request(format!("--vary {text}: expected NAME=VALUE,VALUE"));
+    let (name, list) = text.split_once('=').ok_or_else(wrong)?;
+    let mut depth = 0;
+    let split = |c: char| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        c == ',' && depth == 0
+    };
+    let values: Vec<String> = list.split(split).map(|v| v.trim().to_string()).collect();
+    if name.trim().is_empty() || values.iter().any(String::is_empty) {
+        return Err(wrong());
+    }
+    Ok(Axis { name: name.trim().into(), values })
+}
+
+fn names(axes: &[Axis], place: &[usize]) -> String {
+    let list = axes.iter().zip(place).filter(|(axis, _)| axis.values.len() > 1);
+    list.map(|(axis, i)| format!("{}={}", axis.name, axis.values[*i])).collect::<Vec<_>>().join(" ")
+}
+
+fn why(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Local => "no step of one parameter, and no promising pair of steps, is better",
+        Stop::Evaluations => "the evaluations are used up",
+        Stop::Unreachable => "no step comes nearer to the bound",
+    }
+}
+
+/// What the search has found, for people.
+fn told(found: &Found, goal: Goal, args: &FitArgs, sizes: &[usize]) -> Vec<String> {
+    let (ms, error) = goal.time_and_error(found.trial);
+    let metric = match args.metric {
+        Metric::Relmse => "relMSE",
+        Metric::HdrFlip => "HDR-FLIP",
+    };
+    let bound = match goal {
+        Goal::Error(bound) => format!("{metric} at most {bound}"),
+        Goal::Time(bound) => format!("at most {bound} ms"),
+    };
+    let grid = sizes.iter().map(|n| *n as u64).product::<u64>();
+    vec![
+        format!("{ms:.3} ms, {metric} {error:.4e} of the {} (wanted: {bound})", args.part),
+        format!("{} of {grid} settings tried; {}", found.tried.len(), why(found.stop)),
+    ]
+}
+
+/// Puts lines of comment before an experiment that was just written.
+fn comment(
+    path: &Path,
+    lines: &[String],
+    best: &Experiment,
+    defaults: &crate::graph::param::Params,
+) -> Result<(), LabError> {
+    let failed = |e: &dyn std::fmt::Display| LabError::Request(format!("cannot write '{}': {e}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|e| failed(&e))?;
+    let mut out = String::new();
+    for line in lines {
+        let _ = writeln!(out, "// {line}");
+    }
+    // Comments of an earlier search about this file say nothing about this one.
+    out.extend(text.lines().skip_while(|l| l.starts_with("//")).map(|l| format!("{l}\n")));
+    let same = Experiment::from_text(path, &out).map_err(LabError::Input)?.params_over(defaults)?;
+    if same.values != best.params_over(defaults)?.values {
+        return Err(failed(&"it would not read back as it is"));
+    }
+    crate::files::write_whole(path, out.as_bytes()).map_err(|e| failed(&e))
+}
+
+fn log(found: &Found, goal: Goal, subject: &Subject<'_>, told: &[String], sizes: &[usize], noise: f64) -> Log {
+    let tried = |step: &Step| {
+        let both = step.trial.map(|t| goal.time_and_error(t));
+        let set = subject.axes.iter().zip(&step.place).map(|(axis, i)| axis.values[*i].clone()).collect();
+        Tried { set, ms: both.map(|b| b.0), error: both.map(|b| b.1) }
+    };
+    Log {
+        schema: SCHEMA,
+        version: env!("CARGO_PKG_VERSION"),
+        device: subject.lab.gpu.info.name.clone(),
+        scene: subject.scene.name.clone(),
+        size: subject.experiment.size,
+        goal: told.first().cloned().unwrap_or_default(),
+        why_it_ended: why(found.stop),
+        grid: sizes.iter().map(|n| *n as u64).product(),
+        reference_samples: subject.reference.samples,
+        noise,
+        axes: subject.axes.iter().map(|a| (a.name.clone(), a.values.clone())).collect(),
+        tried: found.tried.iter().map(tried).collect(),
+        best: tried(&Step { place: found.place.clone(), trial: Some(found.trial) }),
+    }
+}

@@ -1,0 +1,166 @@
+//! Runs settings and measures both of their quantities.
+
+use super::search::Trial;
+use super::{Axis, at};
+use crate::experiment::Experiment;
+use crate::lab::{Lab, LabError, Loaded, Seed};
+use crate::measure::Frames;
+use crate::metrics::{Compared, Kind, Linear, relmse};
+use crate::reference::Reference;
+use crate::scene::Scene;
+use crate::stats::spread;
+use crate::vulkan::VulkanError;
+use clap::ValueEnum;
+use std::sync::Arc;
+
+/// Which error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub enum Metric {
+    /// mean (x - r)^2 / (r^2 + .01).
+    Relmse,
+    /// Mean HDR-FLIP.
+    HdrFlip,
+}
+
+/// What is made small and what is bounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// The least time with at most this error.
+    Error(f64),
+    /// The least error in at most this time, ms.
+    Time(f64),
+}
+
+impl Goal {
+    /// The bounded quantity's bound.
+    pub fn bound(self) -> f64 {
+        match self {
+            Goal::Error(bound) | Goal::Time(bound) => bound,
+        }
+    }
+
+    /// A setting's time (ms) and error.
+    pub fn time_and_error(self, trial: Trial) -> (f64, f64) {
+        match self {
+            Goal::Error(_) => (trial.cost, trial.bounded),
+            Goal::Time(_) => (trial.bounded, trial.cost),
+        }
+    }
+}
+
+/// What every setting of a search has in common.
+pub struct Subject<'a> {
+    /// The device.
+    pub lab: &'a Lab,
+    /// The experiment's graph.
+    pub loaded: &'a Loaded,
+    /// The scene, lit as the experiment says.
+    pub scene: Arc<Scene>,
+    /// The experiment.
+    pub experiment: &'a Experiment,
+    /// What is varied.
+    pub axes: &'a [Axis],
+    /// The truth.
+    pub reference: &'a Reference,
+    /// Part of the light that is judged.
+    pub part: &'a str,
+    /// How it is judged.
+    pub metric: Metric,
+    /// How long a setting is timed.
+    pub frames: Frames,
+    /// What is wanted.
+    pub goal: Goal,
+}
+
+/// Runs settings one after the other on what the one before has left.
+pub struct Evaluator<'a> {
+    subject: &'a Subject<'a>,
+    texture: String,
+    truth: &'a Linear,
+    seed: Option<Seed>,
+    /// Why the last setting could not be run.
+    pub refused: Option<String>,
+}
+
+impl<'a> Evaluator<'a> {
+    /// Checks that the part is there.
+    ///
+    /// # Errors
+    /// No such part in the graph or in the reference.
+    pub fn new(subject: &'a Subject<'a>) -> Result<Evaluator<'a>, LabError> {
+        let parts = crate::lab::parts_of(&subject.loaded.graph);
+        let texture = parts.iter().find(|p| p.0 == subject.part).map(|p| p.1.clone());
+        match (texture, subject.reference.parts.get(subject.part)) {
+            (Some(texture), Some(truth)) => {
+                Ok(Evaluator { subject, texture, truth: &truth.mean, seed: None, refused: None })
+            }
+            _ => {
+                let all: Vec<&str> = parts.iter().map(|p| p.0.as_str()).collect();
+                Err(LabError::Request(format!("no part '{}'; there are {}", subject.part, all.join(", "))))
+            }
+        }
+    }
+
+    /// Both quantities of a setting; nothing where the graph, the device or one of the graph's checks refuses it.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn evaluate(&mut self, place: &[usize]) -> Result<Option<Trial>, LabError> {
+        self.refused = None;
+        let experiment = at(self.subject.experiment, self.subject.axes, place);
+        match self.measure(&experiment) {
+            Ok(trial) => Ok(trial),
+            Err(error @ LabError::Vulkan(VulkanError::Lost(_))) => Err(error),
+            Err(error) => {
+                self.refused = Some(error.to_string());
+                Ok(None)
+            }
+        }
+    }
+
+    fn measure(&mut self, experiment: &Experiment) -> Result<Option<Trial>, LabError> {
+        let s = self.subject;
+        let graph = &s.loaded.graph;
+        let shown = graph.output.clone().or_else(|| graph.hdr.clone());
+        // The linear picture is made for the display anyway; other parts cost time to write, and get frames of their own.
+        let together = graph.hdr.as_ref() == Some(&self.texture);
+        let mut wanted: Vec<String> = shown.into_iter().collect();
+        if together {
+            wanted.push(self.texture.clone());
+        }
+        let mut session = s.lab.build(experiment, s.loaded, s.scene.clone(), wanted, self.seed.as_ref())?;
+        let mut times = Vec::new();
+        for _ in 0..s.frames.warmup + s.frames.count {
+            times.extend(session.frame(0.0)?);
+        }
+        times.extend(session.finish()?);
+        let times = times.split_off(times.len().saturating_sub(s.frames.count));
+        let ms = spread(times.iter().map(|t| t.gpu_ms).collect()).median;
+        if let Some(message) = session.failed_checks()?.into_iter().next() {
+            self.refused = Some(message);
+            return Ok(None);
+        }
+        self.seed = Some(session.lend());
+        if !together {
+            let seed = self.seed.as_ref();
+            session = s.lab.build(experiment, s.loaded, s.scene.clone(), vec![self.texture.clone()], seed)?;
+            for _ in 0..s.frames.warmup + s.frames.count {
+                session.frame(0.0)?;
+            }
+            session.finish()?;
+        }
+        let light = crate::picture::to_linear(&session.texels(&self.texture, 0, 0)?);
+        let error = match s.metric {
+            Metric::Relmse => relmse(&light, self.truth)?,
+            Metric::HdrFlip => {
+                let compared = Compared::new(&light, self.truth, Kind::of_part(s.part))?;
+                compared.scores(None).map_or(f64::NAN, |scores| scores.hdr_flip)
+            }
+        };
+        Ok(Some(match s.goal {
+            Goal::Error(_) => Trial { cost: ms, bounded: error },
+            Goal::Time(_) => Trial { cost: error, bounded: ms },
+        }))
+    }
+}

@@ -1,0 +1,307 @@
+//! Sweeps and benchmarks as people and clusters run them: killed, continued, split, with points that fail.
+
+mod common;
+
+use common::{conelab, fails, root, succeeds};
+use conelab::sweep::Sweep;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// A folder with the program's graphs and shaders, so that references and captures are the test's own.
+fn home() -> TempDir {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["passes", "shaders", "configs"] {
+        std::os::unix::fs::symlink(root().join(folder), home.path().join(folder)).unwrap();
+    }
+    home
+}
+
+/// A sweep of cornell that a software device measures in tens of milliseconds a point.
+fn sweep_file(home: &Path, axes: &str) -> PathBuf {
+    let path = home.join("small.ron");
+    let text = format!(
+        "(experiments: [\"configs/default.ron\"], warmup: 1, frames: 3,\n\
+         set: {{ \"scene\": \"cornell\", \"size\": (64, 48), \"shadow_dim\": 256, \"voxel_dim\": 16 }},\naxes: [\n{axes}\n])"
+    );
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn sweep(home: &Path, file: &Path, folder: &Path, more: &[&str]) -> std::process::Command {
+    let mut command = conelab(home);
+    command.arg("sweep").arg(file).arg("-o").arg(folder).args(more);
+    command
+}
+
+/// A table without what differs from run to run: a line for each point, by column.
+fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let names = reader.headers().unwrap().clone();
+    let line = |record: csv::StringRecord| {
+        let cells = names.iter().zip(&record).filter(|c| !c.0.ends_with(" ms"));
+        cells.map(|(name, value)| (name.to_string(), value.to_string())).collect()
+    };
+    reader.records().map(|r| line(r.unwrap())).collect()
+}
+
+/// The files of a folder with their bytes; those that are still being written have other names.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let list = std::fs::read_dir(folder).into_iter().flatten().map(|e| e.unwrap().file_name());
+    let names = list.map(|n| n.to_string_lossy().into_owned()).filter(|n| !n.starts_with('.'));
+    names.map(|n| (n.clone(), std::fs::read(folder.join(&n)).unwrap())).collect()
+}
+
+/// Kills of a run: more with CONELAB_TEST_KILLS.
+fn kills() -> usize {
+    std::env::var("CONELAB_TEST_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(5)
+}
+
+#[test]
+fn a_sweep_that_is_killed_again_and_again_ends_as_one_that_is_not() {
+    let home = home();
+    let count = 5 * kills();
+    let axes = format!(
+        "List(name: \"voxel_dim\", values: [16, 24]), Range(name: \"stop_transmittance\", from: 0.01, to: 0.2, count: {count})"
+    );
+    let file = sweep_file(home.path(), &axes);
+    let (whole, killed) = (home.path().join("whole"), home.path().join("killed"));
+    let begin = Instant::now();
+    let said = succeeds(&mut sweep(home.path(), &file, &whole, &[]));
+    assert!(said.ends_with(&format!("{} points: {} done, 0 failed, 0 left\n", 2 * count, 2 * count)), "{said}");
+    let a_point = begin.elapsed() / (2 * u32::try_from(count).unwrap());
+
+    let points = killed.join("points");
+    let mut kept = BTreeMap::new();
+    for kill in 0..kills() {
+        let mut command = sweep(home.path(), &file, &killed, &[]);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let deadline = Instant::now() + Duration::from_secs(120);
+        while files(&points).len() <= kept.len() && child.try_wait().unwrap().is_none() {
+            assert!(Instant::now() < deadline, "no point is finished within two minutes");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        // Anywhere within the next two points: times that share no period with theirs.
+        std::thread::sleep(a_point.mul_f64(2.0 * (kill as f64 * 0.618).fract()));
+        assert!(child.try_wait().unwrap().is_none(), "the sweep ended before it was killed: it needs more points");
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let now = files(&points);
+        for (name, bytes) in &kept {
+            assert!(now.get(name) == Some(bytes), "the finished point {name} was lost or measured again");
+        }
+        kept = now;
+    }
+    let said = succeeds(&mut sweep(home.path(), &file, &killed, &[]));
+    assert!(said.contains("points are finished already"), "{said}");
+    let (expected, found) = (table(&whole.join("sweep.csv")), table(&killed.join("sweep.csv")));
+    assert_eq!(expected.len(), 2 * count);
+    assert_eq!(found, expected);
+    assert_eq!(files(&points).len(), 2 * count, "every point is there once");
+    assert!(files(&killed.join("pictures")) == files(&whole.join("pictures")), "pictures differ");
+}
+
+#[test]
+fn points_that_fail_or_warn_are_recorded_and_the_rest_goes_on() {
+    let home = home();
+    // No device has 3 samples; 10000 fragments are too few for 64 voxels.
+    let axes = "Settings(name: \"case\", values: { \"no device\": { \"voxel_samples\": 3 }, \"good\": {}, \
+                \"overflow\": { \"voxel_dim\": 64, \"fragment_capacity\": 10000 } })";
+    let file = sweep_file(home.path(), axes);
+    let folder = home.path().join("out");
+    let said = fails(&mut sweep(home.path(), &file, &folder, &[]));
+    assert!(said.contains("no rasterisation with 3 samples"), "{said}");
+    let rows = table(&folder.join("sweep.csv"));
+    let column = |name: &str| rows.iter().map(|r| r[name].as_str()).collect::<Vec<_>>();
+    assert_eq!(column("case"), ["no device", "good", "overflow"]);
+    assert_eq!(column("outcome"), ["failed", "done", "done"]);
+    assert!(rows[0]["error"].contains("no rasterisation with 3 samples"), "{:?}", rows[0]);
+    assert_eq!(rows[1]["warnings"], "");
+    assert!(rows[2]["warnings"].contains("voxels were dropped"), "{:?}", rows[2]);
+    // What has failed is not tried again unless that is asked for.
+    let before = files(&folder.join("points"));
+    assert!(!fails(&mut sweep(home.path(), &file, &folder, &[])).contains("no rasterisation"));
+    assert!(files(&folder.join("points")) == before, "finished points were measured again");
+    let said = fails(&mut sweep(home.path(), &file, &folder, &["--again"]));
+    assert!(said.contains("no rasterisation"), "{said}");
+}
+
+#[test]
+fn shards_merge_to_the_whole_in_one_page_without_a_network() {
+    let home = home();
+    let file = sweep_file(
+        home.path(),
+        "List(name: \"voxel_dim\", values: [16, 24, 32]), List(name: \"cone_set\", values: [\"fitted\", \"thesis\"])",
+    );
+    let whole = home.path().join("whole");
+    succeeds(&mut sweep(home.path(), &file, &whole, &[]));
+    let shards: Vec<PathBuf> = (1..=4).map(|i| home.path().join(format!("shard-{i}"))).collect();
+    for (i, folder) in shards.iter().enumerate() {
+        let said = succeeds(&mut sweep(home.path(), &file, folder, &["--shard", &format!("{}/4", i + 1)]));
+        let mine = if i < 2 { 2 } else { 1 };
+        assert!(said.contains(&format!("shard {}/4: {mine} points: {mine} done", i + 1)), "{said}");
+    }
+    let report = home.path().join("report");
+    succeeds(conelab(home.path()).arg("report").args(&shards).arg("-o").arg(&report));
+    let expected = table(&whole.join("sweep.csv"));
+    assert_eq!(table(&report.join("points.csv")), expected);
+    let page = std::fs::read_to_string(report.join("index.html")).unwrap();
+    assert!(expected.iter().all(|row| page.contains(&row["id"])), "a point is not on the page");
+    for outside in ["src=\"http", "href=\"http", "url(", "@import", "fetch("] {
+        assert!(!page.contains(outside), "the page needs {outside}");
+    }
+    assert!(page.contains("data:image/jpeg;base64,"), "no pictures");
+}
+
+#[test]
+fn points_are_scored_against_references_and_measured_again_when_there_is_one() {
+    let home = home();
+    let file = sweep_file(
+        home.path(),
+        "List(name: \"size\", values: [(48, 36)]), List(name: \"indirect_scale\", values: [1, 3])",
+    );
+    let folder = home.path().join("out");
+    succeeds(&mut sweep(home.path(), &file, &folder, &[]));
+    assert!(!table(&folder.join("sweep.csv"))[0].contains_key("total relmse"));
+    let refused = fails(conelab(home.path()).args(["report", "nowhere"]));
+    assert!(refused.contains("give the folder that `conelab sweep` wrote"), "{refused}");
+
+    succeeds(&mut sweep(home.path(), &file, &folder, &["--reference", "64"]));
+    let rows = table(&folder.join("sweep.csv"));
+    let score = |row: usize, column: &str| rows[row][column].parse::<f64>().unwrap();
+    for part in ["total", "direct", "diffuse", "specular", "occlusion"] {
+        assert!(score(0, &format!("{part} relmse")).is_finite());
+    }
+    // Three times the indirect light is far from the truth, and changes direct light in nothing.
+    assert!(score(1, "diffuse relmse") > 2.0 * score(0, "diffuse relmse"), "{rows:?}");
+    assert!(score(1, "total relmse") > 2.0 * score(0, "total relmse"), "{rows:?}");
+    assert_eq!(rows[0]["direct relmse"], rows[1]["direct relmse"]);
+    assert_eq!(rows[0]["reference samples"], "1 bounces: 64");
+
+    let wrote = succeeds(conelab(home.path()).arg("report").arg(&folder));
+    let chart = std::fs::read_to_string(folder.join("report/total-relmse.svg")).unwrap();
+    assert_eq!(chart.matches("<circle").count(), 2, "{chart}");
+    assert!(wrote.contains("diffuse-hdr-flip.svg"), "{wrote}");
+}
+
+#[test]
+fn axes_are_walked_in_the_order_of_the_file() {
+    let home = home();
+    let file = sweep_file(
+        home.path(),
+        "Together({ \"bias\": [1, 2], \"cone_height\": [3, 4] }),\n\
+         Range(name: \"voxel_dim\", from: 16, to: 64, count: 3, scale: log),\n\
+         Sample(count: 4, seed: 7, of: { \"lod_offset\": Uniform(-2, 0), \"cone_count\": Whole(4, 7) })",
+    );
+    let sweep = Sweep::read(&file).unwrap();
+    assert_eq!(sweep.len(), 2 * 3 * 4);
+    assert_eq!(sweep.names, ["bias", "cone_height", "voxel_dim", "lod_offset", "cone_count"]);
+    let values = |index: usize| -> Vec<String> { sweep.point(index).unwrap().1.into_iter().map(|l| l.1).collect() };
+    assert_eq!(values(0)[..3], ["1", "3", "16"]);
+    assert_eq!(values(4)[..3], ["1", "3", "32"]);
+    assert_eq!(values(12)[..3], ["2", "4", "16"]);
+    // Four whole numbers, four samples: each is drawn once.
+    let mut counts: Vec<String> = (0..4).map(|i| values(i)[4].clone()).collect();
+    counts.sort();
+    assert_eq!(counts, ["4", "5", "6", "7"]);
+    let quarters: std::collections::BTreeSet<i64> =
+        (0..4).map(|i| (values(i)[3].parse::<f64>().unwrap() * 2.0).floor() as i64).collect();
+    assert_eq!(quarters.len(), 4);
+    // The point's settings are the experiment's, over what the file sets for all.
+    let (experiment, _) = sweep.point(23).unwrap();
+    let last = |name: &str| experiment.params.iter().rev().find(|p| p.0.value == name).unwrap().1.clone();
+    assert_eq!((last("voxel_dim"), last("bias"), last("shadow_dim")), ("64".into(), "2".into(), "256".into()));
+    // What stands beside comes first, once, and moves nothing else.
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replace("warmup: 1", "beside: [\"configs/thesis.ron\"], warmup: 1")).unwrap();
+    let more = Sweep::read(&file).unwrap();
+    assert_eq!((more.len(), more.names[0].as_str()), (25, "experiment"));
+    assert_eq!(more.point(0).unwrap().1, [("experiment".to_string(), "thesis".to_string())]);
+    assert_eq!(more.point(24).unwrap().1[1..], sweep.point(23).unwrap().1);
+}
+
+#[test]
+fn mistakes_of_a_sweep_are_told_with_their_place_before_anything_is_measured() {
+    let home = home();
+    for (axes, message) in [
+        (
+            "List(name: \"voxel_dmi\", values: [16])",
+            "small.ron:4:34: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)",
+        ),
+        ("List(name: \"voxel_dim\", values: [16, 1])", "small.ron:4:38: error: 'voxel_dim': 1 is outside 16 to 512"),
+        ("List(name: \"size\", values: [(64)])", "small.ron:4:29: error: 'size': expected (width, height), got (64)"),
+        ("List(name: \"bias\", value: [1])", "small.ron:4:20: error: unknown field 'value'"),
+        ("List(name: \"bias\", values: [])", "error: this axis has no values"),
+        (
+            "Range(name: \"bias\", from: 0, to: 1, count: 900000)",
+            "small.ron:4:44: error: a range has 1 to 20000 values",
+        ),
+        ("Together({ \"bias\": [1], \"cone_height\": [1, 2] })", "they are walked together"),
+        (
+            "Sample(count: 3, of: { \"bias\": Log(0, 1) })",
+            "small.ron:4:32: error: 'bias': nothing can be drawn from this",
+        ),
+        ("List(name: \"bias\", values: [1]), List(name: \"bias\", values: [2])", "'bias' is varied by two axes"),
+        ("List(name: \"camera\", values: [\"nope\"])", "has no camera 'nope'"),
+    ] {
+        let file = sweep_file(home.path(), axes);
+        let said = fails(&mut sweep(home.path(), &file, &home.path().join("out"), &[]));
+        assert!(said.contains(message), "{axes}:\n{said}");
+        assert!(!home.path().join("out").exists(), "{axes}");
+        // A camera is known with its scene only.
+        if !axes.contains("camera") {
+            let output = conelab(home.path()).arg("check").arg(&file).output().unwrap();
+            assert!(String::from_utf8_lossy(&output.stdout).contains(message), "{axes}: `check` does not say so");
+        }
+    }
+}
+
+#[test]
+fn a_benchmark_prints_stages_by_grid_and_totals_by_size() {
+    let home = home();
+    let out = home.path().join("bench");
+    let mut command = conelab(home.path());
+    command.args(["bench", "configs/default.ron", "--scene", "cornell", "--sizes", "48x32,64x48"]);
+    command.args(["--axis", "voxel_dim=16,32", "--axis", "voxelizer=raster,tessellated", "--set", "shadow_dim=256"]);
+    command.args(["--rounds", "2", "--frames", "3", "--warmup", "1", "-o"]).arg(&out);
+    let said = succeeds(&mut command);
+    let first = |line: &&str| line.split("  ").next().unwrap_or("").to_string();
+    let stages: Vec<String> = said.lines().skip(4).take(8).collect::<Vec<_>>().iter().map(first).collect();
+    let expected = [
+        "shadow map",
+        "voxelize",
+        "radiance injection",
+        "radiance filtering",
+        "depth prepass",
+        "final shading",
+        "display",
+        "total",
+    ];
+    assert_eq!(stages, expected, "{said}");
+    let totals: Vec<String> =
+        said.lines().skip_while(|l| *l != "total").skip(2).take(4).collect::<Vec<_>>().iter().map(first).collect();
+    let rows = [
+        "48x32 voxelizer raster",
+        "48x32 voxelizer tessellated",
+        "64x48 voxelizer raster",
+        "64x48 voxelizer tessellated",
+    ];
+    assert_eq!(totals, rows, "{said}");
+    let text = std::fs::read_to_string(out.join("bench.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let configurations = json["configurations"].as_array().unwrap();
+    assert_eq!(configurations.len(), 8);
+    for c in configurations {
+        let times = &c["times"];
+        assert_eq!(times["rounds"].as_array().unwrap().len(), 2);
+        // Stages leave nothing of the frame out: the least of each add up to no more than the least of the whole.
+        let sum: f64 = times["stages"].as_object().unwrap().values().map(|s| s["min"].as_f64().unwrap()).sum();
+        let total = times["stats"]["total_gpu_ms"]["min"].as_f64().unwrap();
+        assert!(sum > 0.3 * total && sum <= total * 1.0001, "{sum} of {total}");
+    }
+    for file in ["bench.csv", "stages.svg", "stage-voxelize.svg"] {
+        assert!(out.join(file).is_file(), "no {file}");
+    }
+}

@@ -1,0 +1,338 @@
+//! Where the method is right and where it fails, with numbers: docs/trials.md has a table of them, and every row of it is
+//! measured here again. A row that misses what is wanted says so there; it fails here only when it no longer says what is
+//! measured. `CONELAB_BLESS=1 cargo test --test trials -- --test-threads=1` writes the table anew. On a GPU
+//! (CONELAB_TEST_DEVICE) rows are printed, with finer grids where memory allows, and not compared.
+
+mod common;
+
+use common::{assert_clean, device, experiment, lab, root};
+use conelab::experiment::Experiment;
+use conelab::lab::{Lab, parts_of};
+use conelab::metrics::{Linear, scores};
+use conelab::reference::{Goal, Reference, gather};
+use conelab::scene::Scene;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A measured figure.
+struct Row {
+    setting: String,
+    figure: &'static str,
+    value: f64,
+    /// Least and greatest that is wanted.
+    wanted: (f64, f64),
+}
+
+fn row(setting: impl Into<String>, figure: &'static str, value: f64, wanted: (f64, f64)) -> Row {
+    Row { setting: setting.into(), figure, value, wanted }
+}
+
+fn line(trial: &str, r: &Row) -> String {
+    let (low, high) = r.wanted;
+    let wanted = match (low.is_finite(), high.is_finite()) {
+        (true, true) => format!("{low} to {high}"),
+        (true, false) => format!("at least {low}"),
+        _ => format!("at most {high}"),
+    };
+    let verdict = if r.value >= low && r.value <= high { "yes" } else { "**no**" };
+    format!("| {trial} | {} | {} | {:.4} | {wanted} | {verdict} |", r.setting, r.figure, r.value)
+}
+
+/// Compares rows with the table of docs/trials.md, or writes them there.
+#[track_caller]
+fn check(trial: &str, rows: &[Row]) {
+    let lines: Vec<String> = rows.iter().map(|r| line(trial, r)).collect();
+    println!("{}", lines.join("\n"));
+    if device() != "llvmpipe" {
+        return;
+    }
+    let path = root().join("docs/trials.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let mine = |l: &&str| l.starts_with(&format!("| {trial} |"));
+    if std::env::var_os("CONELAB_BLESS").is_some() {
+        let at = text.lines().position(|l| mine(&l)).unwrap_or(text.lines().count());
+        let mut out: Vec<&str> = text.lines().filter(|l| !mine(l)).collect();
+        for (i, l) in lines.iter().enumerate() {
+            out.insert(at + i, l);
+        }
+        std::fs::write(&path, out.join("\n") + "\n").unwrap();
+        return;
+    }
+    let told: Vec<&str> = text.lines().filter(mine).collect();
+    assert_eq!(told.len(), rows.len(), "{trial}: docs/trials.md has other rows");
+    let mut wrong = String::new();
+    for ((told, line), r) in told.iter().zip(&lines).zip(rows) {
+        let (a, b): (Vec<&str>, Vec<&str>) = (told.split('|').collect(), line.split('|').collect());
+        let number: f64 = a[4].trim().parse().unwrap();
+        let near = (number - r.value).abs() <= 0.03 * number.abs().max(0.02);
+        if !near || [1, 2, 3, 5, 6].iter().any(|i| a[*i] != b[*i]) {
+            let _ = writeln!(wrong, "told     {told}\nmeasured {line}");
+        }
+    }
+    assert!(wrong.is_empty(), "docs/trials.md no longer says what is measured:\n{wrong}");
+}
+
+/// The parts of an experiment's light, and its truth after so many samples.
+fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Linear>, Reference) {
+    let scene = Scene::open(&experiment.scene, &|_, _| ControlFlow::Continue(())).unwrap();
+    let scene = experiment.adapted(Arc::new(scene)).unwrap();
+    let mut wanted = Vec::new();
+    let prepared = lab.prepare(experiment, scene.clone(), |graph| {
+        wanted.extend(parts_of(graph).into_iter().map(|p| p.1));
+        Ok(wanted)
+    });
+    let (mut session, _) = prepared.unwrap_or_else(|e| panic!("{e}"));
+    session.frame(0.0).unwrap();
+    session.finish().unwrap();
+    assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
+    let parts = session.parts().unwrap();
+    drop(session);
+    let truth = gather(lab, experiment, &scene, 1, Goal::Samples(samples), &mut |_| ControlFlow::Continue(()));
+    assert_clean(lab);
+    (parts, truth.unwrap_or_else(|e| panic!("{e}")))
+}
+
+/// A scene of quads in a folder of its own: (material, corners) in metres, counter-clockwise from the side that is seen.
+fn quads(name: &str, materials: &str, quads: &[(&str, [[f64; 3]; 4])], scene: &str) -> String {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("trials");
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut obj = format!("mtllib {name}.mtl\n");
+    for (_, corners) in quads {
+        for [x, y, z] in corners {
+            let _ = writeln!(obj, "v {x} {y} {z}");
+        }
+    }
+    for (i, (material, _)) in quads.iter().enumerate() {
+        let v = 4 * i + 1;
+        let _ = writeln!(obj, "usemtl {material}\nf {} {} {} {}", v, v + 1, v + 2, v + 3);
+    }
+    std::fs::write(folder.join(format!("{name}.obj")), obj).unwrap();
+    std::fs::write(folder.join(format!("{name}.mtl")), materials).unwrap();
+    let file = folder.join(format!("{name}.ron"));
+    std::fs::write(&file, scene).unwrap();
+    file.to_string_lossy().into_owned()
+}
+
+/// The six sides of a box, seen from inside or from outside.
+fn sides(material: &'static str, low: [f64; 3], high: [f64; 3], inside: bool) -> Vec<(&'static str, [[f64; 3]; 4])> {
+    let at = |i: usize| {
+        let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        [pick(0), pick(1), pick(2)]
+    };
+    [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+        .into_iter()
+        .map(|mut c: [usize; 4]| {
+            if inside {
+                c.reverse();
+            }
+            (material, c.map(at))
+        })
+        .collect()
+}
+
+const ANY: f64 = f64::INFINITY;
+const QUICK: (&str, &str) = ("shadow_dim", "1024");
+
+/// T1. A closed box with albedo .5 and emission 1: one bounce adds a half, at every voxel size.
+#[test]
+fn furnace() {
+    let lab = lab(root());
+    let mut rows = Vec::new();
+    for dim in ["32", "64", "128"] {
+        let (parts, _) = run(&lab, &experiment("furnace", (64, 48), &[("voxel_dim", dim), QUICK]), 32);
+        rows.push(row(format!("{dim} voxels"), "diffuse / exact", parts["diffuse"].mean() / 0.5, (0.98, 1.02)));
+    }
+    check("T1 furnace", &rows);
+}
+
+/// T2. A white ball under a white sky: all of the sky reaches it.
+#[test]
+fn white_sky() {
+    let lab = lab(root());
+    let mut rows = Vec::new();
+    for dim in ["32", "64"] {
+        let (parts, truth) = run(&lab, &experiment("white-sky", (64, 64), &[("voxel_dim", dim), QUICK]), 32);
+        let ratio = parts["occlusion"].mean() / truth.parts["occlusion"].mean.mean();
+        rows.push(row(format!("{dim} voxels"), "openness / exact", ratio, (0.99, 1.01)));
+    }
+    check("T2 white sky", &rows);
+}
+
+/// T3. The same picture from coarse and fine voxels.
+#[test]
+fn resolution() {
+    let lab = lab(root());
+    let mut means = Vec::new();
+    let finer: &[&str] = if device() == "llvmpipe" { &[] } else { &["256", "512"] };
+    let mut rows = Vec::new();
+    for dim in ["32", "64", "128"].iter().chain(finer) {
+        let (parts, truth) = run(&lab, &experiment("cornell", (96, 72), &[("voxel_dim", dim), QUICK]), 256);
+        let mean = parts["diffuse"].mean() / truth.parts["diffuse"].mean.mean();
+        rows.push(row(format!("{dim} voxels"), "diffuse / reference", mean, (0.9, 1.1)));
+        means.push(mean);
+    }
+    let (low, high) = means.iter().skip(1).fold((ANY, -ANY), |(a, b), m| (a.min(*m), b.max(*m)));
+    rows.push(row("64 voxels and finer", "drift of the mean", high / low - 1.0, (-ANY, 0.03)));
+    check("T3 resolution", &rows);
+}
+
+/// T4. A wall between a lit and a dark chamber, at angles to the grid: light that comes through it, beside light that is
+/// missing in the lit chamber.
+#[test]
+fn walls() {
+    let lab = lab(root());
+    let mut rows = Vec::new();
+    for (voxels, thickness) in [(1, 0.1), (2, 0.2), (4, 0.4)] {
+        for degrees in [0, 20, 45] {
+            let mut list = sides("wall", [-2.0, -1.0, -1.0], [2.0, 1.0, 1.0], true);
+            list.extend(sides("wall", [-0.5 * thickness, -1.0, -1.0], [0.5 * thickness, 1.0, 1.0], false));
+            let name = format!("chambers-{voxels}-{degrees}");
+            // The lamp and both eyes turn with the chambers.
+            let turn = |x: f64, y: f64, z: f64| {
+                let (s, c) = f64::from(degrees).to_radians().sin_cos();
+                format!("({:.6}, {y}, {:.6})", c * x + s * z, c * z - s * x)
+            };
+            let camera = |side: f64| {
+                format!("(eye: {}, target: {}, fov_y: 70)", turn(side * 1.8, 0.5, 0.8), turn(side * 0.6, -0.4, -0.4))
+            };
+            let scene = format!(
+                "(models: [(file: \"{name}.obj\", transform: (rotate_deg: (0, {degrees}, 0)))], sky: (0, 0, 0), \
+                 lights: [Point(name: \"lamp\", color: (2, 2, 2), position: {}, shadow: true)], \
+                 cameras: {{ \"lit\": {}, \"dark\": {} }})",
+                turn(1.0, 0.6, 0.0),
+                camera(1.0),
+                camera(-1.0)
+            );
+            let file = quads(&name, "newmtl wall\nKd 0.8 0.8 0.8\nPr 1\n", &list, &scene);
+            let set = [("voxel_dim", "64"), ("volume", "box"), ("volume_size", "(6.4, 6.4, 6.4)"), QUICK];
+            let of = |camera: &str| {
+                let mut e = experiment(&file, (48, 36), &set);
+                e.camera = conelab::experiment::CameraChoice::Named(camera.into());
+                run(&lab, &e, 128)
+            };
+            let (lit, lit_truth) = of("lit");
+            let (dark, dark_truth) = of("dark");
+            assert_eq!(dark_truth.parts["diffuse"].mean.mean(), 0.0, "the dark chamber is closed");
+            let bright = lit_truth.parts["diffuse"].mean.mean();
+            let setting = format!("{voxels} voxels thick, {degrees} degrees");
+            let leak = dark["diffuse"].mean() / bright;
+            rows.push(row(setting.clone(), "leak / lit chamber", leak, (-ANY, 0.01)));
+            let energy = lit["diffuse"].mean() / bright;
+            rows.push(row(setting, "lit chamber / reference", energy, (0.95, 1.05)));
+        }
+    }
+    check("T4 walls", &rows);
+}
+
+/// Part of the cosine-weighted hemisphere above a point that a rectangle parallel to the surface hides, one corner above
+/// the point: Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-3. x, y: its edges over its height.
+fn corner_factor(x: f64, y: f64) -> f64 {
+    let (a, b) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    (x / a * (y / a).atan() + y / b * (x / b).atan()) / std::f64::consts::TAU
+}
+
+/// T5. Under the edge of a roof: how open the floor is, against the exact fraction.
+#[test]
+fn edge() {
+    let lab = lab(root());
+    let (h, a, b): (f64, f64, f64) = (1.0, 5.0, 6.0);
+    let floor = [[-6.0, 0.0, 6.0], [6.0, 0.0, 6.0], [6.0, 0.0, -6.0], [-6.0, 0.0, -6.0]];
+    let roof = [[-a, h, b], [0.0, h, b], [0.0, h, -b], [-a, h, -b]];
+    let (eye, target): ([f64; 3], [f64; 3]) = ([3.0, 0.8, 0.0], [-1.0, 0.0, 0.0]);
+    let scene = "(models: [(file: \"edge.obj\")], sky: (1, 1, 1), \
+                 cameras: { \"default\": (eye: (3, 0.8, 0), target: (-1, 0, 0), fov_y: 40) })";
+    let file = quads("edge", "newmtl white\nKd 0.5 0.5 0.5\nPr 1\n", &[("white", floor), ("white", roof)], scene);
+    let (width, height) = (64u32, 48u32);
+    let exact = |pixel: usize| {
+        let (i, j) = (pixel as u32 % width, pixel as u32 / width);
+        let forward = [target[0] - eye[0], target[1] - eye[1]];
+        let length = (forward[0] * forward[0] + forward[1] * forward[1]).sqrt();
+        let (fx, fy) = (forward[0] / length, forward[1] / length);
+        let tan = 20f64.to_radians().tan();
+        let x = (2.0 * (f64::from(i) + 0.5) / f64::from(width) - 1.0) * tan * f64::from(width) / f64::from(height);
+        let y = (1.0 - 2.0 * (f64::from(j) + 0.5) / f64::from(height)) * tan;
+        // Right of a viewer who looks along -x is -z; up is at right angles to the view.
+        let d = [fx - y * fy, fy + y * fx, -x];
+        let t = -eye[1] / d[1];
+        let p = [eye[0] + t * d[0], t * d[2]];
+        let floor = t > 0.0 && p[0].abs() < 4.0 && p[1].abs() < 4.0 && eye[0] + (h - eye[1]) / d[1] * d[0] > 0.0;
+        let signed = |x: f64, y: f64| x.signum() * y.signum() * corner_factor(x.abs() / h, y.abs() / h);
+        let [px, pz] = p;
+        let hidden = signed(-px, b - pz) - signed(-a - px, b - pz) - signed(-px, -b - pz) + signed(-a - px, -b - pz);
+        (floor && d[1] < 0.0).then_some(1.0 - hidden)
+    };
+    let error = |picture: &Linear| {
+        let list: Vec<f64> = picture
+            .rgb
+            .iter()
+            .enumerate()
+            .filter_map(|(i, t)| exact(i).map(|e| (f64::from(t[0]) - e).powi(2)))
+            .collect();
+        assert!(list.len() > 800, "{} pixels of floor", list.len());
+        (list.iter().sum::<f64>() / list.len() as f64).sqrt()
+    };
+    let mut rows = Vec::new();
+    for (cones, set) in [("default", None), ("rays", Some(("trace", "lobe_rays"))), ("thesis set", Some(("cone_set", "thesis")))] {
+        let mut settings = vec![("voxel_dim", "64"), QUICK];
+        settings.extend(set);
+        let (parts, truth) = run(&lab, &experiment(&file, (width, height), &settings), 512);
+        if cones == "default" {
+            rows.push(row("reference, 512 samples", "RMS of openness", error(&truth.parts["occlusion"].mean), (-ANY, 0.03)));
+        }
+        rows.push(row(format!("{cones}, 64 voxels"), "RMS of openness", error(&parts["occlusion"]), (-ANY, 0.05)));
+    }
+    check("T5 edge", &rows);
+}
+
+/// T13. What the coloured walls of the Cornell box give to the white ones, indirect light only.
+#[test]
+fn colour_bleed() {
+    let lab = lab(root());
+    let (parts, truth) = run(&lab, &experiment("cornell", (96, 72), &[("voxel_dim", "64"), QUICK]), 512);
+    let truth = &truth.parts["diffuse"].mean;
+    let light = &parts["diffuse"];
+    let s = scores(light, truth).unwrap();
+    // The floor beside each wall, in pixels of this view.
+    let redness = |picture: &Linear, columns: std::ops::Range<usize>| {
+        let texels = (62..68).flat_map(|y| columns.clone().map(move |x| 96 * y + x)).map(|i| picture.rgb[i]);
+        let (r, g) = texels.fold((0.0, 0.0), |(r, g), t| (r + f64::from(t[0]), g + f64::from(t[1])));
+        r / g
+    };
+    let bleed = |columns: std::ops::Range<usize>| redness(light, columns.clone()) / redness(truth, columns);
+    check(
+        "T13 colour bleed",
+        &[
+            row("64 voxels", "diffuse / reference", s.energy_ratio, (0.9, 1.1)),
+            row("64 voxels", "relMSE of diffuse", s.relmse, (-ANY, 0.02)),
+            row("64 voxels, floor at the red wall", "red over green / reference", bleed(20..28), (0.95, 1.05)),
+            row("64 voxels, floor at the green wall", "red over green / reference", bleed(68..76), (0.95, 1.05)),
+        ],
+    );
+}
+
+/// T15. A glowing strip mirrored in metal, from smooth to rough.
+#[test]
+fn specular_lobe() {
+    let lab = lab(root());
+    let mut rows = Vec::new();
+    for roughness in ["0.1", "0.2", "0.4", "0.6", "0.8", "1.0"] {
+        let floor = [[-2.0, 0.0, 2.0], [2.0, 0.0, 2.0], [2.0, 0.0, -2.0], [-2.0, 0.0, -2.0]];
+        let strip = [[-1.0, 0.4, -1.0], [1.0, 0.4, -1.0], [1.0, 0.9, -1.0], [-1.0, 0.9, -1.0]];
+        let scene = "(models: [(file: \"NAME.obj\")], sky: (0, 0, 0), \
+                     cameras: { \"default\": (eye: (0, 1.2, 2.2), target: (0, 0, -0.3), fov_y: 50) })";
+        let materials =
+            format!("newmtl metal\nKd 0.9 0.9 0.9\nPr {roughness}\nPm 1\nnewmtl strip\nKd 0 0 0\nKe 4 4 4\nPr 1\n");
+        let name = format!("strip-{roughness}");
+        let scene = scene.replace("NAME", &name);
+        let file = quads(&name, &materials, &[("metal", floor), ("strip", strip)], &scene);
+        let (parts, truth) = run(&lab, &experiment(&file, (64, 48), &[("voxel_dim", "128"), QUICK]), 256);
+        let s = scores(&parts["specular"], &truth.parts["specular"].mean).unwrap();
+        let setting = format!("roughness {roughness}");
+        rows.push(row(setting.clone(), "specular / reference", s.energy_ratio, (0.8, 1.2)));
+        rows.push(row(setting, "relMSE of specular", s.relmse, (-ANY, 0.1)));
+    }
+    check("T15 specular lobe", &rows);
+}
