@@ -59,13 +59,9 @@ const CORNELL: Means = &[
 ];
 
 /// The same of `atrium` with `--size 32x24 --camera=5.5,3.5,1,4.9,0.3,2.2,35 --spp 16384 --sky 0.5,0.68,0.95`: a plant
-/// with alpha masks in the sun, on textured tiles with normal maps.
-const PLANT: Means = &[
-    ("direct", 0.860165, 0.0013),
-    ("occlusion", 0.139886, 0.0060),
-    ("bounce 1", 0.078823, 0.0085),
-    ("bounce 2", 0.033422, 0.0130),
-];
+/// with alpha masks in the sun, on textured tiles with normal maps. Later bounces are left out: few bright paths from
+/// the lanterns make them too noisy for a short test.
+const PLANT: Means = &[("direct", 0.860165, 0.0009), ("occlusion", 0.139886, 0.0042), ("bounce 1", 0.078823, 0.0060)];
 
 /// Compares references of 1, 2, ... bounces with what was recorded.
 #[track_caller]
@@ -102,7 +98,7 @@ fn textures_and_masks_have_the_light_that_an_independent_renderer_finds() {
     let mut plant = experiment("atrium", (32, 24), &[("pixel", "box")]);
     let camera = PlacedCamera::new((5.5, 3.5, 1.0), (4.9, 0.3, 2.2), 35.0);
     plant.camera = CameraChoice::Placed(PlacedCamera { near: Some(0.01), far: Some(100.0), ..camera });
-    assert_means(&plant, 256, PLANT);
+    assert_means(&plant, 512, PLANT);
 }
 
 #[test]
