@@ -328,6 +328,7 @@ impl Workbench {
             Report::Device(device) => {
                 self.event("device", json!({ "name": device.name, "driver": device.driver }));
                 self.device = Some(device);
+                self.chart.restarted();
                 self.trouble = None;
             }
             Report::Built { slot, outline, change, ms, revision, objects } => {

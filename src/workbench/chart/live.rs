@@ -116,6 +116,11 @@ impl super::Chart {
         slot.times.push(picture.gpu_ms);
     }
 
+    /// The device is another one: what it was asked is asked again.
+    pub fn restarted(&mut self) {
+        self.live.slots.iter_mut().for_each(|s| s.asked = None);
+    }
+
     /// Ends what is in work. Returns the validation messages of its device.
     pub fn close(self, patience: Duration) -> Vec<String> {
         let mut messages = self.live.messages;
@@ -205,9 +210,9 @@ impl Workbench {
                         ui.label(format!("{name}: {:.3} ms, {title} {:.4e}{noisy}{old}", live.ms, error.error))
                             .on_hover_text(format!(
                                 "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
-                                 {} bounces, {} samples a pixel; relMSE of its halves {:.2e}.",
+                                 {}, {} samples a pixel; relMSE of its halves {:.2e}.",
                                 state.times.len(),
-                                question.bounces,
+                                bounces(question.bounces),
                                 error.samples,
                                 error.noise
                             ));
@@ -217,8 +222,9 @@ impl Workbench {
                         missing = true;
                         let (w, h) = verdict.subject.size;
                         ui.label(format!(
-                            "{name}: no reference of this picture ({}, {w}x{h}, {} bounces)",
-                            verdict.subject.scene, question.bounces
+                            "{name}: no reference of this picture ({}, {w}x{h}, {})",
+                            verdict.subject.scene,
+                            bounces(question.bounces)
                         ));
                     }
                 },
@@ -308,4 +314,8 @@ impl Workbench {
             }
         });
     }
+}
+
+fn bounces(number: u32) -> String {
+    if number == 1 { "1 bounce".into() } else { format!("{number} bounces") }
 }

@@ -10,6 +10,8 @@ const FRONT: Color32 = Color32::from_rgb(235, 100, 80);
 const LIVE: [Color32; 2] = [Color32::from_rgb(255, 215, 90), Color32::from_rgb(120, 225, 140)];
 /// How near to a dot the pointer must be, points.
 const REACH: f32 = 8.0;
+/// Least distance of grid lines, points.
+const LEAST: f32 = 12.0;
 
 /// The workbench's own dot.
 #[derive(Clone, Debug, Default)]
@@ -62,13 +64,14 @@ pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
         .set_margin_fraction(egui::vec2(0.08, 0.1))
         .x_axis_label("GPU time of a frame, ms (log)")
         .y_axis_label(title)
-        .x_grid_spacer(marks)
-        .y_grid_spacer(marks)
+        .x_grid_spacer(|input| marks(input, 36.0))
+        .y_grid_spacer(|input| marks(input, 14.0))
         .x_axis_formatter(|mark, _| short(10f64.powf(mark.value)))
         .y_axis_formatter(|mark, _| short(10f64.powf(mark.value)))
         .label_formatter(|_| None)
         .show_crosshair(false)
-        .grid_spacing(12.0..=60.0);
+        .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.35))
+        .grid_spacing(LEAST..=60.0);
     let response = plot.show(ui, |plot| {
         let mut steps: Vec<[f64; 2]> = Vec::new();
         for i in &shown.chosen.front {
@@ -109,15 +112,24 @@ pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
     Drawn { places, hovered, response: response.response }
 }
 
-/// Round numbers in a range of logarithms.
-fn marks(input: GridInput) -> Vec<GridMark> {
+/// Round numbers in a range of logarithms; those are labelled that have so many points of room.
+fn marks(input: GridInput, room: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     // Far zoomed out, or before there is anything to show.
     let far = !(low.is_finite() && high.is_finite()) || high - low > 16.0 || low < -200.0 || high > 200.0;
-    let step_size = (high - low).max(1e-9) / 4.0;
     if far || high <= low {
         return Vec::new();
     }
-    let mark = |v: f64| GridMark { value: v.log10(), step_size };
-    ticks((10f64.powf(low), 10f64.powf(high))).into_iter().map(mark).collect()
+    // The plot labels what has a large step.
+    let (unlabelled, labelled) = (input.base_step_size, 1e3 * input.base_step_size);
+    let gap = room / f64::from(LEAST) * input.base_step_size;
+    let mut last = f64::NEG_INFINITY;
+    let values = ticks((10f64.powf(low), 10f64.powf(high))).into_iter().map(f64::log10);
+    values
+        .map(|value| {
+            let step_size = if value - last < gap { unlabelled } else { labelled };
+            last = if step_size == labelled { value } else { last };
+            GridMark { value, step_size }
+        })
+        .collect()
 }
