@@ -30,6 +30,8 @@ pub enum Order {
     Capture(usize, String, Vec<String>),
     /// Say how far what slot A or B shows is from its reference.
     Judge(usize, Question),
+    /// Render so many more frames of what is shown, to measure.
+    Frames(u32),
     /// Stop the loading of a scene.
     CancelLoading,
     /// Capture a frame with RenderDoc.
@@ -299,6 +301,7 @@ impl Run<'_> {
                 }
                 Order::Capture(slot, name, resources) => self.capture(slot, name, resources),
                 Order::Judge(slot, question) => self.judge(slot, question),
+                Order::Frames(count) => self.disturb(count),
                 Order::RenderDoc => {
                     self.renderdoc = true;
                     self.disturb(1);

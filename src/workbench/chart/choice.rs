@@ -6,8 +6,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Metrics that are offered, by their fields' names.
-pub const METRICS: [&str; 8] =
-    ["relmse", "hdr_flip", "flip", "rmse", "smape", "energy_ratio", "leak", "over_occluded"];
+pub const METRICS: [&str; 8] = ["relmse", "hdr_flip", "flip", "rmse", "smape", "energy_ratio", "leak", "over_occluded"];
 
 /// A subject, part and metric.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,9 +28,10 @@ impl Default for Choice {
 impl Choice {
     /// The graph's name of the part, and the bounces that it is compared at.
     pub fn part_and_bounces(&self, data: Option<&Data>) -> (String, u32) {
-        let named = self.part.split_once(", ").and_then(|(part, bounces)| {
-            Some((part.to_string(), bounces.strip_suffix(" bounces")?.parse().ok()?))
-        });
+        let named = self
+            .part
+            .split_once(", ")
+            .and_then(|(part, bounces)| Some((part.to_string(), bounces.strip_suffix(" bounces")?.parse().ok()?)));
         let first = data.and_then(|d| *d.bounces.get(self.subject)?);
         named.unwrap_or_else(|| (self.part.clone(), first.unwrap_or(1)))
     }

@@ -93,10 +93,7 @@ impl Gather {
     }
 }
 
-fn work(
-    job: Job,
-    mut progress: impl FnMut(Gathered) -> ControlFlow<()>,
-) -> (Result<u64, LabError>, Vec<String>) {
+fn work(job: Job, mut progress: impl FnMut(Gathered) -> ControlFlow<()>) -> (Result<u64, LabError>, Vec<String>) {
     let lab = match Lab::open(job.home, job.gpu) {
         Ok(lab) => lab,
         Err(e) => return (Err(e), Vec::new()),

@@ -7,10 +7,9 @@ use super::super::report::PictureReport;
 use super::super::{Tab, Workbench, keep};
 use super::gather::{Gather, Job};
 use super::plot::Live;
-use crate::comparison::within_noise;
 use crate::stats::spread;
 use crate::sweep::Subject;
-use egui::{Button, DragValue, ProgressBar, Ui};
+use egui::Ui;
 use serde_json::json;
 use std::time::{Duration, Instant};
 
@@ -20,32 +19,35 @@ const KEPT: usize = 240;
 const TRAIL: usize = 16;
 /// How long everything must stand still before it is judged.
 const QUIET: Duration = Duration::from_millis(150);
+/// How long frames go on after a picture was judged, to measure their time; at least two and at most 32.
+const MEASURED: Duration = Duration::from_millis(400);
 /// Samples of a reference when nothing else is said, as `conelab reference`.
 const SAMPLES: u64 = 256;
 
 /// What is known of A or B.
 #[derive(Default)]
-struct Slot {
+pub(super) struct Slot {
     /// GPU times of the frames of the last wish, ms.
-    times: Vec<f64>,
+    pub(super) times: Vec<f64>,
     wish: u64,
     /// What the judge was asked last, about which wish.
     asked: Option<(u64, Question)>,
-    judged: Option<Judged>,
+    pub(super) judged: Option<Judged>,
     trail: Vec<(f64, f64)>,
 }
 
 /// The live part of the chart.
 pub struct State {
-    slots: [Slot; 2],
+    pub(super) slots: [Slot; 2],
     /// The wish that was told last, and when it was first seen.
     since: (u64, Instant),
-    gather: Option<Gather>,
+    pub(super) gather: Option<Gather>,
     /// References gathered so far.
     gathered: u64,
-    samples: u64,
+    /// Samples of every pixel of the next one.
+    pub(super) samples: u64,
     /// What came of the last one.
-    said: String,
+    pub(super) said: String,
     /// Validation messages of devices that gathered.
     messages: Vec<String>,
 }
@@ -189,84 +191,15 @@ impl Workbench {
             "samples": verdict.and_then(|v| v.error).map(|e| e.samples),
             "why": judged.result.as_ref().err() });
         slot.judged = Some(judged);
+        // A single frame after a rest is slower than many: clocks are low. The judge is not disturbed by those that follow.
+        if !self.chart.live.awaits() {
+            self.engine.order(Order::Frames((MEASURED.as_secs_f64() * 1e3 / ms.max(0.1)).clamp(2.0, 32.0) as u32));
+        }
         self.event("judged", event);
     }
 
-    /// What is known of A and B, and what can be done about what is not.
-    pub(super) fn live_rows(&mut self, ui: &mut Ui, title: &str, lives: &[Option<Live>; 2]) {
-        let mut missing = false;
-        for (slot, live) in lives.iter().enumerate().filter(|s| self.wish.slots[s.0].is_some()) {
-            let state = &self.chart.live.slots[slot];
-            let name = ["A", "B"][slot];
-            match state.judged.as_ref().map(|j| (&j.question, &j.result)) {
-                None if self.wish.clock.playing => drop(ui.weak(format!("{name}: judged when time stands still"))),
-                None => drop(ui.weak(format!("{name}: not judged yet"))),
-                Some((_, Err(why))) => drop(ui.weak(format!("{name}: {why}"))),
-                Some((question, Ok(verdict))) => match (&verdict.error, live) {
-                    (Some(error), Some(live)) => {
-                        let old = if live.fresh { "" } else { " (of the picture before)" };
-                        let noisy = question.metric == "relmse" && within_noise(error.error, Some(error.noise));
-                        let noisy = if noisy { ", within the reference's noise" } else { "" };
-                        ui.label(format!("{name}: {:.3} ms, {title} {:.4e}{noisy}{old}", live.ms, error.error))
-                            .on_hover_text(format!(
-                                "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
-                                 {}, {} samples a pixel; relMSE of its halves {:.2e}.",
-                                state.times.len(),
-                                bounces(question.bounces),
-                                error.samples,
-                                error.noise
-                            ));
-                    }
-                    (Some(_), None) => drop(ui.weak(format!("{name}: the metric is not defined here"))),
-                    (None, _) => {
-                        missing = true;
-                        let (w, h) = verdict.subject.size;
-                        ui.label(format!(
-                            "{name}: no reference of this picture ({}, {w}x{h}, {})",
-                            verdict.subject.scene,
-                            bounces(question.bounces)
-                        ));
-                    }
-                },
-            }
-        }
-        self.gather_row(ui, missing);
-        self.size_row(ui);
-    }
-
-    fn gather_row(&mut self, ui: &mut Ui, missing: bool) {
-        if let Some(gather) = &mut self.chart.live.gather {
-            ui.horizontal(|ui| {
-                let (done, of) = gather.state.map_or((0, 0), |g| (g.samples, g.goal));
-                let part = if of == 0 { 0.0 } else { done as f32 / of as f32 };
-                let text = if of == 0 { "opening a device".into() } else { format!("{done} of {of} samples") };
-                ui.add(ProgressBar::new(part).desired_width(180.0).text(text));
-                let cancel = Button::new(if gather.cancelled { "stopping" } else { "cancel" }).small();
-                let about = "Stops after the block of samples in work; what was gathered is kept";
-                if ui.add_enabled(!gather.cancelled, cancel).on_hover_text(about).clicked() {
-                    gather.cancel();
-                }
-            });
-            return;
-        }
-        if !self.chart.live.said.is_empty() {
-            ui.weak(&self.chart.live.said);
-        }
-        let mut start = false;
-        ui.horizontal(|ui| {
-            let about = "Traces the reference of A's picture on a device of its own and keeps it. The picture keeps its \
-                         present size from then on: a reference fits no other";
-            let text = if missing { "gather" } else { "gather more" };
-            start = ui.button(text).on_hover_text(about).clicked();
-            let samples = DragValue::new(&mut self.chart.live.samples).range(32..=1 << 24).speed(32).suffix(" samples");
-            ui.add(samples).on_hover_text("Of every pixel, in all; the error of the reference falls with their root");
-        });
-        if start {
-            self.start_gathering();
-        }
-    }
-
-    fn start_gathering(&mut self) {
+    /// Gathers the reference of what A shows.
+    pub(super) fn start_gathering(&mut self) {
         let (Some(slot), Some(scene), Some(picture)) = (&self.wish.slots[0], &self.scene, &self.slots[0].picture)
         else {
             return;
@@ -294,28 +227,4 @@ impl Workbench {
         let (samples, why) = (result.as_ref().ok(), result.as_ref().err().map(ToString::to_string));
         self.event("gathered", json!({ "samples": samples, "why": why }));
     }
-
-    /// The size of the picture: that of the sweep, that of the panel, or as it is.
-    fn size_row(&mut self, ui: &mut Ui) {
-        let (w, h) = self.wish.size;
-        let sweeps = self.chart.data().and_then(|d| d.keys.get(self.chart.choice.subject)).map(|k| k.0.size);
-        ui.horizontal_wrapped(|ui| {
-            ui.weak(match self.fixed_size {
-                Some(_) => format!("picture: {w}x{h}"),
-                None => format!("picture: {w}x{h}, as large as the panel; errors are of one size"),
-            });
-            if let Some(size) = sweeps.filter(|s| *s != (w, h))
-                && ui.small_button(format!("{}x{} as the sweep", size.0, size.1)).clicked()
-            {
-                self.fixed_size = Some(size);
-            }
-            if self.fixed_size.is_some() && ui.small_button("as the panel").clicked() {
-                self.fixed_size = None;
-            }
-        });
-    }
-}
-
-fn bounces(number: u32) -> String {
-    if number == 1 { "1 bounce".into() } else { format!("{number} bounces") }
 }

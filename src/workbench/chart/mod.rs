@@ -5,6 +5,7 @@ mod folder;
 mod gather;
 mod live;
 mod plot;
+mod rows;
 mod thumbnail;
 
 use super::Workbench;
@@ -63,7 +64,8 @@ impl Workbench {
         let drawn = plot::show(ui, &name, height, &shown);
         if !differences.is_empty() {
             let text = format!("the sweep's picture differs in {}", differences.join(", "));
-            ui.weak(text).on_hover_text("Errors of different pictures cannot be compared. A click on a dot goes there.");
+            ui.weak(text)
+                .on_hover_text("Errors of different pictures cannot be compared. A click on a dot goes there.");
         }
         self.live_rows(ui, &title, &lives);
         let Some(data) = data else { return };
@@ -74,7 +76,7 @@ impl Workbench {
                 self.load_point(dot);
             }
         }
-        self.tell_dots(&data, &drawn.places);
+        self.tell_dots(&data, &drawn.places, &differences);
     }
 
     fn folder_row(&mut self, ui: &mut Ui) {
@@ -104,7 +106,8 @@ impl Workbench {
         }
         match self.chart.folder.as_ref().map(|f| &f.data) {
             None => {
-                let text = "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.";
+                let text =
+                    "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.";
                 ui.weak(text);
             }
             Some(None) => {
@@ -156,20 +159,24 @@ impl Workbench {
         let name = format!("{}-{short}", folder::name(&folder.path));
         match Experiment::from_text(&folder.path.join(format!("{name}.ron")), &dot.experiment) {
             Ok(mut experiment) => {
-                if let Some(outline) = self.slots[0].outline.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph)) {
+                if let Some(outline) = self.slots[0].outline.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph))
+                {
                     without_defaults(&mut experiment, &outline.graph.params);
                 }
                 self.fixed_size = Some(experiment.size);
                 self.open(&experiment);
                 self.status = format!("loaded {name}");
-                self.event("loaded point", json!({ "id": dot.id, "name": name, "params": experiment_params(&experiment) }));
+                self.event(
+                    "loaded point",
+                    json!({ "id": dot.id, "name": name, "params": experiment_params(&experiment) }),
+                );
             }
             Err(errors) => self.slots[0].errors = errors,
         }
     }
 
     /// Tells scripts where the dots are, in points.
-    fn tell_dots(&mut self, data: &Data, places: &[egui::Pos2]) {
+    fn tell_dots(&mut self, data: &Data, places: &[egui::Pos2], differences: &[&str]) {
         if self.events.is_none() {
             return;
         }
@@ -178,7 +185,7 @@ impl Workbench {
             json!({ "id": data.dots[s.index].id, "at": [at.x.round(), at.y.round()], "ms": s.ms, "error": s.error,
                 "front": front })
         });
-        let told = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric,
+        let told = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric, "differs": differences,
             "dots": dots.collect::<Vec<_>>() });
         if told != self.chart.told {
             self.chart.told = told.clone();

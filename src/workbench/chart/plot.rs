@@ -7,7 +7,8 @@ use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoi
 
 const DOT: Color32 = Color32::from_rgb(120, 160, 215);
 const FRONT: Color32 = Color32::from_rgb(235, 100, 80);
-const LIVE: [Color32; 2] = [Color32::from_rgb(255, 215, 90), Color32::from_rgb(120, 225, 140)];
+/// Of A and B.
+pub const LIVE: [Color32; 2] = [Color32::from_rgb(255, 215, 90), Color32::from_rgb(120, 225, 140)];
 /// How near to a dot the pointer must be, points.
 const REACH: f32 = 8.0;
 /// Least distance of grid lines, points.
@@ -103,8 +104,7 @@ pub fn show(ui: &mut Ui, name: &str, height: f32, shown: &Shown<'_>) -> Drawn {
         }
     });
     let transform = response.transform;
-    let places: Vec<Pos2> =
-        dots.iter().map(|d| transform.position_from_point(&PlotPoint::new(d[0], d[1]))).collect();
+    let places: Vec<Pos2> = dots.iter().map(|d| transform.position_from_point(&PlotPoint::new(d[0], d[1]))).collect();
     let hovered = response.response.hover_pos().and_then(|at| {
         let near = places.iter().enumerate().map(|(i, p)| (p.distance(at), i)).filter(|d| d.0 <= REACH);
         near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|d| d.1)

@@ -5,12 +5,15 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{ColorImage, Response, TextureHandle};
 use std::sync::Arc;
 
+/// The number of a dot and its picture.
+type Made = (String, ColorImage);
+
 /// The picture of the last dot that was pointed at.
 pub struct Thumbnail {
     /// Number of the dot.
     of: String,
     texture: Option<TextureHandle>,
-    made: (Sender<(String, ColorImage)>, Receiver<(String, ColorImage)>),
+    made: (Sender<Made>, Receiver<Made>),
 }
 
 impl Default for Thumbnail {
