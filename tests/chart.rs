@@ -2,7 +2,6 @@
 //! and the experiment is a dot among its points.
 
 mod common;
-#[allow(dead_code, reason = "what other tests of the window need")]
 #[path = "common/desk.rs"]
 mod desk;
 
@@ -90,8 +89,11 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
         chart["dots"].as_array().unwrap().iter().max_by(|a, b| number(a, "error").total_cmp(&number(b, "error")));
     let worst = worst.unwrap();
     assert!(!same(number(worst, "error"), own) && !same(number(worst, "error"), slid), "{chart}");
+    let at = (worst["at"][0].as_f64().unwrap(), worst["at"][1].as_f64().unwrap());
+    desk.point_at(at);
+    desk.texts_until("what the dot is", |texts| texts.iter().any(|t| t == "voxel_dim: 16"));
     let mark = desk.now();
-    desk.click_at((worst["at"][0].as_f64().unwrap(), worst["at"][1].as_f64().unwrap()));
+    desk.click_at(at);
     let loaded = desk.event(mark, "loaded point");
     assert_eq!(loaded["id"], worst["id"], "{loaded}");
     assert_eq!(loaded["params"]["voxel_dim"], "16", "{loaded}");
