@@ -35,7 +35,7 @@ pub struct FitArgs {
     #[arg(long, value_name = "NAME=VALUE,VALUE")]
     vary: Vec<String>,
     /// Most settings to try.
-    #[arg(long, default_value_t = 150)]
+    #[arg(long, default_value_t = 400)]
     evaluations: usize,
     /// Frames that are timed for each setting.
     #[arg(long, default_value_t = 9)]
