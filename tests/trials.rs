@@ -275,12 +275,19 @@ fn edge() {
         (list.iter().sum::<f64>() / list.len() as f64).sqrt()
     };
     let mut rows = Vec::new();
-    for (cones, set) in [("default", None), ("rays", Some(("trace", "lobe_rays"))), ("thesis set", Some(("cone_set", "thesis")))] {
+    for (cones, set) in
+        [("default", None), ("rays", Some(("trace", "lobe_rays"))), ("thesis set", Some(("cone_set", "thesis")))]
+    {
         let mut settings = vec![("voxel_dim", "64"), QUICK];
         settings.extend(set);
         let (parts, truth) = run(&lab, &experiment(&file, (width, height), &settings), 512);
         if cones == "default" {
-            rows.push(row("reference, 512 samples", "RMS of openness", error(&truth.parts["occlusion"].mean), (-ANY, 0.03)));
+            rows.push(row(
+                "reference, 512 samples",
+                "RMS of openness",
+                error(&truth.parts["occlusion"].mean),
+                (-ANY, 0.03),
+            ));
         }
         rows.push(row(format!("{cones}, 64 voxels"), "RMS of openness", error(&parts["occlusion"]), (-ANY, 0.05)));
     }

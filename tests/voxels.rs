@@ -44,8 +44,7 @@ fn overlaps_that_are_known() {
     ];
     for (what, corners, conservative, thin) in cases {
         let axes = Axes::new(triangle(corners));
-        assert_eq!(axes.overlap(UNIT.0, UNIT.1), conservative, "{what}");
-        assert_eq!(axes.overlap_thin(UNIT.0, UNIT.1), thin, "{what}, thin");
+        assert_eq!(axes.overlap(UNIT.0, UNIT.1), (conservative, thin), "{what}");
     }
 }
 
@@ -59,27 +58,25 @@ fn any_triangle() -> impl Strategy<Value = [DVec3; 3]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(20_000))]
+    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Separating axes and clipping are different ways to one answer.
     #[test]
     fn a_triangle_overlaps_a_cell_if_a_part_of_it_is_left_inside(t in any_triangle()) {
         let half = UNIT.1;
         let left = |grow: f64| !clip(t, UNIT.0 - half * (1.0 + grow), UNIT.0 + half * (1.0 + grow)).is_empty();
-        let axes = Axes::new(t);
-        match axes.overlap(UNIT.0, half) {
+        match Axes::new(t).overlap(UNIT.0, half).0 {
             Overlap::Inside => prop_assert!(left(0.0)),
             Overlap::Outside => prop_assert!(!left(0.0)),
             Overlap::Borderline => prop_assert!(left(2.1e-5) && !left(-2.1e-5)),
         }
-        prop_assert!(axes.overlap_thin(UNIT.0, half) <= axes.overlap(UNIT.0, half), "thin cells are cells");
     }
 
     /// What goes through a segment between the middles of two faces must be in the thin set: else a path from face to
     /// face passes it by (Laine 2013, A Topological Approach to Voxelization).
     #[test]
     fn the_thin_set_has_every_crossing_of_a_cells_middle_lines(t in any_triangle()) {
-        let thin = Axes::new(t).overlap_thin(UNIT.0, UNIT.1);
+        let (_, thin) = Axes::new(t).overlap(UNIT.0, UNIT.1);
         for axis in 0..3 {
             let mut across = DVec3::splat(1e-7);
             across[axis] = 0.4999;
@@ -185,7 +182,14 @@ fn cube(n: u32, round: f32) -> Mesh {
             push(&mut mesh, (p * 0.45).lerp(p.normalize() * 0.7, round), p.normalize());
             if i < n && j < n {
                 let at = |i: u32, j: u32| first + i * (n + 1) + j;
-                mesh.indices.extend([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+                mesh.indices.extend([
+                    at(i, j),
+                    at(i + 1, j),
+                    at(i + 1, j + 1),
+                    at(i, j),
+                    at(i + 1, j + 1),
+                    at(i, j + 1),
+                ]);
             }
         }
     }
@@ -267,17 +271,17 @@ fn closed_bodies_in_a_hundred_poses() {
         Known {
             title: "raster off",
             set: &[("conservative", "off")],
-            recall: (0.5, 0.8),
+            recall: (0.53, 0.57),
             precision: 1.0,
-            leaky_6: (0, 102),
+            leaky_6: (60, 102),
             leaky_26: (102, 102),
         },
         Known {
             title: "raster msaa",
             set: &[("conservative", "msaa")],
-            recall: (0.6, 0.95),
-            precision: 0.99,
-            leaky_6: (0, 102),
+            recall: (0.56, 0.61),
+            precision: 0.999,
+            leaky_6: (0, 0),
             leaky_26: (102, 102),
         },
         Known {
@@ -291,18 +295,18 @@ fn closed_bodies_in_a_hundred_poses() {
         Known {
             title: "tessellated",
             set: &[("voxelizer", "tessellated")],
-            recall: (0.8, 1.0),
+            recall: (0.78, 0.82),
             precision: 1.0,
-            leaky_6: (0, 102),
+            leaky_6: (0, 0),
             leaky_26: (102, 102),
         },
         Known {
             title: "tessellated x2",
             set: &[("voxelizer", "tessellated"), ("tess_rate", "2.0")],
-            recall: (0.9, 1.0),
+            recall: (0.88, 0.92),
             precision: 1.0,
-            leaky_6: (0, 102),
-            leaky_26: (0, 102),
+            leaky_6: (0, 0),
+            leaky_26: (102, 102),
         },
     ];
     let paint = vec![Material { base_color: [0.7, 0.4, 0.1, 1.0].into(), two_sided: true, ..Material::default() }];
@@ -395,7 +399,10 @@ fn the_command_tells_every_mode() {
     assert_eq!(titled("raster dilate")["score"]["extras"], 0);
     assert!(titled("raster off")["score"]["shapes"]["needle"]["recall"].as_f64().unwrap() < 0.2);
     let hardware = titled("raster hardware");
-    assert!(hardware["score"].is_object() || hardware["skipped"].as_str().unwrap().contains("conservative"), "{hardware}");
+    assert!(
+        hardware["score"].is_object() || hardware["skipped"].as_str().unwrap().contains("conservative"),
+        "{hardware}"
+    );
     let red = |name: &str| {
         let image = image::open(cubes.join(name)).unwrap().to_rgb8();
         image.pixels().filter(|p| p[0] > 60 && p[1] < p[0] / 3).count()
@@ -412,6 +419,6 @@ fn what_cannot_be_compared_is_told() {
     };
     let frusta = run(&["--set", "voxel_dim=32", "--set", "warp=perspective"]);
     assert!(frusta.contains("the cells are frusta, not boxes"), "{frusta}");
-    let missing = run(&["--json", "/no/such/place/voxels.json"]);
-    assert!(missing.contains("cannot write"), "{missing}");
+    let nothing = run(&["--set", "voxelizer=points"]);
+    assert!(nothing.contains("raster") && nothing.contains("points"), "{nothing}");
 }

@@ -137,7 +137,10 @@ fn modes_of(loaded: &Loaded, all: bool) -> Result<Vec<(String, Vec<(String, Stri
     });
     let modes: Vec<_> = modes.collect();
     if modes.is_empty() {
-        return Err(LabError::Request(format!("graph '{}' declares no modes in `voxels`: leave out --all", loaded.graph.name)));
+        return Err(LabError::Request(format!(
+            "graph '{}' declares no modes in `voxels`: leave out --all",
+            loaded.graph.name
+        )));
     }
     Ok(modes)
 }

@@ -84,11 +84,10 @@ fn add_hits(t: &Triangle, shape: u8, surfaces: &Surfaces<'_>, grid: &Grid, layer
             for x in crossed(grid, t.corners[0], normal, xs.clone(), y, z) {
                 let (low, high) = grid.corners([x, y, z]);
                 let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
-                let overlap = axes.overlap(centre, half);
+                let (overlap, thin) = axes.overlap(centre, half);
                 if overlap == Overlap::Outside {
                     continue;
                 }
-                let thin = axes.overlap_thin(centre, half);
                 let hit = Hit {
                     number: grid.number([x, y, z]),
                     overlap,

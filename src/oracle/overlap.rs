@@ -64,18 +64,20 @@ impl Axes {
         self.axes[3].direction
     }
 
-    /// Against a box of this centre and these half edges (m): the set of cells is 26-separating (conservative).
-    pub fn overlap(&self, centre: DVec3, half: DVec3) -> Overlap {
-        decide(self.axes.iter(), centre, |a| (a.direction.abs() * half).element_sum())
-    }
-
-    /// Against the inside of a box that every path from face to face must cross: the set of cells is 6-separating, thin
-    /// (Schwarz and Seidel 2010, Section 4.2: the plane, and the edges in the projection along the dominant axis).
-    pub fn overlap_thin(&self, centre: DVec3, half: DVec3) -> Overlap {
+    /// Against a box of this centre and these half edges (m).
+    ///
+    /// First for the conservative set, which is 26-separating: all that the triangle overlaps. Then for the thin one,
+    /// which is 6-separating: those of them in which it may cross a line between the middles of opposite faces (Schwarz
+    /// and Seidel 2010, Section 4.2: the plane, and the edges in the projection along the dominant axis).
+    pub fn overlap(&self, centre: DVec3, half: DVec3) -> (Overlap, Overlap) {
+        let conservative = decide(self.axes.iter(), centre, |a| (a.direction.abs() * half).element_sum());
+        if conservative == Overlap::Outside {
+            return (Overlap::Outside, Overlap::Outside);
+        }
         let across = (self.normal().abs() * half).to_array();
         let dominant = (0..3).fold(0, |best, i| if across[i] > across[best] { i } else { best });
         let used = self.axes.iter().enumerate().filter(|(i, _)| *i < 4 || (*i - 4) % 3 == dominant).map(|(_, a)| a);
-        decide(used, centre, |a| (a.direction.abs() * half).max_element())
+        (conservative, conservative.min(decide(used, centre, |a| (a.direction.abs() * half).max_element())))
     }
 }
 

@@ -22,7 +22,10 @@ pub struct Voxel {
 
 fn declared(graph: &Graph) -> Result<&VoxelsDecl, LabError> {
     graph.voxels.as_ref().map(|v| &v.value).ok_or_else(|| {
-        LabError::Request(format!("graph '{}' declares no `voxels` (docs/graph.md), so there is nothing to check", graph.name))
+        LabError::Request(format!(
+            "graph '{}' declares no `voxels` (docs/graph.md), so there is nothing to check",
+            graph.name
+        ))
     })
 }
 

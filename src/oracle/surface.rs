@@ -61,8 +61,9 @@ impl<'s> Surfaces<'s> {
             let y = (low.y as i32 + dy).rem_euclid(size[1] as i32) as usize;
             let start = 4 * (x + size[0] as usize * y);
             let bytes = texture.mips[level].get(start..start + 4).unwrap_or(&[255, 0, 255, 255]);
-            let channel =
-                |i: usize| if texture.format.is_srgb() { self.linear[bytes[i] as usize] } else { f32::from(bytes[i]) / 255.0 };
+            let channel = |i: usize| {
+                if texture.format.is_srgb() { self.linear[bytes[i] as usize] } else { f32::from(bytes[i]) / 255.0 }
+            };
             Vec4::new(channel(0), channel(1), channel(2), f32::from(bytes[3]) / 255.0)
         };
         let row = |dy: i32| texel(0, dy).lerp(texel(1, dy), part.x);

@@ -18,8 +18,19 @@ pub(super) fn print(report: &Report) {
     }
     say!(
         "\n{:<20}{:>9}{:>9}{:>10}{:>9}{:>8}{:>9}{:>9}{:>9}{:>9}{:>8}{:>10}{:>9}",
-        "mode", "voxels", "recall", "precision", "holes", "extras", "thin rec", "leak 6", "leak 26", "colour", "max",
-        "normal deg", "opacity"
+        "mode",
+        "voxels",
+        "recall",
+        "precision",
+        "holes",
+        "extras",
+        "thin rec",
+        "leak 6",
+        "leak 26",
+        "colour",
+        "max",
+        "normal deg",
+        "opacity"
     );
     let part = |r: Option<f64>| r.map_or("-".into(), |r| format!("{r:.5}"));
     for mode in &report.modes {
@@ -54,7 +65,8 @@ pub(super) fn print(report: &Report) {
 
 /// Recall / precision by class.
 fn shapes(report: &Report) {
-    let there = |name: &&&str| report.modes.iter().filter_map(|m| m.score.as_ref()).any(|s| s.shapes.contains_key(**name));
+    let there =
+        |name: &&&str| report.modes.iter().filter_map(|m| m.score.as_ref()).any(|s| s.shapes.contains_key(**name));
     let classes: Vec<&&str> = SHAPES.iter().filter(there).collect();
     let mut line = format!("\n{:<20}", "recall / precision");
     for class in &classes {
