@@ -40,7 +40,7 @@ const SCHEMA: &str = "conelab-voxels-1";
 struct Mode {
     title: String,
     /// Parameters that differ from the experiment's.
-    set: Vec<(String, String)>,
+    set: Settings,
     score: Option<Score>,
     skipped: Option<String>,
     /// What the graph's checks said, such as full lists.
@@ -126,8 +126,11 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
     super::validated(&lab)
 }
 
+/// Parameters and values in RON.
+type Settings = Vec<(String, String)>;
+
 /// Titles and settings: the experiment's own, or those that the graph declares.
-fn modes_of(loaded: &Loaded, all: bool) -> Result<Vec<(String, Vec<(String, String)>)>, LabError> {
+fn modes_of(loaded: &Loaded, all: bool) -> Result<Vec<(String, Settings)>, LabError> {
     if !all {
         return Ok(vec![("as set".into(), Vec::new())]);
     }

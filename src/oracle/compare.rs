@@ -110,8 +110,7 @@ pub fn compare(grid: &Grid, exact: &[Cell], voxels: &[Voxel]) -> Comparison {
             }
             None => out.holes.push(cell.number),
         }
-        for (i, (shape, errors)) in shapes.iter_mut().enumerate().filter(|(i, _)| cell.shapes >> i & 1 != 0) {
-            debug_assert!(i < SHAPES.len());
+        for (_, (shape, errors)) in shapes.iter_mut().enumerate().filter(|(i, _)| cell.shapes >> i & 1 != 0) {
             shape.exact += 1;
             match voxel {
                 Some(voxel) => errors.add(cell, voxel),
