@@ -85,7 +85,10 @@ void main() {
     vec3 d = cameraRay(at);
     // The rasteriser's near plane cuts here too.
     vec3 start = camera.position + d * (camera.near / dot(d, camera.direction));
-    Footprint f = Footprint(camera.position, cameraRay(at + vec2(1, 0)), cameraRay(at + vec2(0, 1)));
+    // Rays spread over the pixel average its texels themselves; one ray through its centre needs them averaged.
+    Footprint f = params.pixel == PIXEL_BOX
+        ? NO_FOOTPRINT
+        : Footprint(camera.position, cameraRay(at + vec2(1, 0)), cameraRay(at + vec2(0, 1)));
     Ray ray = Ray(start, d, 1e30);
     Hit hit = traceRay(ray, f, false);
 

@@ -2,6 +2,7 @@
 //! names the one that counts.
 
 use super::{Reference, ReferencePart};
+use crate::capture::hex;
 use crate::experiment::Experiment;
 use crate::graph::load::Graph;
 use crate::lab::LabError;
@@ -13,6 +14,7 @@ use exr::prelude::{
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::Path;
@@ -21,7 +23,7 @@ use std::path::Path;
 pub const BLOCK: u64 = 32;
 
 /// Version of `reference.json`.
-pub const SCHEMA: &str = "conelab-reference-1";
+pub const SCHEMA: &str = "conelab-reference-2";
 
 /// The texture of the reference graph with the sums of a part, a layer for each half.
 pub fn sum_texture(part: &str) -> String {
@@ -34,6 +36,8 @@ struct Record {
     schema: String,
     /// The file with the sums.
     sums: String,
+    /// SHA-256 of that file, hexadecimal.
+    sha256: String,
     samples: u64,
     size: (u32, u32),
     /// relMSE between the halves, by part.
@@ -117,6 +121,7 @@ pub(super) fn write(folder: &Path, sums: &Sums, traced: &Experiment, device: &De
     let record = Record {
         schema: SCHEMA.into(),
         sums: name,
+        sha256: hex(&Sha256::digest(&bytes)),
         samples: sums.samples,
         size: sums.size,
         noise,
@@ -173,8 +178,13 @@ pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Opt
     }
     let file = folder.join(&record.sums);
     let wrong = |why: &str| failed(&file, format!("{why}; delete the folder"));
-    // The headers first: sizes decide how much memory is taken.
-    let meta = exr::meta::MetaData::read_from_file(&file, false).map_err(|e| wrong(&e.to_string()))?;
+    let bytes = read_bounded(&file, size, graph.parts.len()).map_err(|e| wrong(&e))?;
+    if hex(&Sha256::digest(&bytes)) != record.sha256 {
+        return Err(wrong("its content is not what was written"));
+    }
+    let meta =
+        exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false).map_err(|e| wrong(&e.to_string()))?;
+    // Before the texels: sizes decide how much memory is taken.
     let fits = |h: &exr::meta::header::Header| {
         (h.layer_size.width(), h.layer_size.height()) == (size.0 as usize, size.1 as usize)
             && h.channels.list.len() == 4
@@ -188,7 +198,7 @@ pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Opt
         .all_channels()
         .all_layers()
         .all_attributes()
-        .from_file(&file)
+        .from_buffered(Cursor::new(&bytes))
         .map_err(|e| wrong(&e.to_string()))?;
     let names: Vec<String> = graph.parts.iter().map(|p| p.0.clone()).collect();
     let mut sums = Sums::new(size, &names);
@@ -210,5 +220,20 @@ pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Opt
             }
         }
     }
+    let counted = |texels: &Vec<[f32; 4]>| texels.iter().all(|t| f64::from(t[3]) * 2.0 == record.samples as f64);
+    if !sums.parts.values().flatten().all(counted) {
+        return Err(wrong("it does not hold as many samples as reference.json says"));
+    }
     Ok(Some(sums))
+}
+
+/// A file that is no larger than the sums of so many parts can be.
+fn read_bounded(file: &Path, size: (u32, u32), parts: usize) -> Result<Vec<u8>, String> {
+    let texels = u64::from(size.0) * u64::from(size.1) * 2 * parts as u64;
+    let length = std::fs::metadata(file).map_err(|e| e.to_string())?.len();
+    // Compression may make noise a little larger.
+    if length > texels * 32 + (1 << 20) {
+        return Err(format!("it has {length} bytes, more than its samples take"));
+    }
+    std::fs::read(file).map_err(|e| e.to_string())
 }

@@ -1,7 +1,7 @@
 //! What the page and its charts show, taken from the records of sweeps.
 
 use crate::comparison::within_noise;
-use crate::sweep::{Collected, Outcome, parts_of};
+use crate::sweep::{Collected, Outcome, Subject, parts_of};
 use indexmap::IndexMap;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -67,6 +67,10 @@ pub struct Data {
     pub dots: Vec<Dot>,
     /// Scene, size and device: only points of one subject can be compared.
     pub subjects: Vec<String>,
+    /// What is looked at, and the device's name, of each subject.
+    pub keys: Vec<(Subject, String)>,
+    /// Bounces of the reference that all parts of each subject are scored against.
+    pub bounces: Vec<Option<u32>>,
     /// How each subject was measured, one line.
     pub settings: Vec<String>,
     pub parts: Vec<String>,
@@ -86,7 +90,7 @@ impl Dot {
 }
 
 /// The distance from perfection: a ratio is as far from 1 as its inverse, everything else is perfect at 0.
-fn error_of(metric: &str, value: f64) -> f64 {
+pub fn error_of(metric: &str, value: f64) -> f64 {
     if metric == "energy_ratio" { value.ln().abs() } else { value }
 }
 
@@ -97,6 +101,8 @@ impl Data {
             names: collected.names.clone(),
             dots: Vec::new(),
             subjects: Vec::new(),
+            keys: Vec::new(),
+            bounces: Vec::new(),
             settings: Vec::new(),
             parts: Vec::new(),
             failed: Vec::new(),
@@ -129,6 +135,8 @@ impl Data {
                     true => String::from("no reference"),
                     false => format!("reference: {}", references.join("; ")),
                 };
+                let beside = |b: &&u32| point.scores.contains_key(&format!("total, {b} bounces"));
+                data.bounces.push(point.references.keys().find(|b| !beside(b)).copied());
                 let frames = point.stats.passes.first().map_or(0, |p| p.frames);
                 data.settings.push(format!(
                     "camera {}, time {} s; {}, Vulkan {}; conelab {}; {frames} frames after {} of warm-up; every pass in every frame; {samples}",
@@ -166,6 +174,7 @@ impl Data {
         parts.sort_by_key(|p| (p != "total", p.clone()));
         parts.dedup();
         data.parts = parts;
+        data.keys = keys.into_iter().map(|(subject, device)| (subject.clone(), device.clone())).collect();
         data
     }
 

@@ -7,11 +7,13 @@ mod page;
 mod scatter;
 
 pub use bars::{Bar, COLORS, bars};
+pub(crate) use data::{Data, Dot, Scored, error_of};
 pub use front::front;
+pub(crate) use scatter::{axis_title, short, ticks};
 
 use crate::lab::LabError;
 use crate::sweep::{Collected, csv, write_file};
-use data::{Chart, Data};
+use data::Chart;
 use std::path::{Path, PathBuf};
 
 /// Metrics that are charted when nothing else is asked for.

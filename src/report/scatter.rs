@@ -85,7 +85,7 @@ fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// Round numbers in a range, 3 to about 12 of them.
-fn ticks((low, high): (f64, f64)) -> Vec<f64> {
+pub fn ticks((low, high): (f64, f64)) -> Vec<f64> {
     let inside = |steps: &[f64]| -> Vec<f64> {
         let decades = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
         let all = decades.flat_map(|e| steps.iter().map(move |s| s * 10f64.powi(e)));
@@ -98,7 +98,7 @@ fn ticks((low, high): (f64, f64)) -> Vec<f64> {
 }
 
 /// At most three digits.
-fn short(v: f64) -> String {
+pub fn short(v: f64) -> String {
     match v {
         0.0 => "0".into(),
         _ if !(1e-3..1e4).contains(&v) => format!("{v:.0e}"),

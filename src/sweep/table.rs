@@ -3,15 +3,20 @@
 use super::record::{Collected, Outcome, Record};
 use crate::lab::LabError;
 use crate::measure::Point;
+use crate::metrics::Scores;
 use std::collections::BTreeMap;
 
 /// Scores of a point, by part and metric.
 pub fn parts_of(point: &Point) -> BTreeMap<String, BTreeMap<String, f64>> {
-    let numbers = |scores: &crate::metrics::Scores| match serde_json::to_value(scores) {
+    point.scores.iter().map(|(part, scores)| (part.clone(), numbers(scores))).collect()
+}
+
+/// Scores by metric, without those that are no number.
+pub fn numbers(scores: &Scores) -> BTreeMap<String, f64> {
+    match serde_json::to_value(scores) {
         Ok(serde_json::Value::Object(map)) => map.into_iter().filter_map(|(k, v)| Some((k, v.as_f64()?))).collect(),
         _ => BTreeMap::new(),
-    };
-    point.scores.iter().map(|(part, scores)| (part.clone(), numbers(scores))).collect()
+    }
 }
 
 /// Comma-separated values (RFC 4180), a line for each point in the order of the list. Columns that end in ` ms` are

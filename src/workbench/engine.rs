@@ -5,6 +5,7 @@
 //! or kills its device takes nothing else with it.
 
 use super::builder::{self, Done, Job, Key};
+use super::judge::{self, Case, Judged, Question};
 use super::keep;
 use super::report::{DeviceReport, Outline, PictureReport, Report};
 use super::wish::{Look, SlotWish, Wish};
@@ -27,6 +28,10 @@ pub enum Order {
     Look,
     /// Save what slot A or B shows, under a name; with these resources.
     Capture(usize, String, Vec<String>),
+    /// Say how far what slot A or B shows is from its reference.
+    Judge(usize, Question),
+    /// Render so many more frames of what is shown, to measure.
+    Frames(u32),
     /// Stop the loading of a scene.
     CancelLoading,
     /// Capture a frame with RenderDoc.
@@ -134,6 +139,7 @@ struct Run<'a> {
     wish: Wish,
     slots: [Slot; 2],
     jobs: Sender<Job>,
+    cases: Sender<Case>,
     scene: Option<Arc<Scene>>,
     /// What was loaded: name, revision; and how many scenes were.
     scene_key: Option<(String, u64)>,
@@ -197,12 +203,16 @@ fn session(
     let (done_out, done) = unbounded();
     let (loaded_out, loaded) = unbounded();
     let builder = std::thread::spawn(move || builder::run(&job_box, &done_out));
+    let (cases, case_box) = unbounded();
+    let told = out.clone();
+    let judge = std::thread::spawn(move || judge::run(&case_box, &|report| told.send(report)));
     let mut run = Run {
         lab,
         out,
         wish: Wish::default(),
         slots: Default::default(),
         jobs,
+        cases,
         scene: None,
         scene_key: None,
         scene_number: 0,
@@ -251,7 +261,7 @@ fn session(
     }
     drop(run);
     // Builds in work hold the device; what they send goes nowhere.
-    while !builder.is_finished() {
+    while !(builder.is_finished() && judge.is_finished()) {
         let _ = done.recv_timeout(Duration::from_millis(10));
     }
     messages.extend(gpu.messages());
@@ -290,6 +300,8 @@ impl Run<'_> {
                     }
                 }
                 Order::Capture(slot, name, resources) => self.capture(slot, name, resources),
+                Order::Judge(slot, question) => self.judge(slot, question),
+                Order::Frames(count) => self.disturb(count),
                 Order::RenderDoc => {
                     self.renderdoc = true;
                     self.disturb(1);
@@ -700,6 +712,32 @@ impl Run<'_> {
             self.out.send(Report::Checks(number, failed));
         }
         Ok(())
+    }
+
+    /// Hands what a slot shows to the judge. What is not there yet is asked for again.
+    fn judge(&mut self, number: usize, question: Question) {
+        let (Some(wish), Some(scene)) = (&self.wish.slots[number], &self.scene) else { return };
+        let slot = &self.slots[number];
+        let shown = slot.session.as_ref().filter(|_| slot.key.as_ref() == Some(&self.key(wish, number)));
+        let (Some(session), Some(loaded)) = (shown, &slot.loaded) else {
+            let result = Err("what is asked for is not shown".into());
+            self.out.send(Report::Judged(Judged { slot: number, wish: self.wish.number, question, result }));
+            return;
+        };
+        let case = Case {
+            slot: number,
+            wish: slot.answered,
+            revision: self.wish.revision,
+            question,
+            lab: self.lab.clone(),
+            loaded: loaded.clone(),
+            seed: session.lend(),
+            experiment: keep::still(&self.wish, wish, "judged", self.clock.now, scene),
+            scene: scene.clone(),
+            lights: self.wish.lights.clone(),
+            frames: if remembers(session) { SETTLE } else { 1 },
+        };
+        let _ = self.cases.send(case);
     }
 
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.

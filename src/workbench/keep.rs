@@ -2,7 +2,7 @@
 
 use super::wish::{SlotWish, Wish};
 use crate::capture::{self, Resource, What};
-use crate::experiment::{Experiment, LightChange};
+use crate::experiment::{CameraChoice, Experiment, LightChange};
 use crate::graph::source::{At, Loc};
 use crate::lab::{Lab, LabError};
 use crate::scene::{Light, LightKind, Scene};
@@ -23,6 +23,15 @@ pub fn experiment(wish: &Wish, slot: &SlotWish, name: &str, time: f64, scene: Op
             .collect();
     }
     experiment
+}
+
+/// Like [`experiment`], seen from where the camera's path is at that time.
+pub fn still(wish: &Wish, slot: &SlotWish, name: &str, time: f64, scene: &Scene) -> Experiment {
+    let mut still = experiment(wish, slot, name, time, Some(scene));
+    if let Some(path) = &wish.path {
+        still.camera = CameraChoice::Placed(path.at(time));
+    }
+    still
 }
 
 fn change(light: &Light, own: &Light) -> LightChange {

@@ -4,6 +4,7 @@
 
 mod bar;
 mod builder;
+mod chart;
 pub mod compare;
 pub mod edit;
 pub mod engine;
@@ -11,6 +12,7 @@ pub mod events;
 mod gallery;
 mod help;
 mod inspector;
+pub mod judge;
 mod keep;
 mod messages;
 mod motion;
@@ -75,6 +77,7 @@ struct Slot {
 enum Tab {
     Surroundings,
     Times,
+    Chart,
     Inspector,
     Tables,
     Paths,
@@ -118,6 +121,7 @@ pub struct Workbench {
     view: view::View,
     tab: Tab,
     times: times::Times,
+    chart: chart::Chart,
     inspector: inspector::Inspector,
     tables: tables::Tables,
     paths: paths::Paths,
@@ -141,6 +145,8 @@ pub struct Workbench {
     shown_revision: u64,
     wake: Arc<dyn Fn() + Send + Sync>,
     root: PathBuf,
+    home: Home,
+    gpu: GpuOptions,
 }
 
 impl Workbench {
@@ -153,7 +159,8 @@ impl Workbench {
         let events = options.events.as_deref().map(Events::new).transpose();
         let events = events.map_err(|e| LabError::Request(format!("cannot write the log of events: {e}")))?;
         let root = options.home.root.clone();
-        let engine = Engine::start(options.home, options.gpu, wake.clone());
+        let (home, gpu) = (options.home, options.gpu);
+        let engine = Engine::start(home.clone(), gpu.clone(), wake.clone());
         let mut watch = watch::Watch::new(&root, wake.clone());
         let wish = Wish {
             slots: [Some(slot_of(&experiment)), None],
@@ -183,6 +190,7 @@ impl Workbench {
             view: view::View::default(),
             tab: Tab::Surroundings,
             times: times::Times::default(),
+            chart: chart::Chart::default(),
             inspector: inspector::Inspector::default(),
             tables: tables::Tables::default(),
             paths: paths::Paths::default(),
@@ -203,6 +211,8 @@ impl Workbench {
             shown_revision: 0,
             wake,
             root,
+            home,
+            gpu,
         })
     }
 
@@ -232,6 +242,7 @@ impl Workbench {
             self.pixels.retain(|p| p.0 != INSPECTOR);
             self.pixels.push(pixels);
         }
+        self.chart_news();
         match self.watch.take() {
             Ok(changed) => {
                 self.files_changed(&changed);
@@ -317,6 +328,7 @@ impl Workbench {
             Report::Device(device) => {
                 self.event("device", json!({ "name": device.name, "driver": device.driver }));
                 self.device = Some(device);
+                self.chart.restarted();
                 self.trouble = None;
             }
             Report::Built { slot, outline, change, ms, revision, objects } => {
@@ -362,6 +374,7 @@ impl Workbench {
                 self.event("captured", json!({ "ok": ok, "text": text }));
                 self.status = text;
             }
+            Report::Judged(judged) => self.judged(judged),
             Report::Trouble(text) => {
                 self.event("trouble", json!({ "text": text }));
                 self.trouble = Some(text);
@@ -381,6 +394,7 @@ impl Workbench {
             return;
         }
         self.times.note(&picture);
+        self.chart.note(&picture);
         let number = picture.slot;
         self.pixels.retain(|p| p.0 != number);
         self.pixels.push((number, picture.size, picture.bytes.clone()));
@@ -564,7 +578,7 @@ impl Workbench {
                     .as_ref()
                     .is_some_and(|p| !p.preview && p.wish >= self.told.number && self.slots[i].outline.is_some())
         };
-        shown(0) && shown(1) && self.loading.is_none() && !self.comparing
+        shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits()
     }
 
     /// The interface of one frame.
@@ -600,6 +614,7 @@ impl Workbench {
         }
         self.compare();
         self.tell();
+        self.ask_judge(ui);
     }
 
     /// The picture has the size of the middle, once that has stood still for a moment.
@@ -657,6 +672,7 @@ impl Workbench {
             for (tab, name) in [
                 (Tab::Surroundings, "Scene"),
                 (Tab::Times, "Time"),
+                (Tab::Chart, "Chart"),
                 (Tab::Inspector, "Inspect"),
                 (Tab::Tables, "Tables"),
                 (Tab::Paths, "Motion"),
@@ -671,6 +687,7 @@ impl Workbench {
         match self.tab {
             Tab::Surroundings => self.surroundings(ui),
             Tab::Times => self.times_tab(ui),
+            Tab::Chart => self.chart_tab(ui),
             Tab::Inspector => self.inspector_tab(ui, textures),
             Tab::Tables => self.tables_tab(ui),
             Tab::Paths => self.paths_tab(ui),
@@ -701,7 +718,9 @@ impl Workbench {
 
     /// Ends: waits a little for the frame in work. Returns the device's validation messages.
     pub fn close(self) -> Vec<String> {
-        self.engine.stop(Duration::from_secs(20))
+        let mut messages = self.chart.close(Duration::from_secs(5));
+        messages.extend(self.engine.stop(Duration::from_secs(20)));
+        messages
     }
 }
 

@@ -7,6 +7,7 @@ use crate::graph::source::Diagnostic;
 use crate::graph::successor::Change;
 use crate::lab::Texels;
 use crate::scene::Scene;
+use crate::workbench::judge::Judged;
 use crate::workbench::wish::Look;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -119,6 +120,8 @@ pub enum Report {
     Checks(usize, Vec<String>),
     /// A capture was made, or why not.
     Captured(Result<PathBuf, String>),
+    /// The error of what is shown.
+    Judged(Judged),
     /// Something the user should know.
     Trouble(String),
 }

@@ -1,4 +1,5 @@
 //! A desk: a virtual screen with the program on it, a hand for mouse and keys, and an eye on pixels and events.
+#![allow(dead_code, reason = "each test uses a part")]
 
 use crate::common::{conelab, root};
 use serde_json::Value;
@@ -321,6 +322,11 @@ impl Desk {
         self.x.xtest_fake_input(kind, detail, 0, self.root, at.0, at.1, 0).unwrap().check().unwrap();
         // A frame of the window.
         std::thread::sleep(Duration::from_millis(40));
+    }
+
+    /// Moves the mouse there.
+    pub fn point_at(&self, at: (f64, f64)) {
+        self.fake(6, 0, at);
     }
 
     pub fn click_at(&self, at: (f64, f64)) {

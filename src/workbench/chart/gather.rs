@@ -1,0 +1,105 @@
+//! Gathers a reference on a thread and a device of its own, while the workbench goes on.
+
+use crate::experiment::Experiment;
+use crate::lab::{Home, Lab, LabError};
+use crate::reference::{Gathered, Goal, gather};
+use crate::scene::Scene;
+use crate::vulkan::GpuOptions;
+use crossbeam_channel::{Receiver, unbounded};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// What is to be gathered.
+pub struct Job {
+    /// Folders.
+    pub home: Home,
+    /// The device.
+    pub gpu: GpuOptions,
+    /// What the reference is of.
+    pub experiment: Experiment,
+    /// The scene with its own light.
+    pub scene: Arc<Scene>,
+    /// Bounces.
+    pub bounces: u32,
+    /// Samples of every pixel.
+    pub samples: u64,
+}
+
+/// A reference in the making.
+pub struct Gather {
+    /// How far it is; nothing before the first samples.
+    pub state: Option<Gathered>,
+    /// Whether it was told to stop.
+    pub cancelled: bool,
+    cancel: Arc<AtomicBool>,
+    news: Receiver<News>,
+    thread: Option<std::thread::JoinHandle<Vec<String>>>,
+}
+
+enum News {
+    Progress(Gathered),
+    Done(Result<u64, LabError>),
+}
+
+impl Gather {
+    /// Begins.
+    pub fn start(job: Job, wake: Arc<dyn Fn() + Send + Sync>) -> Gather {
+        let (out, news) = unbounded();
+        let cancel = Arc::new(AtomicBool::new(false));
+        let stop = cancel.clone();
+        let thread = std::thread::spawn(move || {
+            let progress = |now: Gathered| {
+                let _ = out.send(News::Progress(now));
+                wake();
+                if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let (result, messages) = work(job, progress);
+            let _ = out.send(News::Done(result));
+            wake();
+            messages
+        });
+        Gather { state: None, cancelled: false, cancel, news, thread: Some(thread) }
+    }
+
+    /// Tells it to stop after the block of samples in work; what was gathered is kept.
+    pub fn cancel(&mut self) {
+        self.cancelled = true;
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+
+    /// Takes in the news; the samples, or what went wrong, once it has ended.
+    pub fn take(&mut self) -> Option<Result<u64, LabError>> {
+        for news in self.news.try_iter() {
+            match news {
+                News::Progress(now) => self.state = Some(now),
+                News::Done(result) => return Some(result),
+            }
+        }
+        None
+    }
+
+    /// Ends it, waiting at most so long. Returns the validation messages of its device.
+    pub fn stop(mut self, patience: Duration) -> Vec<String> {
+        self.cancel();
+        let until = Instant::now() + patience;
+        let Some(thread) = self.thread.take() else { return Vec::new() };
+        while !thread.is_finished() && Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        // As the engine: a frame that never ends cannot be waited for.
+        if thread.is_finished() { thread.join().unwrap_or_default() } else { Vec::new() }
+    }
+}
+
+fn work(job: Job, mut progress: impl FnMut(Gathered) -> ControlFlow<()>) -> (Result<u64, LabError>, Vec<String>) {
+    let lab = match Lab::open(job.home, job.gpu) {
+        Ok(lab) => lab,
+        Err(e) => return (Err(e), Vec::new()),
+    };
+    let lit = job.experiment.adapted(job.scene);
+    let goal = Goal::Samples(job.samples);
+    let result = lit.and_then(|scene| gather(&lab, &job.experiment, &scene, job.bounces, goal, &mut progress));
+    (result.map(|r| r.samples), lab.gpu.messages())
+}

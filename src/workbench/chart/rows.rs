@@ -1,0 +1,106 @@
+//! Below the chart: what is known of A and B, the reference that is missing, the size that fits.
+
+use super::super::Workbench;
+use super::plot::{LIVE, Live};
+use crate::comparison::within_noise;
+use egui::{Button, DragValue, ProgressBar, Ui};
+
+impl Workbench {
+    /// What is known of A and B, and what can be done about what is not.
+    pub(super) fn live_rows(&mut self, ui: &mut Ui, title: &str, lives: &[Option<Live>; 2]) {
+        let mut missing = false;
+        for (slot, live) in lives.iter().enumerate().filter(|s| self.wish.slots[s.0].is_some()) {
+            let state = &self.chart.live.slots[slot];
+            let name = ["A", "B"][slot];
+            match state.judged.as_ref().map(|j| (&j.question, &j.result)) {
+                None if self.wish.clock.playing => drop(ui.weak(format!("{name}: judged when time stands still"))),
+                None => drop(ui.weak(format!("{name}: not judged yet"))),
+                Some((_, Err(why))) => drop(ui.weak(format!("{name}: {why}"))),
+                Some((question, Ok(verdict))) => match (&verdict.error, live) {
+                    (Some(error), Some(live)) => {
+                        let old = if live.fresh { "" } else { " (of the picture before)" };
+                        let noisy = question.metric == "relmse" && within_noise(error.error, Some(error.noise));
+                        let noisy = if noisy { ", within the reference's noise" } else { "" };
+                        let text = format!("{name}: {:.3} ms, {title} {:.4e}{noisy}{old}", live.ms, error.error);
+                        ui.colored_label(LIVE[slot], text).on_hover_text(format!(
+                            "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
+                                 {}, {} samples a pixel; relMSE of its halves {:.2e}.",
+                            state.times.len(),
+                            bounces(question.bounces),
+                            error.samples,
+                            error.noise
+                        ));
+                    }
+                    (Some(_), None) => drop(ui.weak(format!("{name}: the metric is not defined here"))),
+                    (None, _) => {
+                        missing = true;
+                        let (w, h) = verdict.subject.size;
+                        ui.label(format!(
+                            "{name}: no reference of this picture ({}, {w}x{h}, {})",
+                            verdict.subject.scene,
+                            bounces(question.bounces)
+                        ));
+                    }
+                },
+            }
+        }
+        self.gather_row(ui, missing);
+        self.size_row(ui);
+    }
+
+    fn gather_row(&mut self, ui: &mut Ui, missing: bool) {
+        if let Some(gather) = &mut self.chart.live.gather {
+            ui.horizontal(|ui| {
+                let (done, of) = gather.state.map_or((0, 0), |g| (g.samples, g.goal));
+                let part = if of == 0 { 0.0 } else { done as f32 / of as f32 };
+                let text = if of == 0 { "opening a device".into() } else { format!("{done} of {of} samples") };
+                ui.add(ProgressBar::new(part).desired_width(180.0).text(text));
+                let cancel = Button::new(if gather.cancelled { "stopping" } else { "cancel" }).small();
+                let about = "Stops after the block of samples in work; what was gathered is kept";
+                if ui.add_enabled(!gather.cancelled, cancel).on_hover_text(about).clicked() {
+                    gather.cancel();
+                }
+            });
+            return;
+        }
+        if !self.chart.live.said.is_empty() {
+            ui.weak(&self.chart.live.said);
+        }
+        let mut start = false;
+        ui.horizontal(|ui| {
+            let about = "Traces the reference of A's picture on a device of its own and keeps it. The picture keeps its \
+                         present size from then on: a reference fits no other";
+            let text = if missing { "gather" } else { "gather more" };
+            start = ui.button(text).on_hover_text(about).clicked();
+            let samples = DragValue::new(&mut self.chart.live.samples).range(32..=1 << 24).speed(32).suffix(" samples");
+            ui.add(samples).on_hover_text("Of every pixel, in all; the error of the reference falls with their root");
+        });
+        if start {
+            self.start_gathering();
+        }
+    }
+
+    /// The size of the picture: that of the sweep, that of the panel, or as it is.
+    fn size_row(&mut self, ui: &mut Ui) {
+        let (w, h) = self.wish.size;
+        let sweeps = self.chart.data().and_then(|d| d.keys.get(self.chart.choice.subject)).map(|k| k.0.size);
+        ui.horizontal_wrapped(|ui| {
+            ui.weak(match self.fixed_size {
+                Some(_) => format!("picture: {w}x{h}"),
+                None => format!("picture: {w}x{h}, as large as the panel; errors are of one size"),
+            });
+            if let Some(size) = sweeps.filter(|s| *s != (w, h))
+                && ui.small_button(format!("{}x{} as the sweep", size.0, size.1)).clicked()
+            {
+                self.fixed_size = Some(size);
+            }
+            if self.fixed_size.is_some() && ui.small_button("as the panel").clicked() {
+                self.fixed_size = None;
+            }
+        });
+    }
+}
+
+fn bounces(number: u32) -> String {
+    if number == 1 { "1 bounce".into() } else { format!("{number} bounces") }
+}

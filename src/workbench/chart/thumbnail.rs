@@ -1,0 +1,71 @@
+//! What is said of the dot under the pointer, with its picture.
+
+use crate::report::Dot;
+use crossbeam_channel::{Receiver, Sender, unbounded};
+use egui::{ColorImage, Response, TextureHandle};
+use std::sync::Arc;
+
+/// The number of a dot and its picture.
+type Made = (String, ColorImage);
+
+/// The picture of the last dot that was pointed at.
+pub struct Thumbnail {
+    /// Number of the dot.
+    of: String,
+    texture: Option<TextureHandle>,
+    made: (Sender<Made>, Receiver<Made>),
+}
+
+impl Default for Thumbnail {
+    fn default() -> Thumbnail {
+        Thumbnail { of: String::new(), texture: None, made: unbounded() }
+    }
+}
+
+impl Thumbnail {
+    /// Shows a dot at the pointer: picture, parameters, time, error.
+    pub fn show(&mut self, chart: &Response, dot: &Dot, title: &str, error: f64, wake: &Arc<dyn Fn() + Send + Sync>) {
+        for (id, image) in self.made.1.try_iter() {
+            if id == self.of {
+                self.texture = Some(chart.ctx.load_texture("dot", image, egui::TextureOptions::LINEAR));
+            }
+        }
+        if self.of != dot.id {
+            self.of.clone_from(&dot.id);
+            self.texture = None;
+            if let Some(bytes) = dot.picture.clone() {
+                let (id, out, wake) = (dot.id.clone(), self.made.0.clone(), wake.clone());
+                std::thread::spawn(move || {
+                    if let Some(image) = decoded(&bytes) {
+                        let _ = out.send((id, image));
+                        wake();
+                    }
+                });
+            }
+        }
+        let texture = self.texture.clone();
+        chart.clone().on_hover_ui_at_pointer(|ui| {
+            if let Some(texture) = &texture {
+                ui.image((texture.id(), texture.size_vec2()));
+            }
+            ui.strong(format!("{:.3} ms, {title} {error:.4e}", dot.ms));
+            for (name, value) in &dot.labels {
+                ui.label(format!("{name}: {value}"));
+            }
+            for warning in &dot.warnings {
+                ui.weak(warning);
+            }
+            ui.weak("click to load it");
+        });
+    }
+}
+
+/// A picture that comes from a file: bounded.
+fn decoded(bytes: &[u8]) -> Option<ColorImage> {
+    let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes)).with_guessed_format().ok()?;
+    let mut limits = image::Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(4096), Some(4096));
+    reader.limits(limits);
+    let image = reader.decode().ok()?.thumbnail(256, 256).to_rgba8();
+    Some(ColorImage::from_rgba_unmultiplied([image.width() as usize, image.height() as usize], &image))
+}
