@@ -369,15 +369,19 @@ const VOXELS: [&str; 4] = ["voxelIndex", "voxelColor", "voxelNormal", "voxelBord
 #[test]
 fn uneven_cells_are_compared_too() {
     let lab = lab(root());
-    for warp in ["spline", "logistic"] {
-        for (voxelizer, least) in [("raster", 0.85), ("tessellated", 0.9)] {
-            let settings = [("voxel_dim", "32"), ("warp", warp), ("voxelizer", voxelizer), QUICK];
-            let mut session = prepare(&lab, &experiment("cornell", (16, 16), &settings), &VOXELS);
-            let score = score_of(&mut session, &scene("cornell"));
-            let (recall, precision) = (score.recall.unwrap(), score.precision.unwrap());
-            println!("{warp}, {voxelizer}: recall {recall:.4}, precision {precision:.4}");
-            assert!(recall > least && precision > 0.98, "{warp}, {voxelizer}");
-        }
+    // Least recall and precision. Dilated triangles are tested exactly only without a warp: with one they have extras.
+    let modes = [
+        ("msaa", ("conservative", "msaa"), 0.95, 0.999),
+        ("dilate", ("conservative", "dilate"), 0.98, 0.87),
+        ("tessellated", ("voxelizer", "tessellated"), 0.97, 0.999),
+    ];
+    for (warp, (title, mode, least, right)) in ["spline", "logistic"].into_iter().flat_map(|w| modes.map(|m| (w, m))) {
+        let settings = [("voxel_dim", "32"), ("warp", warp), mode, QUICK];
+        let mut session = prepare(&lab, &experiment("cornell", (16, 16), &settings), &VOXELS);
+        let score = score_of(&mut session, &scene("cornell"));
+        let (recall, precision) = (score.recall.unwrap(), score.precision.unwrap());
+        println!("{warp}, {title}: recall {recall:.4}, precision {precision:.4}");
+        assert!(recall > least && precision > right, "{warp}, {title}");
     }
     assert_clean(&lab);
 }
