@@ -39,16 +39,29 @@ void main() {
     }
 
     int depth = int(axis & 3u);
-    float reach = 0.5 * (abs(across[depth]) + abs(down[depth])) + 1e-4;
-    float first = clamp(at[depth] - reach, lo[depth], hi[depth]);
-    float last = clamp(at[depth] + reach, lo[depth], hi[depth]);
+    ivec3 axes = planeAxes(axis & 3u);
+    // Attributes of fragments beside their triangle are extrapolated, and of thin triangles no more than noise: without
+    // a warp the column is the pixel, and the depth that of the corners' plane.
+    ivec3 column = ivec3(floor(inside));
+    float middle = at[depth], reach = 0.5 * (abs(across[depth]) + abs(down[depth])) + 1e-4;
+    if (WARP == WARP_NONE) {
+        vec3 face = cross(corner[1] - corner[0], corner[2] - corner[0]);
+        vec2 slope = face[depth] != 0.0 ? -vec2(face[axes.x], face[axes.y]) / face[depth] : vec2(dim); // a line: any depth
+        vec2 pixel = floor(gl_FragCoord.xy) + 0.5;
+        column[axes.x] = int(gl_FragCoord.x);
+        column[axes.y] = int(gl_FragCoord.y);
+        middle = corner[0][depth] + dot(slope, pixel - vec2(corner[0][axes.x], corner[0][axes.y]));
+        reach = 0.5 * (abs(slope.x) + abs(slope.y)) + 1e-2;
+    }
+    float first = clamp(middle - reach, lo[depth], hi[depth]);
+    float last = clamp(middle + reach, lo[depth], hi[depth]);
     if ((axis & SLIVER) != 0) {
         first = lo[depth];
         last = hi[depth];
     }
     // A corner exactly on a border belongs to both cells.
     for (int z = max(int(floor(first - 1e-5)), 0); z <= min(int(floor(last + 1e-5)), params.voxel_dim - 1); z++) {
-        cell = ivec3(floor(WARP == WARP_NONE ? at : inside));
+        cell = column;
         cell[depth] = z;
         if (!inGrid(cell)) continue;
         if (WARP == WARP_NONE && !triangleOverlapsCell(corner[0], corner[1], corner[2], cell)) continue;

@@ -32,6 +32,7 @@ mod screenshot;
 mod split;
 mod sweep;
 mod view;
+mod voxels;
 
 use crate::lab::{Lab, LabError};
 use crate::vulkan::{GpuOptions, list_devices};
@@ -74,6 +75,8 @@ enum Command {
     Fit(fit::FitArgs),
     /// Split an experiment's error into what voxels, cones and filtering each add.
     Split(split::SplitArgs),
+    /// Compare the voxels of an experiment with what its triangles exactly overlap.
+    Voxels(voxels::VoxelsArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
     Graph(graph::GraphArgs),
     /// Print a scene's counts, bounds, materials and missing files, or write it to another format.
@@ -132,6 +135,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Reference(args) => reference::run(&args),
         Command::Fit(args) => fit::run(&args),
         Command::Split(args) => split::run(&args),
+        Command::Voxels(args) => voxels::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Scene(args) => scene(&args),

@@ -14,6 +14,7 @@ pub mod graph;
 pub mod lab;
 pub mod measure;
 pub mod metrics;
+pub mod oracle;
 pub mod picture;
 pub mod reference;
 pub mod report;

@@ -1281,3 +1281,20 @@ fn comparisons_of_what_is_not_there() {
     assert!(found.contains("passes/graph.ron:29:") && found.contains("no parameter 'nothing'"), "{found}");
     assert_eq!(with(""), "", "a comparison of the same settings is no mistake");
 }
+
+#[test]
+fn voxels_that_are_not_there() {
+    let with =
+        |section: &str| graph("output: \"picture\",", &format!("voxels: ({section}),\n    output: \"picture\","));
+    let found = with("occupied: \"count\", color: \"gird\", normal: \"grid\", borders: \"wrok\"");
+    for message in ["'count' is 2D: voxels are in 3D textures", "'gird'", "'grid'", "'wrok'", "'work'"] {
+        assert!(found.contains(message), "{message} in {found}");
+    }
+    let mode = |set: &str| {
+        let modes = format!("modes: [(title: \"T\", help: \"h\", set: {{ {set} }})]");
+        with(&format!("occupied: \"grid\", color: \"grid\", normal: \"grid\", borders: \"work\", {modes}"))
+    };
+    let found = mode("\"method\": slow");
+    assert!(found.contains("passes/graph.ron:29:") && found.contains("slow"), "{found}");
+    assert_eq!(mode("\"method\": exact"), "");
+}

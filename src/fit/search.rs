@@ -60,11 +60,14 @@ pub struct Found {
     pub stop: Stop,
 }
 
+/// Gives a setting's quantities, or nothing where it cannot be run.
+pub type Evaluate<'a, E> = dyn FnMut(&[usize]) -> Result<Option<Trial>, E> + 'a;
+
 /// A change of one axis.
 type Move = (usize, usize);
 
 struct Search<'a, E> {
-    evaluate: &'a mut dyn FnMut(&[usize]) -> Result<Option<Trial>, E>,
+    evaluate: &'a mut Evaluate<'a, E>,
     sizes: &'a [usize],
     limits: Limits,
     known: HashMap<Vec<usize>, Option<Trial>>,
@@ -158,7 +161,7 @@ pub fn search<E>(
     sizes: &[usize],
     start: &[usize],
     limits: Limits,
-    evaluate: &mut dyn FnMut(&[usize]) -> Result<Option<Trial>, E>,
+    evaluate: &mut Evaluate<'_, E>,
 ) -> Result<Option<Found>, E> {
     let mut s = Search { evaluate, sizes, limits, known: HashMap::new(), tried: Vec::new(), ratios: HashMap::new() };
     let Some((mut place, mut trial)) = descend(&mut s, start)? else { return Ok(None) };

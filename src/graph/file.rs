@@ -44,6 +44,8 @@ pub struct GraphFile {
     pub fit: Entries<Items<RawText>>,
     /// Settings from the ideal to the method: what each step costs is the method's error, split.
     pub ladder: Items<ViewDecl>,
+    /// The voxels that the graph makes.
+    pub voxels: Option<Loc<VoxelsDecl>>,
 }
 
 /// An expression with its place.
@@ -434,6 +436,24 @@ pub struct ViewDecl {
     pub help: String,
     /// Parameters that it sets.
     pub set: Entries<RawText>,
+}
+
+/// Voxels that a graph makes, for comparing them with what its triangles exactly overlap.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VoxelsDecl {
+    /// 3D texture whose first channel is not zero in occupied cells.
+    pub occupied: Loc<String>,
+    /// 3D texture of linear base colour; alpha is opacity.
+    pub color: Loc<String>,
+    /// 3D texture of the unit normal * 0.5 + 0.5.
+    pub normal: Loc<String>,
+    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; then, as floats, the
+    /// world coordinates (m) of the cells' borders along x, y and z, one more than cells each.
+    pub borders: Loc<String>,
+    /// Ways of making them that are worth comparing.
+    #[serde(default)]
+    pub modes: Items<ViewDecl>,
 }
 
 /// A RON value kept as text, to be read by the parameter it is for.

@@ -310,6 +310,10 @@ impl Linker<'_> {
         wanted.extend(graph.parts.iter().map(|p| p.1.as_str()));
         wanted.extend(graph.checks.iter().map(|c| c.buffer.value.as_str()));
         wanted.extend(graph.tables.iter().map(|t| t.buffer.value.as_str()));
+        for voxels in graph.voxels.iter().map(|v| &v.value) {
+            let names = [&voxels.occupied, &voxels.color, &voxels.normal, &voxels.borders];
+            wanted.extend(names.map(|n| n.value.as_str()));
+        }
         let warn = |at: At, message: String| {
             let d = graph.sources.error(at, message);
             Diagnostic { severity: Severity::Warning, ..d }

@@ -3,7 +3,7 @@
 use super::expr::Expr;
 use super::file::{
     BufferDecl, CheckDecl, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds, TextureDecl,
-    ViewDecl,
+    ViewDecl, VoxelsDecl,
 };
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
@@ -61,6 +61,8 @@ pub struct Graph {
     pub fit: Vec<(String, Vec<String>)>,
     /// Settings from the ideal to the method as it is set: what each step adds is a part of its error.
     pub ladder: Vec<Loc<ViewDecl>>,
+    /// The voxels that it makes.
+    pub voxels: Option<Loc<VoxelsDecl>>,
     /// The files it came from.
     pub sources: Sources,
 }
@@ -111,6 +113,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         compare: Vec::new(),
         views: Vec::new(),
         ladder: Vec::new(),
+        voxels: None,
         fit: Vec::new(),
         sources,
     };
@@ -130,6 +133,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         graph.compare.extend(file.compare.0);
         graph.views.extend(file.views.0);
         graph.ladder.extend(file.ladder.0);
+        graph.voxels = file.voxels.or(graph.voxels);
         for (name, values) in file.fit.0 {
             let texts = values.value.0.iter().map(|v| v.value.0.clone()).collect();
             graph.fit.push((name.value.clone(), texts));
@@ -166,6 +170,9 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     check.values(fit.iter());
     for view in graph.views.iter().chain(&graph.ladder) {
         check.values(view.value.set.0.iter());
+    }
+    if let Some(voxels) = &graph.voxels {
+        check.voxels(&voxels.value);
     }
     for item in &checks {
         check.buffer_name(&item.value.buffer);
@@ -453,6 +460,20 @@ impl Check<'_> {
                     found.nearest(&name.value, known)
                 });
             }
+        }
+    }
+
+    fn voxels(&mut self, voxels: &VoxelsDecl) {
+        for name in [&voxels.occupied, &voxels.color, &voxels.normal] {
+            let known = self.texture_name(name);
+            let texture = self.graph.textures.iter().find(|t| t.0 == name.value);
+            if known && texture.is_some_and(|t| t.1.value.size.0.len() != 3) {
+                self.error(name.at, format!("'{}' is 2D: voxels are in 3D textures", name.value));
+            }
+        }
+        self.buffer_name(&voxels.borders);
+        for mode in &voxels.modes.0 {
+            self.values(mode.value.set.0.iter());
         }
     }
 

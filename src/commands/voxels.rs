@@ -1,0 +1,209 @@
+//! `conelab voxels`.
+
+use super::adapt::{self, ExperimentArgs};
+use super::{DeviceArgs, writable};
+use crate::experiment::{CameraChoice, Experiment};
+use crate::lab::{Home, Lab, LabError, Loaded, camera_of};
+use crate::oracle::{self, Cell, Comparison, Grid, Score, Surfaces, Triangle};
+use crate::picture;
+use crate::scene::Scene;
+use clap::Args;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+mod table;
+
+/// Arguments of `voxels`.
+#[derive(Debug, Args)]
+pub struct VoxelsArgs {
+    #[command(flatten)]
+    experiment: ExperimentArgs,
+    /// Every way of making voxels that the graph declares, not only the experiment's own.
+    #[arg(long)]
+    all: bool,
+    /// Write the figures to this JSON file.
+    #[arg(long)]
+    json: Option<PathBuf>,
+    /// Write cubes to this folder, for each mode a picture and a model (.glb): holes red, extras blue, right ones grey.
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Version of what `--json` writes.
+const SCHEMA: &str = "conelab-voxels-1";
+
+/// A way of making voxels, and what came of it: figures, or why there are none.
+#[derive(Serialize)]
+struct Mode {
+    title: String,
+    /// Parameters that differ from the experiment's.
+    set: Settings,
+    score: Option<Score>,
+    skipped: Option<String>,
+    /// What the graph's checks said, such as full lists.
+    warnings: Vec<String>,
+}
+
+/// What `--json` writes.
+#[derive(Serialize)]
+struct Report {
+    schema: &'static str,
+    version: &'static str,
+    experiment: String,
+    scene: String,
+    device: String,
+    triangles: usize,
+    /// Cells along x, y and z.
+    size: [u32; 3],
+    modes: Vec<Mode>,
+}
+
+/// The exact cells of a grid; made once for the modes that share it.
+struct Truth {
+    grid: Grid,
+    cells: Vec<Cell>,
+}
+
+/// Compares voxels with the exact ones.
+pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
+    let experiment = args.experiment.read()?;
+    if let Some(json) = &args.json {
+        writable(json, &["json"])?;
+    }
+    let home = Home::find()?;
+    let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
+    let wanted = oracle::wanted(&loaded.graph)?;
+    let scene = Arc::new(adapt::open_scene(&experiment)?);
+    let triangles = oracle::triangles_of(&scene, experiment.time);
+    let surfaces = Surfaces::new(&scene);
+    let lab = Lab::open(home, args.device.options())?;
+    let mut truth = None;
+    let mut modes = Vec::new();
+    for (title, set) in modes_of(&loaded, args.all)? {
+        let mut changed = experiment.clone();
+        for (name, value) in &set {
+            changed.set(name, value);
+        }
+        let mut mode = Mode { title, set, score: None, skipped: None, warnings: Vec::new() };
+        match voxels_of(&lab, &changed, &loaded, &scene, &wanted) {
+            Ok((grid, voxels, warnings)) => {
+                let truth = exact_of(&mut truth, grid, &triangles, &surfaces);
+                let found = oracle::compare(&truth.grid, &truth.cells, &voxels);
+                if let Some(folder) = &args.output {
+                    draw(&lab, &experiment, &scene, &truth.grid, &found, &file_stem(folder, &mode.title))?;
+                }
+                mode.warnings = warnings;
+                mode.score = Some(found.score);
+            }
+            // One of many that this device cannot run is told; the only one is an error.
+            Err(LabError::Input(why)) if args.all => {
+                mode.skipped = Some(why.iter().map(|d| d.message.clone()).collect::<Vec<_>>().join("; "));
+            }
+            Err(error) => return Err(error),
+        }
+        modes.push(mode);
+    }
+    let report = Report {
+        schema: SCHEMA,
+        version: env!("CARGO_PKG_VERSION"),
+        experiment: experiment.name.clone(),
+        scene: scene.name.clone(),
+        device: lab.gpu.info.name.clone(),
+        triangles: triangles.len(),
+        size: truth.as_ref().map_or([0; 3], |t| t.grid.size()),
+        modes,
+    };
+    table::print(&report);
+    if let Some(path) = &args.json {
+        let text = serde_json::to_string_pretty(&report).map_err(|e| LabError::Request(e.to_string()))?;
+        crate::files::write_whole(path, text.as_bytes())
+            .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
+        say!("wrote {}", path.display());
+    }
+    super::validated(&lab)
+}
+
+/// Parameters and values in RON.
+type Settings = Vec<(String, String)>;
+
+/// Titles and settings: the experiment's own, or those that the graph declares.
+fn modes_of(loaded: &Loaded, all: bool) -> Result<Vec<(String, Settings)>, LabError> {
+    if !all {
+        return Ok(vec![("as set".into(), Vec::new())]);
+    }
+    let modes = loaded.graph.voxels.iter().flat_map(|v| &v.value.modes.0).map(|m| {
+        let set = m.value.set.0.iter().map(|(name, value)| (name.value.clone(), value.value.0.clone()));
+        (m.value.title.clone(), set.collect())
+    });
+    let modes: Vec<_> = modes.collect();
+    if modes.is_empty() {
+        return Err(LabError::Request(format!(
+            "graph '{}' declares no modes in `voxels`: leave out --all",
+            loaded.graph.name
+        )));
+    }
+    Ok(modes)
+}
+
+/// The voxels of one frame, where they lie, and what the graph's checks said.
+fn voxels_of(
+    lab: &Lab,
+    experiment: &Experiment,
+    loaded: &Loaded,
+    scene: &Arc<Scene>,
+    wanted: &[String],
+) -> Result<(Grid, Vec<oracle::Voxel>, Vec<String>), LabError> {
+    let mut session = lab.build(experiment, loaded, scene.clone(), wanted.to_vec(), None)?;
+    session.frame(0.0)?;
+    session.finish()?;
+    let warnings = session.failed_checks()?;
+    let (grid, voxels) = oracle::read(&mut session)?;
+    Ok((grid, voxels, warnings))
+}
+
+fn exact_of<'t>(last: &'t mut Option<Truth>, grid: Grid, triangles: &[Triangle], surfaces: &Surfaces<'_>) -> &'t Truth {
+    let kept = last.take().filter(|t| t.grid == grid);
+    last.insert(kept.unwrap_or_else(|| Truth { cells: oracle::exact(triangles, surfaces, &grid), grid }))
+}
+
+fn file_stem(folder: &Path, title: &str) -> PathBuf {
+    folder.join(title.replace(|c: char| !c.is_ascii_alphanumeric(), "-"))
+}
+
+/// Writes the cubes as a model, and their picture from the experiment's camera.
+fn draw(
+    lab: &Lab,
+    experiment: &Experiment,
+    scene: &Scene,
+    grid: &Grid,
+    found: &Comparison,
+    stem: &Path,
+) -> Result<(), LabError> {
+    if found.right.is_empty() && found.holes.is_empty() && found.extras.is_empty() {
+        say!("nothing to draw: no cell holds anything");
+        return Ok(());
+    }
+    let cubes = oracle::cubes(grid, found, scene).map_err(LabError::Request)?;
+    let (png, glb) = (stem.with_extension("png"), stem.with_extension("glb"));
+    for path in [&png, &glb] {
+        writable(path, &["png", "glb"])?;
+    }
+    cubes.export(&glb)?;
+    let mut view = experiment.clone();
+    view.camera = CameraChoice::Placed(camera_of(experiment, scene)?);
+    view.graph = "preview.ron".into();
+    view.params.clear();
+    let mut output = String::new();
+    let (mut session, _) = lab.prepare(&view, Arc::new(cubes), |graph| {
+        output = graph.output.clone().ok_or_else(|| LabError::Request("graph 'preview' has no `output`".into()))?;
+        Ok(vec![output.clone()])
+    })?;
+    session.frame(0.0)?;
+    session.finish()?;
+    picture::write(&png, &session.texels(&output, 0, 0)?)?;
+    say!("wrote {} and {}", png.display(), glb.display());
+    Ok(())
+}

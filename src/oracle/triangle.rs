@@ -1,0 +1,40 @@
+//! A scene's triangles in the world.
+
+use crate::scene::Scene;
+use glam::{DVec3, Mat3, Vec2, Vec3};
+
+/// A triangle in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Triangle {
+    /// Corners, m.
+    pub corners: [DVec3; 3],
+    /// Shading normals, unit length.
+    pub normals: [Vec3; 3],
+    /// Texture coordinates.
+    pub uv: [Vec2; 3],
+    /// Index of the scene's material.
+    pub material: u32,
+}
+
+/// All triangles of a scene at a time (s), instance by instance. Corners are rounded to f32, as they are on the device.
+pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
+    let mut list = Vec::with_capacity(scene.triangle_count());
+    for (i, instance) in scene.instances.iter().enumerate() {
+        let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
+        let model = scene.instance_transform(i, time as f32);
+        let turn = Mat3::from_mat4(model).inverse().transpose();
+        for part in &mesh.parts {
+            let indices = &mesh.indices[part.first_index as usize..(part.first_index + part.index_count) as usize];
+            list.extend(indices.as_chunks::<3>().0.iter().map(|t| {
+                let v = t.map(|i| mesh.vertices[i as usize]);
+                Triangle {
+                    corners: v.map(|v| model.transform_point3(v.position.into()).as_dvec3()),
+                    normals: v.map(|v| (turn * Vec3::from_array(v.normal)).normalize_or_zero()),
+                    uv: v.map(|v| v.uv.into()),
+                    material: part.material,
+                }
+            }));
+        }
+    }
+    list
+}
