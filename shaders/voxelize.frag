@@ -15,6 +15,20 @@ layout(location = 3) flat in uint material;
 layout(location = 4) flat in uint axis;
 layout(location = 5) flat in vec3 corner[3];
 
+// Whether the triangle overlaps a cell, exactly wherever cells are boxes: in the coordinates of the cell itself.
+bool overlapsCell(ivec3 cell) {
+    if (WARP == WARP_NONE) return triangleOverlapsCell(corner[0], corner[1], corner[2], cell);
+    if (WARP == WARP_PERSPECTIVE) return true;
+    float dim = float(params.voxel_dim);
+    vec3 low = unwarp(vec3(cell) / dim), size = unwarp(vec3(cell + 1) / dim) - low;
+    vec3 c[3];
+    for (int i = 0; i < 3; i++) {
+        vec3 u = corner[i] / dim; // not warped outside the volume
+        c[i] = (mix(u, unwarp(clamp(u, 0.0, 1.0)), equal(clamp(u, 0.0, 1.0), u)) - low) / size;
+    }
+    return triangleOverlapsCell(c[0], c[1], c[2], ivec3(0));
+}
+
 void main() {
     float dim = float(params.voxel_dim);
     vec3 at = worldToVolume(volume.grid, position) * dim;
@@ -64,7 +78,7 @@ void main() {
         cell = column;
         cell[depth] = z;
         if (!inGrid(cell)) continue;
-        if (WARP == WARP_NONE && !triangleOverlapsCell(corner[0], corner[1], corner[2], cell)) continue;
+        if (!overlapsCell(cell)) continue;
         storeVoxel(cell, base.rgb, n, light);
     }
 }
