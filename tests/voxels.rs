@@ -369,10 +369,10 @@ const VOXELS: [&str; 4] = ["voxelIndex", "voxelColor", "voxelNormal", "voxelBord
 #[test]
 fn uneven_cells_are_compared_too() {
     let lab = lab(root());
-    // Least recall and precision. Dilated triangles are tested exactly only without a warp: with one they have extras.
+    // Least recall and precision.
     let modes = [
         ("msaa", ("conservative", "msaa"), 0.95, 0.999),
-        ("dilate", ("conservative", "dilate"), 0.98, 0.87),
+        ("dilate", ("conservative", "dilate"), 1.0, 1.0),
         ("tessellated", ("voxelizer", "tessellated"), 0.97, 0.999),
     ];
     for (warp, (title, mode, least, right)) in ["spline", "logistic"].into_iter().flat_map(|w| modes.map(|m| (w, m))) {
@@ -381,7 +381,7 @@ fn uneven_cells_are_compared_too() {
         let score = score_of(&mut session, &scene("cornell"));
         let (recall, precision) = (score.recall.unwrap(), score.precision.unwrap());
         println!("{warp}, {title}: recall {recall:.4}, precision {precision:.4}");
-        assert!(recall > least && precision > right, "{warp}, {title}");
+        assert!(recall >= least && precision >= right, "{warp}, {title}");
     }
     assert_clean(&lab);
 }
