@@ -136,6 +136,8 @@ fn control(ui: &mut Ui, param: &Param, value: &mut Value, changed: bool) -> Resp
         (Value::Int(v), _) => number(ui, name, |ui| ui.add(egui::DragValue::new(v).suffix(unit))),
         (Value::Float(v), _) if bounded => {
             let slider = egui::Slider::new(v, low..=high).suffix(unit).text(name).logarithmic(logarithmic);
+            // A value between the steps, or one that rounding moves, must not change because it is shown.
+            let slider = slider.clamping(egui::SliderClamping::Edits);
             ui.add(match param.step {
                 Some(step) => slider.step_by(step),
                 None => slider,

@@ -18,9 +18,12 @@ use folder::Folder;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Most dots whose places are told to scripts.
 const MAX_TOLD: usize = 2000;
+/// Least time between two tellings.
+const TOLD_AGE: Duration = Duration::from_millis(100);
 
 /// State of this tab.
 #[derive(Default)]
@@ -36,6 +39,7 @@ pub struct Chart {
     thumbnail: thumbnail::Thumbnail,
     /// What scripts were told last.
     told: Value,
+    told_at: Option<Instant>,
 }
 
 impl Workbench {
@@ -76,7 +80,7 @@ impl Workbench {
                 self.load_point(dot);
             }
         }
-        self.tell_dots(&data, &drawn.places, &differences);
+        self.tell_dots(ui, &data, &drawn.places, &differences);
     }
 
     fn folder_row(&mut self, ui: &mut Ui) {
@@ -176,7 +180,7 @@ impl Workbench {
     }
 
     /// Tells scripts where the dots are, in points.
-    fn tell_dots(&mut self, data: &Data, places: &[egui::Pos2], differences: &[&str]) {
+    fn tell_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[&str]) {
         if self.events.is_none() {
             return;
         }
@@ -187,7 +191,15 @@ impl Workbench {
         });
         let told = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric, "differs": differences,
             "dots": dots.collect::<Vec<_>>() });
-        if told != self.chart.told {
+        if told == self.chart.told {
+            return;
+        }
+        // The dots move as long as the diamond does.
+        let age = self.chart.told_at.map_or(TOLD_AGE, |t| t.elapsed());
+        if age < TOLD_AGE {
+            ui.ctx().request_repaint_after(TOLD_AGE - age);
+        } else {
+            self.chart.told_at = Some(Instant::now());
             self.chart.told = told.clone();
             self.event("dots", told);
         }
