@@ -107,7 +107,7 @@ fn a_sweep_that_is_killed_again_and_again_ends_as_one_that_is_not() {
 fn points_that_fail_or_warn_are_recorded_and_the_rest_goes_on() {
     let home = home();
     // No device has 3 samples; 10000 fragments are too few for 64 voxels.
-    let axes = "Settings(name: \"case\", values: { \"no device\": { \"voxel_samples\": 3 }, \"good\": {}, \
+    let axes = "Settings(name: \"case\", values: { \"no device\": { \"conservative\": \"msaa\", \"voxel_samples\": 3 }, \"good\": {}, \
                 \"overflow\": { \"voxel_dim\": 64, \"fragment_capacity\": 10000 } })";
     let file = sweep_file(home.path(), axes);
     let folder = home.path().join("out");

@@ -4,28 +4,7 @@
 // each sample.
 #ifndef CONE_GLSL
 #define CONE_GLSL
-#include "volume.glsl"
-
-uniform sampler3D voxelRadiance; // premultiplied by opacity; border clamped
-
-struct ConeOrigin {
-    vec3 position; // off the surface
-    vec3 normal; // geometric: the plane that cones must stay above
-    float height; // of position above the surface [m]
-    float reach; // half the local cell's extent across the surface [m]
-};
-
-// `geometric` keeps the start outside the voxels of its own surface; the thesis goes `bias` voxels along the
-// shading normal, which can point into the geometry.
-ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
-    float reach = cellReach(volume.grid, p, geometric);
-    if (params.cone_origin == CONE_ORIGIN_SHADING) {
-        vec3 start = p + params.bias * cellAlong(volume.grid, p, shading) * shading;
-        return ConeOrigin(start, geometric, max(dot(start - p, geometric), 0.0), reach);
-    }
-    float height = 2.0 * params.bias * reach;
-    return ConeOrigin(p + height * geometric, geometric, height, reach);
-}
+#include "cone_origin.glsl"
 
 // Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {

@@ -2,7 +2,7 @@
 // of an image's error is the voxels', the cones' and the filtering's.
 #ifndef EXACT_GLSL
 #define EXACT_GLSL
-#include "cone.glsl"
+#include "cone_origin.glsl"
 #include "frame.glsl"
 #include "random.glsl"
 

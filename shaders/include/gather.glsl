@@ -6,10 +6,14 @@
 #include "scene.glsl"
 #include "materials.glsl"
 #include "brdf.glsl"
-#include "cone.glsl"
 #include "cone_sets.glsl"
+#include "frame.glsl"
+#ifdef VOXEL_RAYS
 #include "exact.glsl"
 #include "ggx.glsl"
+#else
+#include "cone.glsl"
+#endif
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -51,9 +55,14 @@ vec3 coneRadiance(vec4 cone) {
 }
 
 vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number) {
-    return TRACE == TRACE_CONES ? traceCone(o, d, tan_half, steps) : traceExactCone(o, d, tan_half, number);
+#ifdef VOXEL_RAYS
+    return traceExactCone(o, d, tan_half, number);
+#else
+    return traceCone(o, d, tan_half, steps);
+#endif
 }
 
+#ifdef VOXEL_RAYS
 // Without cones: rays over the whole hemisphere, as dense as the cosine.
 vec4 diffuseRays(ConeOrigin o, vec3 n, vec3 face) {
     mat3 frame = frameOf(n);
@@ -79,10 +88,14 @@ vec3 specularRays(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     return sum / float(params.exact_rays);
 }
 
+#endif
+
 // rgb: mean radiance over the hemisphere, cosine-weighted; a: how open it is.
 vec4 diffuseCone(ConeOrigin o, Surface s, vec3 face) {
     vec3 n = params.cone_normal == CONE_NORMAL_MAPPED ? s.normal : face;
+#ifdef VOXEL_RAYS
     if (TRACE == TRACE_LOBE_RAYS) return diffuseRays(o, n, face);
+#endif
     ConeSet set = diffuseCones();
     mat3 frame = frameOf(n);
     float turn = 0.0;
@@ -104,7 +117,9 @@ vec4 diffuseCone(ConeOrigin o, Surface s, vec3 face) {
 
 // Radiance from the mirror direction.
 vec3 specularCone(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+#ifdef VOXEL_RAYS
     if (TRACE == TRACE_LOBE_RAYS) return specularRays(o, s, face, v);
+#endif
     vec3 d = reflect(-v, s.normal);
     d = normalize(d + face * max(0.02 - dot(d, face), 0.0)); // mapped normals may reflect into the surface
     // Half of a GGX lobe lies within 2 atan(alpha) of the mirror direction; the thesis takes 0.1 pi roughness
