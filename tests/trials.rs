@@ -169,7 +169,7 @@ fn resolution() {
     let finer: &[&str] = if device() == "llvmpipe" { &[] } else { &["256", "512"] };
     let mut rows = Vec::new();
     for dim in ["32", "64", "128"].iter().chain(finer) {
-        let (parts, truth) = run(&lab, &experiment("cornell", (96, 72), &[("voxel_dim", dim), QUICK]), 256);
+        let (parts, truth) = run(&lab, &experiment("cornell", (80, 60), &[("voxel_dim", dim), QUICK]), 256);
         let mean = parts["diffuse"].mean() / truth.parts["diffuse"].mean.mean();
         rows.push(row(format!("{dim} voxels"), "diffuse / reference", mean, (0.9, 1.1)));
         means.push(mean);
