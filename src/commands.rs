@@ -199,6 +199,15 @@ fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
     }
 }
 
+/// Writes what `--json` asks for.
+fn write_json(path: &std::path::Path, value: &impl serde::Serialize) -> Result<(), LabError> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| LabError::Request(e.to_string()))?;
+    crate::files::write_whole(path, text.as_bytes())
+        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
+    say!("wrote {}", path.display());
+    Ok(())
+}
+
 /// Every message of the validation layer is an error.
 fn validated(lab: &Lab) -> Result<(), LabError> {
     match lab.gpu.messages().len() {

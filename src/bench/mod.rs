@@ -95,7 +95,7 @@ pub fn bench(
             if !failed_before {
                 let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
                 let seed = gathered.seed.as_ref().or(last.as_ref());
-                match timed(lab, loaded, &point.experiment, &point.scene, frames, seed) {
+                match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], seed) {
                     Ok((mut session, times)) => {
                         gathered.rounds.push(spread(times.iter().map(|t| t.gpu_ms).collect()).median);
                         gathered.times.extend(times);

@@ -166,11 +166,9 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     comment(&output, &told, &best, &loaded.graph.params)?;
     let log = log(&found, goal, &subject, &told, &sizes, noise);
     let json = output.with_extension("json");
-    let text = serde_json::to_string_pretty(&log).map_err(|e| LabError::Request(e.to_string()))?;
-    crate::files::write_whole(&json, text.as_bytes())
-        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", json.display())))?;
+    super::write_json(&json, &log)?;
     say!("{}", told.join("\n"));
-    say!("wrote {} and {}", super::shown(&output).display(), super::shown(&json).display());
+    say!("wrote {}", super::shown(&output).display());
     let within = found.trial.bounded <= goal.bound();
     super::validated(&lab)?;
     if within { Ok(()) } else { Err(LabError::Request("no setting that was tried is within the bound".into())) }

@@ -115,10 +115,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         say!("wrote {}", path.display());
     }
     if let Some(path) = &args.json {
-        let text = serde_json::to_string_pretty(&stats).map_err(|e| LabError::Request(e.to_string()))?;
-        crate::files::write_whole(path, text.as_bytes())
-            .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
-        say!("wrote {}", path.display());
+        super::write_json(path, &stats)?;
     }
     drop(session);
     super::validated(&lab)

@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use crate::lab::{Home, Lab, LabError, parts_of};
-use crate::metrics::{Linear, relmse};
+use crate::metrics::{Linear, relative_distance, relmse};
 use crate::reference::{Goal, Reference};
 use clap::Args;
 use serde::Serialize;
@@ -97,10 +97,7 @@ pub fn run(args: &SplitArgs) -> Result<(), LabError> {
         for (part, light) in &parts {
             let Some(truth) = reference.parts.get(part) else { continue };
             let fail = |e: crate::metrics::MetricError| LabError::Request(format!("part '{part}': {e}"));
-            let adds = match before.get(part) {
-                Some(y) => added(light, y, &truth.mean),
-                None => relmse(light, &truth.mean).map_err(fail)?,
-            };
+            let adds = relative_distance(light, before.get(part).unwrap_or(&truth.mean), &truth.mean).map_err(fail)?;
             errors.insert(part.clone(), [relmse(light, &truth.mean).map_err(fail)?, adds]);
         }
         steps.push(Step { title: step.title.clone(), parts: errors });
@@ -118,20 +115,9 @@ pub fn run(args: &SplitArgs) -> Result<(), LabError> {
             noise: reference.parts.iter().map(|(n, p)| (n.clone(), p.noise)).collect(),
             steps,
         };
-        let text = serde_json::to_string_pretty(&split).map_err(|e| LabError::Request(e.to_string()))?;
-        crate::files::write_whole(path, text.as_bytes())
-            .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
-        say!("wrote {}", path.display());
+        super::write_json(path, &split)?;
     }
     super::validated(&lab)
-}
-
-/// mean (x - y)^2 / (r^2 + .01): the step from y to x in the measure of relMSE.
-fn added(x: &Linear, y: &Linear, r: &Linear) -> f64 {
-    let texels = x.rgb.iter().flatten().zip(y.rgb.iter().flatten()).zip(r.rgb.iter().flatten());
-    let sum: f64 =
-        texels.map(|((x, y), r)| (f64::from(*x) - f64::from(*y)).powi(2) / (f64::from(*r).powi(2) + 1e-2)).sum();
-    sum / (3 * r.rgb.len().max(1)) as f64
 }
 
 fn print(reference: &Reference, steps: &[Step]) {

@@ -118,10 +118,7 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
     };
     table::print(&report);
     if let Some(path) = &args.json {
-        let text = serde_json::to_string_pretty(&report).map_err(|e| LabError::Request(e.to_string()))?;
-        crate::files::write_whole(path, text.as_bytes())
-            .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
-        say!("wrote {}", path.display());
+        super::write_json(path, &report)?;
     }
     super::validated(&lab)
 }

@@ -4,7 +4,7 @@ use super::search::Trial;
 use super::{Axis, at};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, Seed};
-use crate::measure::Frames;
+use crate::measure::{Frames, timed};
 use crate::metrics::{Compared, Kind, Linear, relmse};
 use crate::reference::Reference;
 use crate::scene::Scene;
@@ -121,21 +121,10 @@ impl<'a> Evaluator<'a> {
 
     fn measure(&mut self, experiment: &Experiment) -> Result<Option<Trial>, LabError> {
         let s = self.subject;
-        let graph = &s.loaded.graph;
-        let shown = graph.output.clone().or_else(|| graph.hdr.clone());
         // The linear picture is made for the display anyway; other parts cost time to write, and get frames of their own.
-        let together = graph.hdr.as_ref() == Some(&self.texture);
-        let mut wanted: Vec<String> = shown.into_iter().collect();
-        if together {
-            wanted.push(self.texture.clone());
-        }
-        let mut session = s.lab.build(experiment, s.loaded, s.scene.clone(), wanted, self.seed.as_ref())?;
-        let mut times = Vec::new();
-        for _ in 0..s.frames.warmup + s.frames.count {
-            times.extend(session.frame(0.0)?);
-        }
-        times.extend(session.finish()?);
-        let times = times.split_off(times.len().saturating_sub(s.frames.count));
+        let together = s.loaded.graph.hdr.as_ref() == Some(&self.texture);
+        let beside = if together { std::slice::from_ref(&self.texture) } else { &[] };
+        let (mut session, times) = timed(s.lab, s.loaded, experiment, &s.scene, s.frames, beside, self.seed.as_ref())?;
         let ms = spread(times.iter().map(|t| t.gpu_ms).collect()).median;
         if let Some(message) = session.failed_checks()?.into_iter().next() {
             self.refused = Some(message);

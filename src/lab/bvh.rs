@@ -40,9 +40,10 @@ pub(super) struct Hierarchy {
 /// Stack of the traversal in `trace.glsl`, which holds one node a level.
 const MAX_DEPTH: usize = 64;
 
-/// Bytes that the nodes of so many triangles can take in any pose.
-pub(super) fn node_capacity(triangles: usize) -> u64 {
-    (2 * triangles.max(1) * size_of::<Bvh2Node>()) as u64
+/// Bytes that the nodes and the triangles of so many triangles can take in any pose.
+pub(super) fn capacity(triangles: usize) -> (usize, usize) {
+    let triangles = triangles.max(1);
+    (2 * triangles * size_of::<Bvh2Node>(), triangles * size_of::<TriangleBlock>())
 }
 
 /// Builds the hierarchy; `model` is the pose of an instance. Costs about a second a million triangles.

@@ -129,15 +129,9 @@ impl SceneGpu {
             ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
         ]);
         if rays {
-            let found = hierarchy(scene, &instance_blocks, &gpu.info.name)?;
-            // Room for the nodes of any pose.
-            let mut nodes = found.nodes;
-            nodes.resize(
-                nodes.len().max(usize::try_from(bvh::node_capacity(info.triangle_count as usize)).unwrap_or(0)),
-                0,
-            );
-            buffers.insert("bvhNodes", upload.buffer("bvhNodes", &nodes, storage)?);
-            buffers.insert("bvhTriangles", upload.buffer("bvhTriangles", &found.triangles, storage)?);
+            let masked = |d: &DrawBlock| is_masked(scene, d);
+            let soup = Soup { positions: &positions, indices: &indices, draws: &draws, masked: &masked };
+            buffers.extend(ray_buffers(&mut upload, hierarchy(&soup, &instance_blocks, &gpu.info.name)?, &info)?);
         }
         let limit = u64::from(gpu.info.limits.max_storage_buffer_range);
         if let Some((name, buffer)) = buffers.iter().find(|(_, b)| b.size > limit) {
@@ -206,8 +200,13 @@ impl SceneGpu {
             ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
             ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
         ];
-        upload.finish()?;
         resources.buffers.extend(own);
+        if self.has_rays() {
+            // The other program moves its own instances, and the hierarchy with them.
+            let found = scene_hierarchy(scene, &sent, &gpu.info.name)?;
+            resources.buffers.extend(ray_buffers(&mut upload, found, &info)?);
+        }
+        upload.finish()?;
         Ok(SceneGpu { resources, camera, bytes: self.bytes, info, instances, sent })
     }
 
@@ -225,7 +224,7 @@ impl SceneGpu {
         let mut list = vec![(self.instances.clone(), bytemuck::cast_slice(&self.sent).to_vec())];
         let rays = [self.resources.buffers.get("bvhNodes"), self.resources.buffers.get("bvhTriangles")];
         if let [Some(nodes), Some(triangles)] = rays {
-            let found = hierarchy(scene, &self.sent, "this scene")?;
+            let found = scene_hierarchy(scene, &self.sent, "this device")?;
             list.push((nodes.clone(), found.nodes));
             list.push((triangles.clone(), found.triangles));
         }
@@ -253,13 +252,35 @@ impl SceneGpu {
     }
 }
 
-/// The hierarchy over all triangles in the pose of these instances.
-fn hierarchy(scene: &Scene, instances: &[InstanceBlock], device: &str) -> Result<bvh::Hierarchy> {
+/// The hierarchy over triangles in the pose of these instances.
+fn hierarchy(soup: &Soup<'_>, instances: &[InstanceBlock], device: &str) -> Result<bvh::Hierarchy> {
+    let model = |i: u32| instances.get(i as usize).map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model));
+    bvh::build(soup, &model, device)
+}
+
+/// [`hierarchy`] over all triangles of a scene that was uploaded before.
+fn scene_hierarchy(scene: &Scene, instances: &[InstanceBlock], device: &str) -> Result<bvh::Hierarchy> {
     let (positions, _, indices, first_index) = vertices(scene);
     let draws = draws(scene, &first_index);
     let soup = Soup { positions: &positions, indices: &indices, draws: &draws, masked: &|d| is_masked(scene, d) };
-    let model = |i: u32| instances.get(i as usize).map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model));
-    bvh::build(&soup, &model, device)
+    hierarchy(&soup, instances, device)
+}
+
+/// The buffers of a hierarchy, with room for that of any other pose.
+fn ray_buffers(
+    upload: &mut Upload,
+    found: bvh::Hierarchy,
+    info: &SceneInfoBlock,
+) -> Result<[(&'static str, Arc<Buffer>); 2]> {
+    let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    let bvh::Hierarchy { mut nodes, mut triangles } = found;
+    let (most_nodes, most_triangles) = bvh::capacity(info.triangle_count as usize);
+    nodes.resize(nodes.len().max(most_nodes), 0);
+    triangles.resize(triangles.len().max(most_triangles), 0);
+    Ok([
+        ("bvhNodes", upload.buffer("bvhNodes", &nodes, storage)?),
+        ("bvhTriangles", upload.buffer("bvhTriangles", &triangles, storage)?),
+    ])
 }
 
 fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {

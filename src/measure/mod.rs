@@ -6,7 +6,6 @@ use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, Loaded, Seed, Session};
 use crate::metrics::{Compared, Kind, Linear, Scores};
-use crate::picture::to_linear;
 use crate::reference::Reference;
 use crate::scene::Scene;
 use crate::stats::{self, Stats};
@@ -90,7 +89,7 @@ pub fn measure(
     references: &[(u32, Arc<Reference>)],
 ) -> Result<Measured, LabError> {
     let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
-    let (mut session, times) = timed(lab, &loaded, experiment, scene, frames, warm.timed.as_ref())?;
+    let (mut session, times) = timed(lab, &loaded, experiment, scene, frames, &[], warm.timed.as_ref())?;
     let warnings = session.failed_checks()?;
     let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, frames.warmup, warnings);
     let picture = loaded.graph.output.as_ref().map(|name| session.texels(name, 0, 0)).transpose()?;
@@ -122,7 +121,8 @@ pub fn measure(
     Ok(Measured { point, picture, error_map })
 }
 
-/// Runs an experiment and keeps the times of its last frames; only what the picture needs is computed.
+/// Runs an experiment and keeps the times of its last frames; only what the picture needs, and `beside` it these
+/// textures, is computed.
 ///
 /// # Errors
 /// Everything that can be wrong with the experiment; the device was lost.
@@ -132,10 +132,12 @@ pub fn timed(
     experiment: &Experiment,
     scene: &Arc<Scene>,
     frames: Frames,
+    beside: &[String],
     seed: Option<&Seed>,
 ) -> Result<(Session, Vec<FrameTimes>), LabError> {
     let graph = &loaded.graph;
-    let wanted = graph.output.clone().or_else(|| graph.hdr.clone()).into_iter().collect();
+    let shown = graph.output.clone().or_else(|| graph.hdr.clone());
+    let wanted = shown.into_iter().chain(beside.iter().cloned()).collect();
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, seed)?;
     let mut times = Vec::new();
     for _ in 0..frames.warmup + frames.count {
@@ -154,9 +156,8 @@ fn parts_of(
     loaded: &Loaded,
     scene: &Arc<Scene>,
     frames: Frames,
-) -> Result<Vec<(String, Linear)>, LabError> {
-    let parts = &loaded.graph.parts;
-    let wanted = parts.iter().map(|p| p.1.clone()).collect();
+) -> Result<BTreeMap<String, Linear>, LabError> {
+    let wanted = loaded.graph.parts.iter().map(|p| p.1.clone()).collect();
     // The timed session's scene is on the device already: another upload of it would cost memory.
     let seed = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, seed)?;
@@ -164,10 +165,7 @@ fn parts_of(
         session.frame(0.0)?;
     }
     session.finish()?;
-    let mut out = Vec::new();
-    for (part, texture) in parts {
-        out.push((part.clone(), to_linear(&session.texels(texture, 0, 0)?)));
-    }
+    let out = session.parts()?;
     warm.scored = Some((scene.clone(), session.lend()));
     Ok(out)
 }

@@ -28,7 +28,7 @@ pub struct MapFile {
 pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
     let pairs = || compared.test.rgb.iter().zip(&compared.reference.rgb);
     let relative: Vec<f32> = pairs()
-        .map(|(x, r)| (x.iter().zip(r).map(|(x, r)| relative_square(*x, *r)).sum::<f64>() / 3.0) as f32)
+        .map(|(x, r)| (x.iter().zip(r).map(|(x, r)| relative_square(*x, *r, *r)).sum::<f64>() / 3.0) as f32)
         .collect();
     let difference: Vec<f32> = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32).collect();
     // What is dark is a known part of the mean.

@@ -37,14 +37,24 @@ impl Linear {
     }
 }
 
-/// mean (x - r)^2 / (r^2 + .01) alone, for who needs no more.
+/// mean (x - r)^2 / (r^2 + .01) alone, for who needs no more. Pixels that are no number make it none.
 ///
 /// # Errors
 /// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
 pub fn relmse(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
-    check(test, reference)?;
-    let pairs = test.rgb.iter().flatten().zip(reference.rgb.iter().flatten());
-    Ok(pairs.map(|(x, r)| sums::relative_square(*x, *r)).sum::<f64>() / (3 * test.rgb.len()) as f64)
+    relative_distance(test, reference, reference)
+}
+
+/// mean (x - y)^2 / (r^2 + .01): how far x is from y in the measure of relMSE.
+///
+/// # Errors
+/// As [`relmse`].
+pub fn relative_distance(x: &Linear, y: &Linear, reference: &Linear) -> Result<f64, MetricError> {
+    check(x, reference)?;
+    check(y, reference)?;
+    let texels = x.rgb.iter().flatten().zip(y.rgb.iter().flatten()).zip(reference.rgb.iter().flatten());
+    let sum: f64 = texels.map(|((x, y), r)| sums::relative_square(*x, *y, *r)).sum();
+    Ok(sum / (3 * x.rgb.len()) as f64)
 }
 
 /// What a picture's numbers are, which says how FLIP shows it to its observer.

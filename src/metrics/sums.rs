@@ -25,10 +25,10 @@ pub(super) struct Sums {
     hdr_flip: f64,
 }
 
-/// Squared error of a channel, relative to the reference's square.
-pub(super) fn relative_square(x: f32, r: f32) -> f64 {
-    let (x, r) = (f64::from(x), f64::from(r));
-    (x - r) * (x - r) / (r * r + EPSILON)
+/// Squared distance of two values of a channel, relative to the reference's square.
+pub(super) fn relative_square(x: f32, y: f32, r: f32) -> f64 {
+    let (x, y, r) = (f64::from(x), f64::from(y), f64::from(r));
+    (x - y) * (x - y) / (r * r + EPSILON)
 }
 
 pub(super) fn sum(compared: &Compared, mask: Option<&[bool]>) -> Sums {
@@ -60,7 +60,7 @@ impl Sums {
         self.finite += 1;
         for (&x32, &r32) in x.iter().zip(&r) {
             let (x, r) = (f64::from(x32), f64::from(r32));
-            self.relative += relative_square(x32, r32);
+            self.relative += relative_square(x32, r32, r32);
             self.square += (x - r) * (x - r);
             self.test += x;
             self.reference += r;
