@@ -8,6 +8,7 @@ use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
 use conelab::lab::{Home, Lab};
 use conelab::reference::{Goal, Reference, find, gather};
 use conelab::scene::Scene;
+use sha2::{Digest, Sha256};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -263,7 +264,7 @@ fn a_killed_run_loses_no_kept_sample() {
     assert_eq!(files(home.path()), files(calm.path()));
 }
 
-/// Files of the only reference below a home, by name with their bytes.
+/// Files of the only reference below a home, by name with the SHA-256 of their bytes.
 fn files(home: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = home.join("captures/reference");
     let only = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().path()).collect::<Vec<_>>();
@@ -271,7 +272,7 @@ fn files(home: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut files: Vec<(PathBuf, Vec<u8>)> = std::fs::read_dir(&only[0])
         .unwrap()
         .map(|f| f.unwrap().path())
-        .map(|f| (f.strip_prefix(home).unwrap().to_path_buf(), std::fs::read(&f).unwrap()))
+        .map(|f| (f.strip_prefix(home).unwrap().to_path_buf(), Sha256::digest(std::fs::read(&f).unwrap()).to_vec()))
         .collect();
     files.sort();
     files
