@@ -2,16 +2,15 @@
 #extension GL_GOOGLE_include_directive : require
 // Lists the cells of the shown level that hold anything, one cube each.
 #define CUBES_ACCESS
+#include "params.glsl"
 #include "voxel_cubes.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
-uniform sampler3D level; // the mip of voxelRadiance that is shown
-
 void main() {
-    uvec3 size = uvec3(textureSize(level, 0));
+    uvec3 size = uvec3(shownCells());
     uvec3 cell = gl_GlobalInvocationID;
-    if (any(greaterThanEqual(cell, size)) || texelFetch(level, ivec3(cell), 0).a <= 0.0) return;
+    if (any(greaterThanEqual(cell, size)) || shownTexel(ivec3(cell), 0).a <= 0.0) return;
     uint i = atomicAdd(voxelCubes.found, 1u);
     if (i >= voxelCubes.cells.length()) return;
     voxelCubes.cells[i] = cell.x + size.x * (cell.y + size.y * cell.z);

@@ -9,11 +9,10 @@
 layout(location = 0) flat out vec4 color;
 layout(location = 1) out vec3 position;
 
-uniform sampler3D level; // the mip of voxelRadiance that is shown
-uniform sampler3D shown; // the same mip of voxelAttribute
+uniform sampler3D shown; // the shown level of voxelAttribute
 
-vec3 cellColor(ivec3 cell, vec3 center) {
-    vec4 radiance = texelFetch(level, cell, 0);
+vec3 cellColor(ivec3 cell, vec3 center, int face) {
+    vec4 radiance = shownTexel(cell, face);
     if (params.voxel_view == VOXEL_VIEW_RADIANCE) return radiance.rgb / max(radiance.a, 1e-4);
     if (params.voxel_view == VOXEL_VIEW_ALPHA) return vec3(radiance.a);
     if (params.voxel_view == VOXEL_VIEW_DENSITY) return densityColor(volume.grid, volumeToWorld(volume.grid, center));
@@ -24,13 +23,13 @@ vec3 cellColor(ivec3 cell, vec3 center) {
 
 void main() {
     const int corners[6] = int[6](0, 1, 2, 2, 1, 3);
-    uvec3 size = uvec3(textureSize(level, 0));
+    uvec3 size = uvec3(shownCells());
     uint number = voxelCubes.cells[gl_InstanceIndex];
     uvec3 cell = uvec3(number % size.x, number / size.x % size.y, number / (size.x * size.y));
     int face = gl_VertexIndex / 6, corner = corners[gl_VertexIndex % 6];
     vec3 at = vec3(float(corner & 1), float(corner >> 1), float(face & 1));
     at = face < 2 ? at.zxy : face < 4 ? at.yzx : at.xyz;
     position = volumeToWorld(volume.grid, (vec3(cell) + at) / vec3(size));
-    color = vec4(cellColor(ivec3(cell), (vec3(cell) + 0.5) / vec3(size)), 1.0);
+    color = vec4(cellColor(ivec3(cell), (vec3(cell) + 0.5) / vec3(size), face), 1.0);
     gl_Position = camera.view_projection * vec4(position, 1.0);
 }

@@ -254,15 +254,33 @@ fn every_view_shows_something() {
 #[test]
 fn cubes_stand_where_their_level_has_opacity() {
     let lab = lab(root());
-    for (dim, kernel, mip) in [(32, "box", 0), (32, "box", 2), (48, "box", 5), (32, "tent", 2)] {
-        let what = format!("level {mip} of {dim}, {kernel}");
+    for (dim, kernel, mip, directional) in [
+        (32, "box", 0, false),
+        (32, "box", 2, false),
+        (48, "box", 5, false),
+        (32, "tent", 2, false),
+        (32, "box", 3, true),
+    ] {
+        let what = format!("level {mip} of {dim}, {kernel}, directional {directional}");
         let (size, level) = (dim.to_string(), mip.to_string());
-        let settings = [("voxel_dim", size.as_str()), ("filter_kernel", kernel), ("voxel_view_mip", &level)];
+        let directions = directional.to_string();
+        let settings = [
+            ("voxel_dim", size.as_str()),
+            ("filter_kernel", kernel),
+            ("voxel_view_mip", &level),
+            ("directional", &directions),
+        ];
         let view = [("view", "voxels"), ("voxel_view", "color"), QUICK];
         let experiment = experiment("cornell", (64, 48), &[&settings[..], &view[..]].concat());
-        let wanted = ["display", "voxelCubes", "voxelRadiance", "voxelAttribute", "voxelColor"];
+        let wanted = ["display", "voxelCubes", "voxelRadiance", "voxelFaces", "voxelAttribute", "voxelColor"];
         let mut session = frames(&lab, &experiment, &wanted, 1);
-        let opacity = floats(&mut session, "voxelRadiance", mip);
+        // Directional levels: what the first block has any opacity for, so have the others.
+        let (texture, mip_of, width) =
+            if directional && mip > 0 { ("voxelFaces", mip - 1, 6) } else { ("voxelRadiance", mip, 1) };
+        let texels = floats(&mut session, texture, mip_of);
+        let cells = dim >> mip;
+        let row = |i: usize| i / cells * cells * width + i % cells;
+        let opacity: Vec<[f32; 4]> = (0..cells * cells * cells).map(|i| texels[row(i)]).collect();
         let expected: BTreeSet<u32> = (0u32..).zip(&opacity).filter(|(_, t)| t[3] > 0.0).map(|(i, _)| i).collect();
         let buffer = session.graph.buffers.iter().position(|b| b.0 == "voxelCubes").unwrap();
         let bytes = session.program.read_buffer(buffer).unwrap();

@@ -5,11 +5,24 @@
 #ifndef CONE_GLSL
 #define CONE_GLSL
 #include "cone_origin.glsl"
+#include "faces.glsl"
+
+uniform sampler3D voxelFaces; // levels 1 and up, by direction; unused unless DIRECTIONAL
+
+// The voxels around u as a cone along d (unit length, in cells) finds them at a level.
+vec4 sampleCone(vec3 u, vec3 d, float lod) {
+    if (!DIRECTIONAL) return textureLod(voxelRadiance, u, lod);
+    float cells = float(textureSize(voxelFaces, 0).y);
+    if (lod >= 1.0) return sampleFaces(voxelFaces, u, d, lod - 1.0, cells);
+    vec4 fine = textureLod(voxelRadiance, u, 0.0);
+    return lod <= 0.0 ? fine : mix(fine, sampleFaces(voxelFaces, u, d, 0.0, cells), lod);
+}
 
 // Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
     Grid g = volume.grid;
-    float last = float(textureQueryLevels(voxelRadiance) - 1);
+    // Blocks of faces are level beside level as long as their sizes halve.
+    float last = float(DIRECTIONAL ? min(params.voxel_mips - 1, findLSB(params.voxel_dim)) : textureQueryLevels(voxelRadiance) - 1);
     float v0 = cellAlong(g, o.position, d), v = v0;
     float rise = max(dot(d, o.normal), 0.0);
     float s = params.cone_height * v0;
@@ -36,7 +49,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
         float cell = v * exp2(lod);
         float ds = max(CONE_STEP == CONE_STEP_RADIUS ? radius : params.step_factor * cell, 0.05 * v);
 
-        vec4 texel = textureLod(voxelRadiance, u, lod);
+        vec4 texel = sampleCone(u, gridDirection(g, p, d), lod);
         if (texel.a > 1e-5) {
             float remaining = 1.0 - alpha;
             float a;

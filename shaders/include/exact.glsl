@@ -6,9 +6,11 @@
 #include "frame.glsl"
 #include "random.glsl"
 
+vec2 pixelCentre();
+
 // A turn of the sample pattern for each pixel, so that few rays look like noise and not like bands.
 vec2 exactShift(uint cone) {
-    Random random = Random(uvec4(uvec2(gl_FragCoord.xy), cone, 0u));
+    Random random = Random(uvec4(uvec2(pixelCentre()), cone, 0u));
     return next4(random).xy;
 }
 

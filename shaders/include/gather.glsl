@@ -1,10 +1,9 @@
-// The surface under a fragment of forward.vert, and the light that its cones gather (thesis, Section 4.5.2).
+// The light that a surface's cones gather (thesis, Section 4.5.2).
 // With CONE_RECORD defined, recordCone(number) is called before each cone: 0 is the specular one, 1 the
 // diffuse one on the normal, then the ring.
 #ifndef GATHER_GLSL
 #define GATHER_GLSL
 #include "scene.glsl"
-#include "materials.glsl"
 #include "brdf.glsl"
 #include "cone_sets.glsl"
 #include "frame.glsl"
@@ -15,37 +14,8 @@
 #include "cone.glsl"
 #endif
 
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 2) in vec4 tangent;
-layout(location = 3) in vec2 uv;
-layout(location = 4) flat in uint material;
-
-// The triangle's normal on the viewer's side. Has derivatives: call it before anything returns.
-vec3 faceNormal(vec3 v) {
-    vec3 face = cross(dFdx(position), dFdy(position));
-    face = dot(face, face) > 0.0 ? normalize(face) : normalize(normal);
-    return dot(face, v) < 0.0 ? -face : face;
-}
-
-vec3 shadingNormal(Material m, Gradient g, vec3 face) {
-    vec3 n = normalize(normal);
-    float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
-    if (m.normal_texture != NO_TEXTURE) {
-        vec3 t = tangentNormal(m, uv, g);
-        vec3 x = tangent.xyz - n * dot(n, tangent.xyz);
-        if (dot(x, x) > 1e-12) {
-            x = normalize(x);
-            n = normalize(mat3(x, cross(n, x) * tangent.w, n) * t);
-        }
-    }
-    return n * side;
-}
-
-Surface surfaceAt(Material m, Gradient g, vec3 face) {
-    vec2 rm = roughnessMetallic(m, uv, g);
-    return makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y);
-}
+// Centre of the pixel that is shaded: defined by the shader.
+vec2 pixelCentre();
 
 // What a cone contributes: its radiance, the sky where it escaped, and the thesis's occlusion factor.
 vec3 coneRadiance(vec4 cone) {
@@ -100,7 +70,7 @@ vec4 diffuseCone(ConeOrigin o, Surface s, vec3 face) {
     mat3 frame = frameOf(n);
     float turn = 0.0;
     if (params.cone_rotate) // interleaved gradient noise (Jimenez 2014): trades banding for noise
-        turn = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+        turn = fract(52.9829189 * fract(dot(pixelCentre(), vec2(0.06711056, 0.00583715))));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < set.count; i++) {
         float angle = 2.0 * PI * (float(i) + turn) / float(set.count - 1);

@@ -108,6 +108,13 @@ float cellAlong(Grid g, vec3 p, vec3 d) {
     return 1.0 / max(length(inverse(cellAxes(g, p)) * d), 1e-6);
 }
 
+// The unit vector d in cells at p: unit length.
+vec3 gridDirection(Grid g, vec3 p, vec3 d) {
+    if (WARP == WARP_NONE) return normalize(d / g.cell);
+    if (WARP != WARP_PERSPECTIVE) return normalize(d * warpSlope(clamp((p - g.minimum) / g.size, 0.0, 1.0)) / g.cell);
+    return normalize(inverse(cellAxes(g, p)) * d);
+}
+
 // Half the extent of a cell across a plane of normal n: a plane through the cell's centre moved by this
 // along n just leaves the cell [m].
 float cellReach(Grid g, vec3 p, vec3 n) {

@@ -14,4 +14,21 @@ layout(std430) CUBES_ACCESS buffer VoxelCubes {
     uint cells[]; // x + size * (y + size * z)
 } voxelCubes;
 
+uniform sampler3D level; // the mip of voxelRadiance that is shown; of directional levels, the first
+uniform sampler3D faces; // the mip of voxelFaces that is shown, if one is
+
+bool showsFaces() {
+    return DIRECTIONAL && params.voxel_view_mip > 0;
+}
+
+// Cells along an edge of the shown level.
+int shownCells() {
+    return showsFaces() ? textureSize(faces, 0).y : textureSize(level, 0).y;
+}
+
+// What rays that meet the cube's face 0 to 5 (-x, x, -y, y, -z, z) find in the cell.
+vec4 shownTexel(ivec3 cell, int face) {
+    return showsFaces() ? texelFetch(faces, ivec3(cell.x + face * shownCells(), cell.yz), 0) : texelFetch(level, cell, 0);
+}
+
 #endif

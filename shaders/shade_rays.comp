@@ -3,4 +3,4 @@
 // Final shading by rays through the voxels, in place of cones. A shader of its own: its code would slow every change
 // of the other down.
 #define VOXEL_RAYS
-#include "forward.glsl"
+#include "shade_pixels.glsl"

@@ -1,0 +1,56 @@
+#ifndef FILTER_FACES_GLSL
+#define FILTER_FACES_GLSL
+// Filtered levels that know directions (Crassin et al. 2011, Section 6): each cell has what rays along +x, -x, +y, -y,
+// +z and -z meet in it, composited front to back in pairs and averaged over the four columns. Six blocks side by side.
+#include "params.glsl"
+#include "faces.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+#ifdef FIRST_LEVEL
+uniform sampler3D voxelRadiance;
+uniform sampler3D voxelNormal;
+#else
+uniform sampler3D src; // one mip of the faces
+#endif
+uniform writeonly image3D dst;
+
+// What rays along `way` see of a texel of the finer level.
+vec4 child(ivec3 cell, int face, vec3 way, int dim) {
+    cell = min(cell, ivec3(dim - 1)); // odd sizes: the last cell twice
+#ifdef FIRST_LEVEL
+    vec4 texel = texelFetch(voxelRadiance, cell, 0);
+    if (texel.a == 0.0) return texel;
+    // A surface shines to its front. Where normals disagree (thin sheets, corners) both sides may be lit.
+    vec4 packed = texelFetch(voxelNormal, cell, 0);
+    float behind = clamp(dot(packed.rgb * 2.0 - 1.0, way), 0.0, 1.0) * packed.a;
+    return vec4(texel.rgb * (1.0 - behind), texel.a);
+#else
+    return texelFetch(src, ivec3(cell.x + face * dim, cell.yz), 0);
+#endif
+}
+
+void main() {
+    ivec3 size = imageSize(dst);
+    ivec3 at = ivec3(gl_GlobalInvocationID);
+    int dim = size.y;
+    if (any(greaterThanEqual(at, size)) || at.x >= 6 * dim) return;
+    int face = at.x / dim, axis = face / 2;
+    ivec3 cell = ivec3(at.x - face * dim, at.yz);
+    vec3 way = faceDirection(face);
+#ifdef FIRST_LEVEL
+    int fine = textureSize(voxelRadiance, 0).y;
+#else
+    int fine = textureSize(src, 0).y;
+#endif
+    ivec3 along = ivec3(abs(way)), u = along.yzx, v = along.zxy;
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        ivec3 column = 2 * cell + (i & 1) * u + (i >> 1) * v;
+        vec4 first = child(column, face, way, fine), second = child(column + along, face, way, fine);
+        sum += way[axis] > 0.0 ? first + (1.0 - first.a) * second : second + (1.0 - second.a) * first;
+    }
+    imageStore(dst, at, 0.25 * sum);
+}
+
+#endif

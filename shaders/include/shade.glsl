@@ -1,0 +1,34 @@
+// Final shading (thesis, Algorithm 3). Indirect diffuse light is albedo * sum_c w_c L_c with L_c the mean radiance of a
+// cone, sky included where it escapes.
+#ifndef SHADE_GLSL
+#define SHADE_GLSL
+#include "gather.glsl"
+#include "shadow.glsl"
+#include "direct.glsl"
+
+// Radiance towards the viewer by contribution, without emission.
+struct Shading {
+    vec3 direct;
+    vec3 diffuse; // indirect
+    vec3 specular; // indirect
+    float open; // share of the hemisphere that is, cosine-weighted
+};
+
+float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
+    return shadowVisibility(light, p, face, to_light);
+}
+
+// face: the geometric normal, v: to the viewer; both on one side.
+Shading shade(Surface s, vec3 p, vec3 face, vec3 v) {
+    Shading result;
+    result.direct = directLight(s, p, face, v);
+    ConeOrigin o = coneOrigin(p, face, s.normal);
+    vec4 hemisphere = diffuseCone(o, s, face);
+    result.diffuse = s.albedo * hemisphere.rgb * params.indirect_scale;
+    result.specular = params.specular_cone ? specularCone(o, s, face, v) * params.indirect_scale : vec3(0.0);
+    result.open = hemisphere.a;
+    if (params.multiply_occlusion == MULTIPLY_OCCLUSION_ALL) result.direct *= hemisphere.a;
+    return result;
+}
+
+#endif
