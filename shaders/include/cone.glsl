@@ -13,9 +13,10 @@ uniform sampler3D voxelFaces; // levels 1 and up, by direction; unused unless DI
 vec4 sampleCone(vec3 u, vec3 d, float lod) {
     if (!DIRECTIONAL) return textureLod(voxelRadiance, u, lod);
     float cells = float(textureSize(voxelFaces, 0).y);
-    if (lod >= 1.0) return sampleFaces(voxelFaces, u, d, lod - 1.0, cells);
+    vec3 w = OPACITY == OPACITY_COVERAGE ? abs(d) : d * d;
+    if (lod >= 1.0) return sampleFaces(voxelFaces, u, d, w, lod - 1.0, cells);
     vec4 fine = textureLod(voxelRadiance, u, 0.0);
-    return lod <= 0.0 ? fine : mix(fine, sampleFaces(voxelFaces, u, d, 0.0, cells), lod);
+    return lod <= 0.0 ? fine : mix(fine, sampleFaces(voxelFaces, u, d, w, 0.0, cells), lod);
 }
 
 // Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
@@ -57,7 +58,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
             if (OPACITY == OPACITY_LAYERS) a = remaining * (1.0 - pow(1.0 - min(texel.a, 1.0), ds / v));
             // Coverage: surfaces one voxel thick that fill this share of the volume cover this much of the
             // cone, side by side. Thin walls stay closed at every level; corners darken too much.
-            else if (OPACITY == OPACITY_COVERAGE) a = min(texel.a * ds / v, remaining);
+            else if (OPACITY == OPACITY_COVERAGE) a = min(texel.a * ds / (DIRECTIONAL ? cell : v), remaining);
             // Cell: one layer a mip cell, corrected for the step alone; thin walls leak.
             else if (OPACITY == OPACITY_CELL) a = remaining * (1.0 - pow(1.0 - min(texel.a, 1.0), ds / cell));
             else a = remaining * texel.a;

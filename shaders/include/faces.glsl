@@ -15,10 +15,8 @@ vec4 sampleFace(sampler3D faces, vec3 u, int face, float level, float cells) {
     return textureLod(faces, vec3((float(face) + clamp(u.x, margin, 1.0 - margin)) / 6.0, u.yz), level);
 }
 
-// What a ray along d (unit length, in cells) meets: the three faces that it crosses, by the squares of its parts, which
-// sum to 1. `cells` along an edge of the first level.
-vec4 sampleFaces(sampler3D faces, vec3 u, vec3 d, float level, float cells) {
-    vec3 w = d * d;
+// What a ray finds: the three faces that it crosses, by weights `w`. `cells` along an edge of the first level.
+vec4 sampleFaces(sampler3D faces, vec3 u, vec3 d, vec3 w, float level, float cells) {
     return w.x * sampleFace(faces, u, d.x < 0.0 ? 1 : 0, level, cells)
          + w.y * sampleFace(faces, u, d.y < 0.0 ? 3 : 2, level, cells)
          + w.z * sampleFace(faces, u, d.z < 0.0 ? 5 : 4, level, cells);
