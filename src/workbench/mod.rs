@@ -11,6 +11,7 @@ pub mod engine;
 pub mod events;
 mod gallery;
 mod help;
+mod history;
 mod inspector;
 pub mod judge;
 mod keep;
@@ -115,7 +116,9 @@ pub struct Workbench {
     experiment: Option<Experiment>,
     loading: Option<(String, f32)>,
     device: Option<DeviceReport>,
-    history: edit::History,
+    history: history::History,
+    /// Whether undo goes to the scene that is loaded: its view and light are those of the wish.
+    returning: bool,
     panel: panel::Panel,
     panel_slot: usize,
     view: view::View,
@@ -184,7 +187,8 @@ impl Workbench {
             experiment: Some(experiment),
             loading: None,
             device: None,
-            history: edit::History::default(),
+            history: history::History::default(),
+            returning: false,
             panel: panel::Panel::default(),
             panel_slot: 0,
             view: view::View::default(),
@@ -288,6 +292,7 @@ impl Workbench {
 
     /// Shows an experiment in slot A.
     fn open(&mut self, experiment: &Experiment) {
+        self.history.opens();
         self.name.clone_from(&experiment.name);
         self.wish.slots[0] = Some(slot_of(experiment));
         if self.wish.scene == experiment.scene {
@@ -306,6 +311,7 @@ impl Workbench {
     fn open_scene(&mut self, spec: &str) {
         self.wish.scene = spec.to_string();
         self.wish.lights = None;
+        self.returning = false;
         self.watch.scene(spec);
     }
 
@@ -414,7 +420,7 @@ impl Workbench {
         self.trouble = None;
         self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
         let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
-        if !same || self.experiment.is_some() {
+        if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
             let fallback =
                 Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
             let experiment = self.experiment.take().unwrap_or(fallback);
@@ -607,7 +613,7 @@ impl Workbench {
         }
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
-        self.history.note(&self.wish, held);
+        self.remember(held);
         if self.wish.slots[1].is_none() {
             self.slots[1] = Slot::default();
             self.comparison_of = None;
@@ -700,8 +706,8 @@ impl Workbench {
         for action in help::pressed(ui, typing) {
             match action {
                 help::Action::Help => self.help = !self.help,
-                help::Action::Undo => self.history.go(&mut self.wish, true),
-                help::Action::Redo => self.history.go(&mut self.wish, false),
+                help::Action::Undo => self.go(true),
+                help::Action::Redo => self.go(false),
                 help::Action::Play => self.wish.clock.playing = !self.wish.clock.playing,
                 help::Action::Step => {
                     self.wish.clock.playing = false;
