@@ -8,6 +8,7 @@ mod desk;
 use common::{conelab, succeeds};
 use desk::{Desk, centre};
 use serde_json::Value;
+use std::time::Duration;
 
 /// Small enough for a software device to draw several a second.
 const SMALL: &str =
@@ -104,5 +105,33 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     let mark = desk.now();
     desk.click("Button", "undo");
     error(&mut desk, mark, "the error before the click", |e| same(e, slid));
+
+    // The click takes view and size along too, and one undo brings back all of it.
+    desk.resting(0);
+    let mark = desk.now();
+    let (x, y) = centre(desk.place());
+    desk.drag((x, y), (x + 60.0, y + 20.0));
+    desk.wait(mark, "no reference of the view", |e| e["event"] == "judged" && e["error"].is_null());
+    desk.resting(0);
+    let mark = desk.now();
+    desk.click("Button", "as the panel");
+    let large = desk.wait(mark, "a larger picture", |e| e["event"] == "picture" && e["size"][0].as_f64() > Some(160.0));
+    desk.wait(mark, "no reference of it", |e| {
+        e["event"] == "judged" && e["error"].is_null() && e["wish"].as_f64() >= large["wish"].as_f64()
+    });
+    let before = desk.resting(0);
+    std::thread::sleep(Duration::from_millis(300));
+    desk.now();
+    let chart = desk.events.iter().rev().find(|e| e["event"] == "dots").unwrap().clone();
+    let differs = chart["differs"].as_array().unwrap();
+    assert!(differs.contains(&"camera".into()) && differs.contains(&"size".into()), "{chart}");
+    let dot = chart["dots"].as_array().unwrap().iter().find(|d| d["id"] == worst["id"]).unwrap();
+    let mark = desk.now();
+    desk.click_at((dot["at"][0].as_f64().unwrap(), dot["at"][1].as_f64().unwrap()));
+    error(&mut desk, mark, "the dot's error, from its view and at its size", |e| same(e, number(worst, "error")));
+    let mark = desk.now();
+    desk.click("Button", "undo");
+    desk.picture(mark, 0, &before);
+    assert_eq!(desk.resting(0), before, "view, size and values as before");
     desk.close();
 }

@@ -232,6 +232,37 @@ fn text_that_is_no_ron() {
 }
 
 #[test]
+fn a_file_that_cannot_be_read_takes_no_other_with_it() {
+    // A bracket too few, and everything that the file declares is missing where it is used.
+    let texts = SHARED
+        .replace("    params: [", "    textures: { \"shared\": (size: (4, 4), format: \"rgba8\") },\n    params: [");
+    let texts = texts.replace("(0.0, 1.0), help", "(0.0, 1.0, help");
+    let broken = bench()
+        .add("passes/shared.ron", &texts)
+        .edit("passes/graph.ron", "\"cells * 16\"", "\"cells * 16 * level\"")
+        .edit("passes/graph.ron", "bind: { \"src\": (of: \"grid\"", "bind: { \"src\": (of: \"shared\"")
+        .edit("passes/graph.ron", "to: \"depth\"", "to: \"shared\"");
+    assert_snapshot!(broken.findings(), @r#"
+    passes/shared.ron:4:66: error: expected a comma
+        |         Float(name: "level", default: 0.5, range: (0.0, 1.0, help: "Brightness."),
+        = help: one is missing before this, or a whole number has a point
+    "#);
+    // Not there at all. What is wrong beside it is still told.
+    let missing = bench().edit("passes/graph.ron", "shared.ron", "share.ron").edit(
+        "passes/graph.ron",
+        "clear: 1.0",
+        "clear: (1, 0)",
+    );
+    assert_snapshot!(missing.findings(), @r#"
+    passes/graph.ron:2:15: error: cannot read it: No such file or directory (os error 2)
+        |     include: ["share.ron"],
+        = help: did you mean 'shared.ron'?
+    passes/graph.ron:27:87: error: Expected float
+        |             color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: (1, 0))),
+    "#);
+}
+
+#[test]
 fn fields_and_variants_that_do_not_exist() {
     assert_snapshot!(graph("output: \"picture\"", "outptu: \"picture\""), @r#"
     passes/graph.ron:29:5: error: unknown field 'outptu'

@@ -69,9 +69,13 @@ impl Bench {
         write(self.folder.path(), name, text);
     }
 
-    fn session(&self, params: &str, old: Option<&Session>) -> Result<Session, LabError> {
+    fn experiment(&self, params: &str) -> Experiment {
         let text = format!("(graph: \"graph.ron\", scene: \"triangles\", size: (16, 16), params: {{{params}}})");
-        let experiment = Experiment::from_text(&self.folder.path().join("run.ron"), &text).unwrap();
+        Experiment::from_text(&self.folder.path().join("run.ron"), &text).unwrap()
+    }
+
+    fn session(&self, params: &str, old: Option<&Session>) -> Result<Session, LabError> {
+        let experiment = self.experiment(params);
         let loaded = self.lab.home.load(&experiment.graph).map_err(LabError::Input)?;
         let wanted = vec!["count".into(), "sized".into()];
         self.lab.build(&experiment, &loaded, self.scene.clone(), wanted, old.map(Session::seed).as_ref())
@@ -142,6 +146,62 @@ fn a_parameter_that_changes_no_plan_is_a_buffer_write() {
     assert_eq!(floats(&mut session, "count", 0)[5][0], 6.0);
     params.set("side", "9").unwrap();
     assert!(!session.set_params(&bench.lab, &params).unwrap(), "another size needs other textures");
+}
+
+/// A third pass that is switched on, the only one that uses a parameter and a texture.
+const AGAIN: &str = "#version 460
+#extension GL_GOOGLE_include_directive : require
+#include \"params.glsl\"
+layout(local_size_x = 8, local_size_y = 8) in;
+uniform sampler2D table;
+layout(r32f) uniform writeonly image2D sized;
+void main() { imageStore(sized, ivec2(gl_GlobalInvocationID.xy), texelFetch(table, ivec2(0), 0) + params.more); }";
+
+#[test]
+fn a_shader_is_compiled_when_its_pass_first_runs() {
+    let bench = Bench::new();
+    let graph = GRAPH
+        .replace("    textures: {", "    textures: {\n        \"table\": (size: (4, 4), format: \"r32f\"),")
+        .replace(
+            "    ],\n    textures",
+            "        Bool(name: \"twice\", default: false, help: \"Fills again.\"),
+        Float(name: \"more\", default: 2, range: (0, 9), help: \"With what.\"),\n    ],\n    textures",
+        )
+        .replace(
+            "    ],\n    outputs",
+            "        (name: \"again\", when: \"twice\", shaders: [\"again.comp\"], dispatch: Cover(\"sized\")),\n    ],\n    outputs",
+        );
+    bench.write("passes/graph.ron", &graph);
+    bench.write("shaders/again.comp", &AGAIN.replace("texelFetch", "texelFetsh"));
+
+    // A check finds the mistake; a picture that does without is not kept away, nor is what only that shader uses "unused".
+    let Err(found) = bench.lab.home.load("graph.ron") else { panic!("it must not compile") };
+    assert!(found[0].place.file.ends_with("again.comp"), "{found:?}");
+    let once = bench.experiment("");
+    let loaded = bench.lab.home.load_for(&once, &bench.scene).unwrap();
+    assert_eq!(loaded.warnings, []);
+    let wanted = || vec!["count".into(), "sized".into()];
+    let build = |experiment: &Experiment, seed: Option<&Session>| {
+        bench.lab.build(experiment, &loaded, bench.scene.clone(), wanted(), seed.map(Session::seed).as_ref())
+    };
+    let mut session = build(&once, None).unwrap();
+    frames(&mut session, 1);
+    assert_eq!(floats(&mut session, "sized", 0)[0][0], 1.0);
+
+    // Switched on, it is compiled, and its mistake is told.
+    let mut params = session.params.clone();
+    params.set("twice", "true").unwrap();
+    assert!(!session.set_params(&bench.lab, &params).unwrap(), "it needs a shader that is not there");
+    let twice = bench.experiment("\"twice\": true");
+    let Err(LabError::Input(found)) = build(&twice, Some(&session)) else { panic!("it must not build") };
+    assert!(found[0].place.file.ends_with("again.comp"), "{found:?}");
+    bench.write("shaders/again.comp", AGAIN);
+    let mut next = build(&twice, Some(&session)).unwrap();
+    next.succeed(&mut session).unwrap();
+    assert_eq!(next.program.change, Change { kept: 2, built: 1, resized: 0 });
+    frames(&mut next, 1);
+    assert_eq!(floats(&mut next, "sized", 0)[0][0], 2.0);
+    assert_clean(&bench.lab);
 }
 
 /// What the window does all day, with the method itself: every switch of a plan, one after the other on one session.

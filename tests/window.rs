@@ -347,9 +347,8 @@ fn two_hundred_reloads_leave_nothing_behind() {
     desk.close();
 }
 
-/// Most between a save and its frame, ms. On two cores beside the other window tests it is about 500, of which most is
-/// the compiler; 400 is what it was with fewer shaders behind the cones, and what it should be again.
-const LIMIT: f64 = 800.0;
+/// Most between a save and its frame, ms, on two cores beside the other window tests; most of it is the compiler.
+const LIMIT: f64 = 400.0;
 
 #[test]
 fn a_save_is_on_the_screen_before_one_looks_up() {

@@ -4,13 +4,16 @@ use super::externals::{EXTERNALS, ExternalKind};
 use super::file::{Bind, PassDecl, TextureDecl};
 use super::load::Graph;
 use super::param::Kind;
-use super::source::{At, Diagnostic, Place, Severity};
+use super::runs::Runs;
+use super::source::{Diagnostic, Place, Severity};
+use super::unused::{Texts, unused};
 use crate::shader::{Compiled, Resource, ShaderCompiler, Shape, Source};
 use crate::vulkan::Stage;
 use crate::vulkan::format::{Channels, Format};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
+use std::sync::Arc;
 
 /// What a shader's name was found to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,18 +52,20 @@ pub struct Linked {
     pub bound: Vec<Bound>,
 }
 
-/// Compiles all shaders of a graph in parallel and links them. Warnings come with a good result too.
+/// Compiles the shaders of a graph's passes that run, in parallel, and links them; the others stay empty. Warnings come
+/// with a good result too.
 ///
 /// # Errors
-/// All mistakes of all shaders.
+/// All mistakes of these shaders.
 pub fn link(
     graph: &Graph,
     compiler: &ShaderCompiler,
     shaders: &Path,
+    runs: &Runs,
 ) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
     let params = graph.params.glsl();
     let mut files: BTreeMap<&str, Stage> = BTreeMap::new();
-    for pass in &graph.passes {
+    for (_, pass) in graph.passes.iter().enumerate().filter(|(i, _)| runs.has(*i)) {
         for shader in &pass.value.shaders.0 {
             if let Some(stage) = Stage::of_file(&shader.value) {
                 files.insert(&shader.value, stage);
@@ -86,9 +91,18 @@ pub fn link(
         return Err(findings);
     }
     let mut linker = Linker { graph, shaders, findings, used: HashSet::new() };
-    let linked = graph.passes.iter().map(|p| linker.pass(&p.value, &compiled)).collect();
-    linker.unused(&compiled);
-    let findings = linker.findings;
+    let mut texts: Vec<Texts> = compiled.values().map(|c| c.texts.clone()).collect();
+    let mut linked = Vec::new();
+    for (i, pass) in graph.passes.iter().enumerate() {
+        linked.push(if runs.has(i) {
+            linker.pass(&pass.value, &compiled)
+        } else {
+            texts.extend(linker.resting(&pass.value, compiler, &params));
+            Linked::default()
+        });
+    }
+    let Linker { mut findings, used, .. } = linker;
+    findings.extend(unused(graph, &used, &texts));
     if findings.iter().any(|f| f.severity == Severity::Error) { Err(findings) } else { Ok((linked, findings)) }
 }
 
@@ -151,6 +165,20 @@ impl Linker<'_> {
         Linked { stages, bound }
     }
 
+    /// What a pass that does not run would use, as far as the texts of its shaders tell; returns these.
+    fn resting(&mut self, pass: &PassDecl, compiler: &ShaderCompiler, params: &str) -> Vec<Texts> {
+        self.mark_used(pass);
+        self.used.extend(pass.bind.0.iter().map(|(_, bind)| bind.value.of.value.clone()));
+        // What cannot be read is told when the pass runs.
+        let files = pass.shaders.0.iter();
+        let texts: Vec<Texts> = files.filter_map(|s| Some(Arc::new(compiler.texts(&s.value, params).ok()?))).collect();
+        let graph = self.graph;
+        let names = graph.textures.iter().map(|t| &t.0).chain(graph.buffers.iter().map(|b| &b.0));
+        let named = names.filter(|name| texts.iter().flat_map(|t| t.values()).any(|text| has_word(text, name)));
+        self.used.extend(named.cloned());
+        texts
+    }
+
     fn mark_used(&mut self, pass: &PassDecl) {
         let names = pass.color.0.iter().map(|c| &c.value.to).chain(pass.depth.iter().map(|d| &d.value.to));
         let names = names.chain(&pass.clear).chain(pass.copy.iter().flat_map(|c| [&c.value.from, &c.value.to]));
@@ -201,15 +229,10 @@ impl Linker<'_> {
 
     /// An error at the line where a shader declares a name.
     fn at_declaration(&self, shader: &Compiled, name: &str, message: String) -> Diagnostic {
-        let is_word = |line: &str| {
-            line.match_indices(name).any(|(i, _)| {
-                let edge = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_');
-                edge(line[..i].chars().next_back()) && edge(line[i + name.len()..].chars().next())
-            })
-        };
         // The declaration stands after `uniform` or `buffer`, or closes a block: `} name;`.
         let declares = |line: &str| {
-            is_word(line) && (line.contains("uniform") || line.contains("buffer") || line.trim_start().starts_with('}'))
+            has_word(line, name)
+                && (line.contains("uniform") || line.contains("buffer") || line.trim_start().starts_with('}'))
         };
         let main = std::iter::once(&shader.file).chain(shader.texts.keys());
         for file in main {
@@ -300,56 +323,14 @@ impl Linker<'_> {
             }
         }
     }
+}
 
-    /// Warnings for what is declared and never used.
-    fn unused(&mut self, compiled: &BTreeMap<&str, Compiled>) {
-        let graph = self.graph;
-        let mut wanted: HashSet<&str> = graph.outputs.iter().map(String::as_str).collect();
-        wanted.extend(graph.output.as_deref());
-        wanted.extend(graph.hdr.as_deref());
-        wanted.extend(graph.parts.iter().map(|p| p.1.as_str()));
-        wanted.extend(graph.checks.iter().map(|c| c.buffer.value.as_str()));
-        wanted.extend(graph.tables.iter().map(|t| t.buffer.value.as_str()));
-        for voxels in graph.voxels.iter().map(|v| &v.value) {
-            let names = [&voxels.occupied, &voxels.color, &voxels.normal, &voxels.borders];
-            wanted.extend(names.map(|n| n.value.as_str()));
-        }
-        let warn = |at: At, message: String| {
-            let d = graph.sources.error(at, message);
-            Diagnostic { severity: Severity::Warning, ..d }
-        };
-        let resources =
-            graph.textures.iter().map(|t| (&t.0, t.1.at)).chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
-        for (name, at) in resources {
-            if !self.used.contains(name) && !wanted.contains(name.as_str()) {
-                self.findings.push(warn(at, format!("'{name}' is declared and never used")));
-            }
-        }
-        let texts: HashSet<&String> = compiled
-            .values()
-            .flat_map(|c| c.texts.iter())
-            .filter(|(f, _)| *f != "params.glsl")
-            .map(|(_, t)| t)
-            .collect();
-        for (i, param) in graph.params.list.iter().enumerate() {
-            let in_shader = if param.constant { param.name.to_uppercase() } else { format!("params.{}", param.name) };
-            let in_graph = super::plan::all_expressions(graph).any(|e| {
-                e.value
-                    .variables()
-                    .iter()
-                    .any(|v| *v == param.name || v.strip_prefix(&param.name).is_some_and(|r| r.starts_with('_')))
-            });
-            let as_format = graph.textures.iter().any(|t| t.1.value.format.value == param.name);
-            let names = |text: &str| {
-                let end = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
-                text.match_indices(&in_shader).any(|(at, _)| end(&text[at + in_shader.len()..]))
-            };
-            if !in_graph && !as_format && !texts.iter().any(|t| names(t)) {
-                let at = graph.params_at.get(i).copied().unwrap_or_default();
-                self.findings.push(warn(at, format!("parameter '{}' is declared and never used", param.name)));
-            }
-        }
-    }
+/// Whether a name stands in a text, and not inside a longer one.
+pub(super) fn has_word(text: &str, name: &str) -> bool {
+    text.match_indices(name).any(|(i, _)| {
+        let edge = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_');
+        edge(text[..i].chars().next_back()) && edge(text[i + name.len()..].chars().next())
+    })
 }
 
 /// What a shader declares, in words.

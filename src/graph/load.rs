@@ -94,7 +94,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let mut errors = Vec::new();
     let mut files = Vec::new();
     let mut broken = Vec::new();
-    include(path, None, folders, &mut sources, &mut files, &mut Vec::new(), &mut errors, &mut broken);
+    let whole = include(path, None, folders, &mut sources, &mut files, &mut Vec::new(), &mut errors, &mut broken);
     let mut graph = Graph {
         name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
         params: Params::default(),
@@ -155,7 +155,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let list = check_params(&decls, &graph.sources, &mut errors, &mut broken);
     graph.params_at = list.iter().map(|p| declared_at(&decls, &p.name)).collect();
     graph.params = Params::new(list);
-    let mut check = Check { graph: &graph, folders, errors, broken, variables: HashSet::new() };
+    let mut check = Check { graph: &graph, folders, errors, broken, whole, variables: HashSet::new() };
     check.names();
     check.textures();
     for pass in &graph.passes {
@@ -197,6 +197,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     Ok(graph)
 }
 
+/// Reads a file and what it includes; whether all of it could be read.
 #[expect(clippy::too_many_arguments, reason = "one recursive walk that fills several lists")]
 fn include(
     path: &Path,
@@ -207,14 +208,14 @@ fn include(
     stack: &mut Vec<PathBuf>,
     errors: &mut Vec<Diagnostic>,
     broken: &mut Vec<String>,
-) {
+) -> bool {
     if sources.paths().any(|p| p == path) && !stack.iter().any(|p| p == path) {
-        return;
+        return true;
     }
     if stack.iter().any(|p| p == path) {
         let message = format!("'{}' includes itself", path.display());
         errors.push(from.map_or(Diagnostic::error(Place::default(), message.clone()), |at| sources.error(at, message)));
-        return;
+        return true;
     }
     let file = match sources.read(path) {
         Ok(file) => file,
@@ -226,16 +227,19 @@ fn include(
                 None => e,
             };
             errors.push(found.nearest(&name, known.iter().map(String::as_str)));
-            return;
+            return false;
         }
     };
-    let Some(parsed) = sources.parse::<GraphFile>(file, errors, broken) else { return };
+    let Some(parsed) = sources.parse::<GraphFile>(file, errors, broken) else { return false };
     stack.push(path.to_path_buf());
+    let mut whole = true;
     for name in &parsed.include.0 {
-        include(&folders.passes.join(&name.value), Some(name.at), folders, sources, files, stack, errors, broken);
+        let path = folders.passes.join(&name.value);
+        whole &= include(&path, Some(name.at), folders, sources, files, stack, errors, broken);
     }
     stack.pop();
     files.push(parsed);
+    whole
 }
 
 fn ron_files(folder: &Path) -> Vec<String> {
@@ -320,15 +324,24 @@ struct Check<'g> {
     errors: Vec<Diagnostic>,
     /// Names in items that could not be read: not reported again where they are used.
     broken: Vec<String>,
+    /// Whether every file could be read. If not, any unknown name may be one of those in the others.
+    whole: bool,
     variables: HashSet<String>,
 }
 
 impl Check<'_> {
+    /// Whether a name that is not known is a mistake of its own, and not what is left of one that was reported.
+    fn is_unknown(&self, name: &str) -> bool {
+        self.whole && !self.broken.iter().any(|b| b == name)
+    }
+
     /// Names and values of parameters.
     fn values<'v>(&mut self, list: impl Iterator<Item = &'v (Loc<String>, Loc<RawText>)>) {
         for (name, text) in list {
             let mut params = self.graph.params.clone();
-            if !self.broken.contains(&name.value)
+            let missing = !self.whole && params.index(&name.value).is_none();
+            if !missing
+                && !self.broken.contains(&name.value)
                 && let Err(message) = params.set(&name.value, &text.value.0)
             {
                 self.errors.push(self.graph.sources.error(name.at, message));
@@ -390,7 +403,7 @@ impl Check<'_> {
             self.error(ex.at, format!("'{}' is no expression: {mistake}", ex.value.text));
         }
         for name in unknown(&ex.value, &self.variables) {
-            if self.broken.contains(&name) {
+            if !self.is_unknown(&name) {
                 continue;
             }
             let found = self.graph.sources.error(ex.at, format!("unknown variable '{name}' in '{}'", ex.value.text));
@@ -432,7 +445,7 @@ impl Check<'_> {
         if exists(self.graph, &name.value) {
             return true;
         }
-        if self.broken.contains(&name.value) {
+        if !self.is_unknown(&name.value) {
             return false;
         }
         let found = self.graph.sources.error(name.at, format!("no {what} is named '{}'", name.value));
@@ -449,7 +462,7 @@ impl Check<'_> {
                     format!("'{}' holds {} and cannot be the pointer: it must be a Vec2", name.value, param.expected());
                 self.error(name.at, message);
             }
-            None if self.broken.contains(&name.value) => {}
+            None if !self.is_unknown(&name.value) => {}
             None => {
                 let known: Vec<&str> =
                     params.iter().filter(|p| p.kind == Kind::Vector(2)).map(|p| p.name.as_str()).collect();
@@ -525,6 +538,9 @@ impl Check<'_> {
                     self.error(name.at, format!("option '{option}' of '{}' is no format", name.value));
                 }
             }
+            return;
+        }
+        if !self.whole {
             return;
         }
         let choices = self.graph.params.list.iter().filter(|p| or_choice && matches!(p.kind, Kind::Choice(_)));

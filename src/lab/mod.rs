@@ -1,11 +1,13 @@
 //! The lab: a device and what is loaded on it; turns an experiment into frames.
 
 mod bvh;
+mod home;
 mod materials;
 mod parts;
 mod scene;
 mod view;
 
+pub use home::{Home, Loaded};
 pub use parts::parts_of;
 pub use scene::SceneGpu;
 pub use view::Viewpoint;
@@ -13,19 +15,18 @@ pub use view::Viewpoint;
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::expr::{Env, Var};
 use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
-use crate::graph::link::{Linked, Target, link};
-use crate::graph::load::{Folders, Graph, load};
+use crate::graph::link::{Linked, Target};
+use crate::graph::load::Graph;
 use crate::graph::param::Params;
 use crate::graph::plan::{Plan, PlanInput, plan};
 use crate::graph::run::{FrameTimes, Program};
+use crate::graph::runs::runs;
 use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::successor::Parts;
 use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
-use crate::shader::ShaderCompiler;
 use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
 use glam::Vec3;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What can go wrong between an experiment and its picture.
@@ -48,84 +49,6 @@ pub enum LabError {
     Request(String),
 }
 
-/// Where the program's own folders are.
-#[derive(Clone, Debug)]
-pub struct Home {
-    /// The folder with `passes`, `shaders` and `configs`.
-    pub root: PathBuf,
-    /// Folder for compiled shaders and pipelines.
-    pub cache: Option<PathBuf>,
-}
-
-impl Home {
-    /// Finds the folders: `CONELAB_HOME`, else upwards from the working folder, else beside the program.
-    ///
-    /// # Errors
-    /// None of them has the folders.
-    pub fn find() -> Result<Home, LabError> {
-        let fits = |p: &Path| p.join("passes").is_dir() && p.join("shaders").is_dir();
-        let named = std::env::var_os("CONELAB_HOME").map(PathBuf::from);
-        let working = std::env::current_dir().ok();
-        let program = std::env::current_exe().ok();
-        let upwards = working.iter().flat_map(|p| p.ancestors()).chain(program.iter().flat_map(|p| p.ancestors()));
-        let root = match &named {
-            Some(path) if fits(path) => Some(path.clone()),
-            Some(path) => {
-                let message = format!("CONELAB_HOME is '{}', which has no passes and shaders folders", path.display());
-                return Err(LabError::Request(message));
-            }
-            None => upwards.into_iter().find(|p| fits(p)).map(Path::to_path_buf),
-        };
-        let root = root.ok_or_else(|| {
-            LabError::Request(
-                "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
-            )
-        })?;
-        Ok(Home { root, cache: Home::cache() })
-    }
-
-    /// The folder for compiled shaders and pipelines.
-    pub fn cache() -> Option<PathBuf> {
-        std::env::var_os("CONELAB_CACHE")
-            .map(PathBuf::from)
-            .or_else(|| std::env::var_os("XDG_CACHE_HOME").map(|p| PathBuf::from(p).join("conelab")))
-            .or_else(|| std::env::var_os("HOME").map(|p| PathBuf::from(p).join(".cache/conelab")))
-    }
-
-    /// Folders of graphs and shaders.
-    pub fn folders(&self) -> Folders {
-        Folders { passes: self.root.join("passes"), shaders: self.root.join("shaders") }
-    }
-
-    /// [`Home::graph`], to be shared.
-    ///
-    /// # Errors
-    /// All mistakes.
-    pub fn load(&self, name: &str) -> Result<Loaded, Vec<Diagnostic>> {
-        let (graph, linked, warnings) = self.graph(name)?;
-        Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
-    }
-
-    /// The file of a graph: a bare name is looked up among the graphs, a path is taken as it is.
-    pub fn graph_path(&self, name: &str) -> PathBuf {
-        let given = Path::new(name);
-        let bare = given.components().count() == 1 && !given.is_file();
-        if bare { self.root.join("passes").join(name) } else { given.to_path_buf() }
-    }
-
-    /// A graph with its shaders compiled and checked, and warnings; needs no device.
-    ///
-    /// # Errors
-    /// All mistakes.
-    pub fn graph(&self, name: &str) -> Result<(Graph, Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
-        let folders = self.folders();
-        let graph = load(&self.graph_path(name), &folders)?;
-        let compiler = ShaderCompiler::new(&folders.shaders, self.cache.as_deref());
-        let (linked, warnings) = link(&graph, &compiler, &folders.shaders)?;
-        Ok((graph, linked, warnings))
-    }
-}
-
 /// A device that runs experiments.
 #[derive(Clone)]
 pub struct Lab {
@@ -133,17 +56,6 @@ pub struct Lab {
     pub home: Home,
     /// The device.
     pub gpu: Arc<Gpu>,
-}
-
-/// A graph with its shaders compiled and checked.
-#[derive(Clone)]
-pub struct Loaded {
-    /// The graph.
-    pub graph: Arc<Graph>,
-    /// Its shaders.
-    pub linked: Arc<Vec<Linked>>,
-    /// What was found and is no error.
-    pub warnings: Vec<Diagnostic>,
 }
 
 /// What a session in use lends to the one that will take its place.
@@ -209,13 +121,14 @@ impl Lab {
         scene: Arc<Scene>,
         wanted: impl FnOnce(&Graph) -> Result<Vec<String>, LabError>,
     ) -> Result<(Session, Vec<Diagnostic>), LabError> {
-        let loaded = self.home.load(&experiment.graph).map_err(LabError::Input)?;
+        let loaded = self.home.load_for(experiment, &scene).map_err(LabError::Input)?;
         let warnings = loaded.warnings.clone();
         let wanted = wanted(&loaded.graph)?;
         Ok((self.build(experiment, &loaded, scene, wanted, None)?, warnings))
     }
 
-    /// Makes a session, from parts of one in use where they fit; see [`Session::succeed`].
+    /// Makes a session, from parts of one in use where they fit; see [`Session::succeed`]. Shaders that `loaded` lacks
+    /// and the experiment runs are compiled.
     ///
     /// # Errors
     /// As [`Lab::prepare`].
@@ -227,8 +140,8 @@ impl Lab {
         mut wanted: Vec<String>,
         seed: Option<&Seed>,
     ) -> Result<Session, LabError> {
-        let Loaded { graph, linked, .. } = loaded.clone();
-        let params = params_of(&graph, experiment)?;
+        let params = params_of(&loaded.graph, experiment)?;
+        let Loaded { graph, linked, .. } = self.home.complete(loaded, experiment, &scene).map_err(LabError::Input)?;
         wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
@@ -382,7 +295,8 @@ impl Session {
         Ok(())
     }
 
-    /// Sets parameters if that needs no other textures, passes or pipelines: then it is a buffer write, and `true`.
+    /// Sets parameters if that needs no other textures, passes, shaders or pipelines: then it is a buffer write, and
+    /// `true`.
     ///
     /// # Errors
     /// Values that the graph cannot be planned with.
@@ -391,6 +305,9 @@ impl Session {
             return Ok(false);
         }
         let size = self.size;
+        if !runs(&self.graph, params, &environment(&self.scene, size)).are_linked(&self.graph, &self.linked) {
+            return Ok(false);
+        }
         let plan = plan_of(&self.graph, &self.linked, params, &self.scene, size, &self.wanted, &lab.gpu.info)?;
         if plan != self.program.plan {
             return Ok(false);

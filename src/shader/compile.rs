@@ -60,8 +60,7 @@ impl ShaderCompiler {
     /// # Errors
     /// Every message of the compiler, with the original file and line.
     pub fn compile(&self, source: &Source, params: &str) -> Result<Compiled, Vec<Diagnostic>> {
-        let mut texts = BTreeMap::from([("params.glsl".to_string(), params.to_string())]);
-        self.collect(&source.file, &mut texts)?;
+        let texts = self.texts(&source.file, params)?;
         let name = (self.folder.clone(), source.file.clone());
         let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = last().get(&name).filter(|k| k.stage == source.stage && *k.texts == texts) {
@@ -97,6 +96,16 @@ impl ShaderCompiler {
         };
         last().insert(name, compiled.clone());
         Ok(compiled)
+    }
+
+    /// The files that a shader is made of: name, text.
+    ///
+    /// # Errors
+    /// Files that cannot be read.
+    pub fn texts(&self, file: &str, params: &str) -> Result<BTreeMap<String, String>, Vec<Diagnostic>> {
+        let mut texts = BTreeMap::from([("params.glsl".to_string(), params.to_string())]);
+        self.collect(file, &mut texts)?;
+        Ok(texts)
     }
 
     /// Path of an include: beside the shaders, or in `include/`.

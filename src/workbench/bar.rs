@@ -16,10 +16,10 @@ impl Workbench {
             ui.separator();
             let (undo, redo) = self.history.can();
             if ui.add_enabled(undo, egui::Button::new("undo")).on_hover_text("Ctrl Z").clicked() {
-                self.history.go(&mut self.wish, true);
+                self.go(true);
             }
             if ui.add_enabled(redo, egui::Button::new("redo")).on_hover_text("Ctrl Shift Z").clicked() {
-                self.history.go(&mut self.wish, false);
+                self.go(false);
             }
             ui.separator();
             let mut compare = self.wish.slots[1].is_some();

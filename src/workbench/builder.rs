@@ -71,10 +71,13 @@ pub fn run(jobs: &Receiver<Job>, done: &Sender<Done>) {
 }
 
 fn build(job: Job) -> Result<(Box<Session>, Loaded), LabError> {
-    let loaded = match job.loaded {
-        Some(loaded) => loaded,
-        None => job.lab.home.load(&job.experiment.graph).map_err(LabError::Input)?,
+    // What does not run is not waited for: it is compiled when it first runs.
+    let home = &job.lab.home;
+    let loaded = match &job.loaded {
+        Some(loaded) => home.complete(loaded, &job.experiment, &job.scene),
+        None => home.load_for(&job.experiment, &job.scene),
     };
+    let loaded = loaded.map_err(LabError::Input)?;
     let graph = &loaded.graph;
     let output = graph.output.clone().ok_or_else(|| {
         LabError::Request(format!("graph '{}' has no `output`: there is nothing to show", graph.name))

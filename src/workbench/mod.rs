@@ -6,16 +6,21 @@ mod bar;
 mod builder;
 mod chart;
 pub mod compare;
+mod difference;
 pub mod edit;
 pub mod engine;
 pub mod events;
 mod gallery;
 mod help;
+mod history;
+mod host;
 mod inspector;
 pub mod judge;
 mod keep;
 mod messages;
 mod motion;
+mod news;
+mod opening;
 mod panel;
 mod paths;
 mod renderdoc;
@@ -29,21 +34,20 @@ pub mod wish;
 
 use crate::experiment::Experiment;
 use crate::graph::source::Diagnostic;
-use crate::graph::successor::Change;
-use crate::lab::{Home, LabError, viewpoint_of};
+use crate::lab::{Home, LabError};
 use crate::scene::Scene;
 use crate::vulkan::GpuOptions;
-use compare::{Map, Mode, Shown};
+use compare::{Map, Mode};
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{TextureId, Ui, Vec2};
 use engine::{Engine, Order};
 use events::Events;
-use report::{DeviceReport, Outline, PictureReport, Report};
-use serde_json::json;
+use opening::slot_of;
+use report::{DeviceReport, Outline, PictureReport};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use wish::{SlotWish, Wish};
+use wish::Wish;
 
 /// Pictures that hosts keep for the interface: A, B, the comparison, the inspector.
 pub const PICTURES: usize = 4;
@@ -115,7 +119,9 @@ pub struct Workbench {
     experiment: Option<Experiment>,
     loading: Option<(String, f32)>,
     device: Option<DeviceReport>,
-    history: edit::History,
+    history: history::History,
+    /// Whether undo goes to the scene that is loaded: its view and light are those of the wish.
+    returning: bool,
     panel: panel::Panel,
     panel_slot: usize,
     view: view::View,
@@ -184,7 +190,8 @@ impl Workbench {
             experiment: Some(experiment),
             loading: None,
             device: None,
-            history: edit::History::default(),
+            history: history::History::default(),
+            returning: false,
             panel: panel::Panel::default(),
             panel_slot: 0,
             view: view::View::default(),
@@ -220,259 +227,6 @@ impl Workbench {
         if let Some(events) = &mut self.events {
             events.write(name, fields);
         }
-    }
-
-    /// Takes in what other threads have to say. Returns how soon to ask again, if something is about to come.
-    pub fn pump(&mut self) -> Option<Duration> {
-        while let Ok(report) = self.engine.reports.try_recv() {
-            self.report(report);
-        }
-        while let Ok((mode, map)) = self.compared.1.try_recv() {
-            self.comparing = false;
-            if let Some(map) = map {
-                self.pixels.retain(|p| p.0 != COMPARISON);
-                self.pixels.push((COMPARISON, map.size, map.bytes.clone()));
-                let (mean, max, differing) = (map.mean, map.max, map.differing);
-                let name = compare::MODES.iter().find(|m| m.0 == mode).map_or("", |m| m.1);
-                self.event("compared", json!({ "mode": name, "mean": mean, "max": max, "differing": differing }));
-                self.comparison = Some((mode, map));
-            }
-        }
-        if let Some(pixels) = self.inspector.take(&self.wake) {
-            self.pixels.retain(|p| p.0 != INSPECTOR);
-            self.pixels.push(pixels);
-        }
-        self.chart_news();
-        match self.watch.take() {
-            Ok(changed) => {
-                self.files_changed(&changed);
-                None
-            }
-            Err(wait) => wait,
-        }
-    }
-
-    fn files_changed(&mut self, changed: &watch::Changed) {
-        if changed.method {
-            self.wish.revision += 1;
-            self.changed_at = Some(Instant::now());
-            self.event("changed", json!({ "revision": self.wish.revision }));
-        }
-        if changed.scene {
-            self.wish.scene_revision += 1;
-        }
-        for path in &changed.experiments {
-            self.experiment_changed(path);
-        }
-        self.tell();
-    }
-
-    /// The open experiment's file was edited: its values take the place of those here.
-    fn experiment_changed(&mut self, path: &Path) {
-        if path.file_stem().is_none_or(|s| s.to_string_lossy() != self.name.as_str()) {
-            return;
-        }
-        match Experiment::read(path) {
-            Ok(experiment) => {
-                self.slots[0].errors.clear();
-                if slot_of(&experiment) != self.wish.slots[0].clone().unwrap_or_default()
-                    || experiment.scene != self.wish.scene
-                {
-                    self.open(&experiment);
-                    self.status = format!("read {} again", path.display());
-                }
-            }
-            Err(errors) => self.slots[0].errors = errors,
-        }
-    }
-
-    /// Shows an experiment in slot A.
-    fn open(&mut self, experiment: &Experiment) {
-        self.name.clone_from(&experiment.name);
-        self.wish.slots[0] = Some(slot_of(experiment));
-        if self.wish.scene == experiment.scene {
-            if let Some(scene) = &self.scene {
-                self.wish.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
-                self.wish.lights = keep::lights(experiment, scene).unwrap_or_default();
-            }
-        } else {
-            self.open_scene(&experiment.scene);
-        }
-        self.experiment = Some(experiment.clone());
-        self.wish.clock.at = experiment.time;
-        self.wish.clock.jumps += 1;
-    }
-
-    fn open_scene(&mut self, spec: &str) {
-        self.wish.scene = spec.to_string();
-        self.wish.lights = None;
-        self.watch.scene(spec);
-    }
-
-    /// A file was dropped on the window.
-    pub fn dropped(&mut self, path: &Path) {
-        let spec = path.to_string_lossy().into_owned();
-        let is_ron = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ron"));
-        match Experiment::read(path) {
-            Ok(experiment) if is_ron => self.open(&experiment),
-            _ => {
-                self.experiment = None;
-                self.open_scene(&spec);
-            }
-        }
-        self.tell();
-    }
-
-    fn report(&mut self, report: Report) {
-        match report {
-            Report::Device(device) => {
-                self.event("device", json!({ "name": device.name, "driver": device.driver }));
-                self.device = Some(device);
-                self.chart.restarted();
-                self.trouble = None;
-            }
-            Report::Built { slot, outline, change, ms, revision, objects } => {
-                let Change { kept, built, resized } = change;
-                self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
-                self.event(
-                    "built",
-                    json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
-                        "revision": revision, "objects": objects }),
-                );
-                self.times.built(slot, &outline);
-                self.mended(slot);
-                self.slots[slot].outline = Some(outline);
-            }
-            Report::Failed { slot, diagnostics, revision } => {
-                let texts: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
-                self.event("failed", json!({ "slot": slot, "errors": texts, "revision": revision }));
-                self.slots[slot].errors = diagnostics;
-            }
-            Report::Set { slot, .. } => {
-                self.mended(slot);
-            }
-            Report::Picture(picture) => self.picture_came(picture),
-            Report::Loading(what, part) => self.loading = Some((what, part)),
-            Report::Loaded(scene) => self.loaded(scene),
-            Report::LoadFailed(why) => {
-                self.loading = None;
-                self.event("load failed", json!({ "why": why }));
-                self.trouble = Some(why);
-            }
-            Report::Texels(look, texels) => self.inspector.note(look, *texels, &self.wake),
-            Report::Table(table, bytes) => self.tables.note(table, bytes),
-            Report::Checks(slot, failed) => self.slots[slot].checks = failed,
-            Report::Captured(result) => {
-                let ok = result.is_ok();
-                let text = match result {
-                    Ok(path) => {
-                        self.gallery.forget();
-                        format!("captured {}", path.display())
-                    }
-                    Err(why) => format!("not captured: {why}"),
-                };
-                self.event("captured", json!({ "ok": ok, "text": text }));
-                self.status = text;
-            }
-            Report::Judged(judged) => self.judged(judged),
-            Report::Trouble(text) => {
-                self.event("trouble", json!({ "text": text }));
-                self.trouble = Some(text);
-            }
-        }
-    }
-
-    fn mended(&mut self, slot: usize) {
-        if !self.slots[slot].errors.is_empty() {
-            self.slots[slot].errors.clear();
-            self.event("mended", json!({ "slot": slot }));
-        }
-    }
-
-    fn picture_came(&mut self, picture: PictureReport) {
-        if self.wish.slots[picture.slot].is_none() {
-            return;
-        }
-        self.times.note(&picture);
-        self.chart.note(&picture);
-        let number = picture.slot;
-        self.pixels.retain(|p| p.0 != number);
-        self.pixels.push((number, picture.size, picture.bytes.clone()));
-        if self.events.is_some() {
-            let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
-            let fields = json!({ "slot": number, "preview": picture.preview, "frame": picture.frame,
-                "wish": picture.wish, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
-                "since_change_ms": since,
-                "fingerprint": events::fingerprint(&picture.bytes) });
-            self.event("picture", fields);
-        }
-        self.slots[number].picture = Some(picture);
-    }
-
-    fn loaded(&mut self, scene: Arc<Scene>) {
-        self.loading = None;
-        self.trouble = None;
-        self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
-        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
-        if !same || self.experiment.is_some() {
-            let fallback =
-                Experiment { camera: crate::experiment::CameraChoice::Named("default".into()), ..self.bare() };
-            let experiment = self.experiment.take().unwrap_or(fallback);
-            match keep::lights(&experiment, &scene) {
-                Ok(lights) => self.wish.lights = lights,
-                Err(e) => self.trouble = Some(e.to_string()),
-            }
-            match viewpoint_of(&experiment, &scene) {
-                Ok(v) => self.wish.camera = Some(v.camera),
-                Err(e) => {
-                    self.trouble = Some(e.to_string());
-                    self.wish.camera = Some(crate::lab::Viewpoint::around(&scene).camera);
-                }
-            }
-        }
-        let (low, high) = scene.bounds();
-        self.diagonal = (high - low).length().max(1e-3);
-        self.scene = Some(scene);
-        self.tell();
-    }
-
-    /// The present experiment, as slot A shows it.
-    fn bare(&self) -> Experiment {
-        let slot = self.wish.slots[0].clone().unwrap_or_default();
-        Experiment { name: self.name.clone(), ..self.wish.experiment(&slot) }
-    }
-
-    /// Works out the map of differences on a thread, one at a time.
-    fn compare(&mut self) {
-        let mode = self.view.mode;
-        if !matches!(mode, Mode::Difference | Mode::Perceived) || self.comparing {
-            return;
-        }
-        let shown = |s: &Slot| s.picture.as_ref().map(|p| Shown { size: p.size, bytes: p.bytes.clone() });
-        let (Some(a), Some(b)) = (shown(&self.slots[0]), shown(&self.slots[1])) else { return };
-        let of = (mode, self.view.gain, a.bytes.clone(), b.bytes.clone());
-        let same =
-            |o: &ComparisonOf| (o.0, o.1) == (of.0, of.1) && Arc::ptr_eq(&o.2, &of.2) && Arc::ptr_eq(&o.3, &of.3);
-        if self.comparison_of.as_ref().is_some_and(same) {
-            return;
-        }
-        self.comparison_of = Some(of);
-        self.comparing = true;
-        let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
-        std::thread::spawn(move || {
-            let map = if mode == Mode::Difference { compare::difference(&a, &b, gain) } else { compare::flip(&a, &b) };
-            let _ = out.send((mode, map));
-            wake();
-        });
-    }
-
-    fn comparison_text(&self) -> Option<String> {
-        let (mode, map) = self.comparison.as_ref().filter(|(mode, _)| *mode == self.view.mode)?;
-        let share = 100.0 * map.differing as f64 / f64::from((map.size[0] * map.size[1]).max(1));
-        Some(match mode {
-            Mode::Perceived => format!("mean FLIP {:.4}, largest {:.3}", map.mean, map.max),
-            _ => format!("mean {:.3}/255, largest {}, {share:.1} % of pixels", map.mean, map.max),
-        })
     }
 
     /// Whether the picture is older than the last good build or shows what no longer compiles.
@@ -519,51 +273,6 @@ impl Workbench {
         }
     }
 
-    /// Pixels that the host has not shown yet.
-    pub fn pixels(&self) -> &[NewPixels] {
-        &self.pixels
-    }
-
-    /// Revision of the files that the shown picture of A was made from.
-    pub fn shown_revision(&self) -> u64 {
-        self.shown_revision
-    }
-
-    /// The host has shown them.
-    pub fn painted(&mut self) {
-        if let Some(picture) = self.slots[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.0 == 0)) {
-            self.shown_revision = picture.revision;
-        }
-        if !self.pixels.is_empty() {
-            if self.events.is_none() {
-                self.pixels.clear();
-                return;
-            }
-            let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
-            let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
-            let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
-            let wish = self.slots[0].picture.as_ref().map_or(0, |p| p.wish);
-            self.event(
-                "painted",
-                json!({ "pictures": list, "fingerprints": prints, "wish": wish, "since_change_ms": since }),
-            );
-        }
-        self.pixels.clear();
-    }
-
-    /// Tells where the widgets are, for scripts; `true` if there is more to tell.
-    pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
-        self.events.as_mut().is_some_and(|e| {
-            e.place(self.view.place, scale);
-            e.widgets(update, scale)
-        })
-    }
-
-    /// Whether the widgets are to be described.
-    pub fn is_described(&self) -> bool {
-        self.events.is_some()
-    }
-
     /// What went wrong last, if anything.
     pub fn trouble(&self) -> Option<&str> {
         self.trouble.as_deref()
@@ -607,7 +316,7 @@ impl Workbench {
         }
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
-        self.history.note(&self.wish, held);
+        self.remember(held);
         if self.wish.slots[1].is_none() {
             self.slots[1] = Slot::default();
             self.comparison_of = None;
@@ -700,8 +409,8 @@ impl Workbench {
         for action in help::pressed(ui, typing) {
             match action {
                 help::Action::Help => self.help = !self.help,
-                help::Action::Undo => self.history.go(&mut self.wish, true),
-                help::Action::Redo => self.history.go(&mut self.wish, false),
+                help::Action::Undo => self.go(true),
+                help::Action::Redo => self.go(false),
                 help::Action::Play => self.wish.clock.playing = !self.wish.clock.playing,
                 help::Action::Step => {
                     self.wish.clock.playing = false;
@@ -737,13 +446,6 @@ fn wish_differs(a: &Wish, b: &Wish) -> bool {
         || (a.revision, a.scene_revision) != (b.revision, b.scene_revision)
         || a.look != b.look
         || a.table != b.table
-}
-
-fn slot_of(experiment: &Experiment) -> SlotWish {
-    SlotWish {
-        graph: experiment.graph.clone(),
-        params: experiment.params.iter().map(|(name, value)| (name.value.clone(), value.clone())).collect(),
-    }
 }
 
 fn ron_files(folder: &Path) -> Vec<PathBuf> {

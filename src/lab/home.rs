@@ -1,0 +1,138 @@
+//! The program's folders, and graphs read from them.
+
+use super::{LabError, environment, params_of};
+use crate::experiment::Experiment;
+use crate::graph::link::{Linked, link};
+use crate::graph::load::{Folders, Graph, load};
+use crate::graph::runs::{Runs, runs};
+use crate::graph::source::Diagnostic;
+use crate::scene::Scene;
+use crate::shader::ShaderCompiler;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A graph with its shaders compiled and checked: all, or those of the passes that run.
+#[derive(Clone)]
+pub struct Loaded {
+    /// The graph.
+    pub graph: Arc<Graph>,
+    /// The shaders of its passes.
+    pub linked: Arc<Vec<Linked>>,
+    /// What was found and is no error.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Where the program's own folders are.
+#[derive(Clone, Debug)]
+pub struct Home {
+    /// The folder with `passes`, `shaders` and `configs`.
+    pub root: PathBuf,
+    /// Folder for compiled shaders and pipelines.
+    pub cache: Option<PathBuf>,
+}
+
+impl Home {
+    /// Finds the folders: `CONELAB_HOME`, else upwards from the working folder, else beside the program.
+    ///
+    /// # Errors
+    /// None of them has the folders.
+    pub fn find() -> Result<Home, LabError> {
+        let fits = |p: &Path| p.join("passes").is_dir() && p.join("shaders").is_dir();
+        let named = std::env::var_os("CONELAB_HOME").map(PathBuf::from);
+        let working = std::env::current_dir().ok();
+        let program = std::env::current_exe().ok();
+        let upwards = working.iter().flat_map(|p| p.ancestors()).chain(program.iter().flat_map(|p| p.ancestors()));
+        let root = match &named {
+            Some(path) if fits(path) => Some(path.clone()),
+            Some(path) => {
+                let message = format!("CONELAB_HOME is '{}', which has no passes and shaders folders", path.display());
+                return Err(LabError::Request(message));
+            }
+            None => upwards.into_iter().find(|p| fits(p)).map(Path::to_path_buf),
+        };
+        let root = root.ok_or_else(|| {
+            LabError::Request(
+                "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
+            )
+        })?;
+        Ok(Home { root, cache: Home::cache() })
+    }
+
+    /// The folder for compiled shaders and pipelines.
+    pub fn cache() -> Option<PathBuf> {
+        std::env::var_os("CONELAB_CACHE")
+            .map(PathBuf::from)
+            .or_else(|| std::env::var_os("XDG_CACHE_HOME").map(|p| PathBuf::from(p).join("conelab")))
+            .or_else(|| std::env::var_os("HOME").map(|p| PathBuf::from(p).join(".cache/conelab")))
+    }
+
+    /// Folders of graphs and shaders.
+    pub fn folders(&self) -> Folders {
+        Folders { passes: self.root.join("passes"), shaders: self.root.join("shaders") }
+    }
+
+    /// The file of a graph: a bare name is looked up among the graphs, a path is taken as it is.
+    pub fn graph_path(&self, name: &str) -> PathBuf {
+        let given = Path::new(name);
+        let bare = given.components().count() == 1 && !given.is_file();
+        if bare { self.root.join("passes").join(name) } else { given.to_path_buf() }
+    }
+
+    /// A graph with all of its shaders compiled and checked, and warnings; needs no device.
+    ///
+    /// # Errors
+    /// All mistakes.
+    pub fn graph(&self, name: &str) -> Result<(Graph, Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let graph = self.read(name)?;
+        let (linked, warnings) = self.link(&graph, &Runs::all(&graph))?;
+        Ok((graph, linked, warnings))
+    }
+
+    /// [`Home::graph`], to be shared.
+    ///
+    /// # Errors
+    /// All mistakes.
+    pub fn load(&self, name: &str) -> Result<Loaded, Vec<Diagnostic>> {
+        let (graph, linked, warnings) = self.graph(name)?;
+        Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
+    }
+
+    /// [`Home::load`] with the shaders of those passes alone that an experiment runs in a scene: a picture waits for no
+    /// other, and a mistake in another does not keep it away. [`Home::complete`] makes up for what is left out.
+    ///
+    /// # Errors
+    /// All mistakes in the graph and in these shaders.
+    pub fn load_for(&self, experiment: &Experiment, scene: &Scene) -> Result<Loaded, Vec<Diagnostic>> {
+        let graph = self.read(&experiment.graph)?;
+        let (linked, warnings) = self.link(&graph, &runs_of(&graph, experiment, scene))?;
+        Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
+    }
+
+    /// A graph with the shaders that an experiment runs; as it is, if it has them.
+    ///
+    /// # Errors
+    /// All mistakes in these shaders.
+    pub fn complete(&self, loaded: &Loaded, experiment: &Experiment, scene: &Scene) -> Result<Loaded, Vec<Diagnostic>> {
+        let runs = runs_of(&loaded.graph, experiment, scene);
+        if runs.are_linked(&loaded.graph, &loaded.linked) {
+            return Ok(loaded.clone());
+        }
+        let (linked, warnings) = self.link(&loaded.graph, &runs)?;
+        Ok(Loaded { graph: loaded.graph.clone(), linked: Arc::new(linked), warnings })
+    }
+
+    fn read(&self, name: &str) -> Result<Graph, Vec<Diagnostic>> {
+        load(&self.graph_path(name), &self.folders())
+    }
+
+    fn link(&self, graph: &Graph, runs: &Runs) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
+        let shaders = self.folders().shaders;
+        link(graph, &ShaderCompiler::new(&shaders, self.cache.as_deref()), &shaders, runs)
+    }
+}
+
+/// The passes that an experiment runs. With parameters that are none, which is told elsewhere: all.
+fn runs_of(graph: &Graph, experiment: &Experiment, scene: &Scene) -> Runs {
+    params_of(graph, experiment)
+        .map_or_else(|_| Runs::all(graph), |params| runs(graph, &params, &environment(scene, experiment.size)))
+}

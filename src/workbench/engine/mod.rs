@@ -1,0 +1,372 @@
+//! The engine: a thread with a device of its own, which renders what the window wishes for.
+//!
+//! The window has a second device. That costs a copy of each picture through main memory (8 MB at 1080p, about a
+//! millisecond each way) and buys that the window answers while a frame takes seconds, and that a shader which hangs
+//! or kills its device takes nothing else with it.
+
+mod approach;
+mod aside;
+mod frames;
+mod scenes;
+
+use super::builder::{self, Done, Job, Key};
+use super::judge::{self, Case, Question};
+use super::report::{DeviceReport, Report};
+use super::wish::{Look, Wish};
+use crate::lab::{Home, Lab, LabError, Loaded, Session};
+use crate::scene::{Scene, SceneError};
+use crate::vulkan::GpuOptions;
+use crossbeam_channel::{Receiver, Sender, select, unbounded};
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+/// What the window asks of the engine, beside its wish.
+pub enum Order {
+    /// The wish changed.
+    Look,
+    /// Save what slot A or B shows, under a name; with these resources.
+    Capture(usize, String, Vec<String>),
+    /// Say how far what slot A or B shows is from its reference.
+    Judge(usize, Question),
+    /// Render so many more frames of what is shown, to measure.
+    Frames(u32),
+    /// Stop the loading of a scene.
+    CancelLoading,
+    /// Capture a frame with RenderDoc.
+    RenderDoc,
+    /// Open the device anew.
+    Restart,
+    /// End.
+    Quit,
+}
+
+/// The window's end of an engine.
+pub struct Engine {
+    wish: Arc<Mutex<Wish>>,
+    orders: Sender<Order>,
+    /// News.
+    pub reports: Receiver<Report>,
+    thread: Option<std::thread::JoinHandle<Vec<String>>>,
+}
+
+impl Engine {
+    /// Starts the engine; `wake` is called after each report.
+    pub fn start(home: Home, options: GpuOptions, wake: Arc<dyn Fn() + Send + Sync>) -> Engine {
+        let wish = Arc::new(Mutex::new(Wish::default()));
+        let (orders, inbox) = unbounded();
+        let (outbox, reports) = unbounded();
+        let out = Out { reports: outbox, wake };
+        let shared = wish.clone();
+        let thread = std::thread::spawn(move || run(home, options, &shared, &inbox, &out));
+        Engine { wish, orders, reports, thread: Some(thread) }
+    }
+
+    /// Works towards this from now on.
+    pub fn wish(&self, wish: Wish) {
+        *self.wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = wish;
+        self.order(Order::Look);
+    }
+
+    /// Gives an order.
+    pub fn order(&self, order: Order) {
+        // An engine that has ended needs no orders.
+        let _ = self.orders.send(order);
+    }
+
+    /// Ends the engine: waits for the frame in work, at most so long. Returns the validation messages of its device.
+    pub fn stop(mut self, patience: Duration) -> Vec<String> {
+        self.order(Order::Quit);
+        let until = Instant::now() + patience;
+        let Some(thread) = self.thread.take() else { return Vec::new() };
+        while !thread.is_finished() && Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        // A shader that never ends cannot be waited for; the thread ends with the program.
+        if thread.is_finished() { thread.join().unwrap_or_default() } else { Vec::new() }
+    }
+}
+
+#[derive(Clone)]
+struct Out {
+    reports: Sender<Report>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl Out {
+    fn send(&self, report: Report) {
+        if self.reports.send(report).is_ok() {
+            (self.wake)();
+        }
+    }
+}
+
+/// A frame that was submitted.
+struct Submitted {
+    wish: u64,
+    time: f64,
+    frame: u64,
+}
+
+#[derive(Default)]
+struct Slot {
+    session: Option<Box<Session>>,
+    loaded: Option<Loaded>,
+    /// What the session was built from.
+    key: Option<Key>,
+    /// What could not be built.
+    failed: Option<Key>,
+    preview: bool,
+    /// When the build in work began.
+    building: Option<Instant>,
+    submitted: VecDeque<Submitted>,
+    frame: u64,
+    /// GPU time of the last frame known, ms.
+    last_ms: f64,
+    /// The last wish that the session, or the failure to build one, answers.
+    answered: u64,
+    /// Frames still to render before the slot rests.
+    due: u32,
+    lights: bool,
+    checked: Option<Key>,
+    looked: Option<Look>,
+}
+
+struct Run<'a> {
+    lab: Lab,
+    out: &'a Out,
+    wish: Wish,
+    slots: [Slot; 2],
+    jobs: Sender<Job>,
+    cases: Sender<Case>,
+    scene: Option<Arc<Scene>>,
+    /// What was loaded: name, revision; and how many scenes were.
+    scene_key: Option<(String, u64)>,
+    scene_number: u64,
+    loading: Option<Arc<AtomicBool>>,
+    loaded: Sender<Result<Arc<Scene>, SceneError>>,
+    clock: Clocked,
+    turn: usize,
+    renderdoc: bool,
+    last_look: Instant,
+}
+
+/// Time as it goes.
+struct Clocked {
+    now: f64,
+    last: Instant,
+    steps: u64,
+    jumps: u64,
+}
+
+fn run(home: Home, options: GpuOptions, wish: &Mutex<Wish>, inbox: &Receiver<Order>, out: &Out) -> Vec<String> {
+    let mut messages = Vec::new();
+    loop {
+        match session(home.clone(), &options, wish, inbox, out, &mut messages) {
+            Ok(End::Quit) => return messages,
+            Ok(End::Restart) => {}
+            Err(e) => {
+                out.send(Report::Trouble(format!("{e}. Change a shader or a value, or press Restart device")));
+                // What was wished for must not be tried again unchanged: it may kill the device each time.
+                for order in inbox {
+                    match order {
+                        Order::Quit => return messages,
+                        Order::Restart | Order::Look => break,
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Why a device was closed.
+enum End {
+    Quit,
+    Restart,
+}
+
+/// One life of a device.
+fn session(
+    home: Home,
+    options: &GpuOptions,
+    wish: &Mutex<Wish>,
+    inbox: &Receiver<Order>,
+    out: &Out,
+    messages: &mut Vec<String>,
+) -> Result<End, LabError> {
+    let lab = Lab::open(home, options.clone())?;
+    let gpu = lab.gpu.clone();
+    out.send(Report::Device(DeviceReport { name: gpu.info.name.clone(), driver: gpu.info.driver.clone() }));
+    let (jobs, job_box) = unbounded();
+    let (done_out, done) = unbounded();
+    let (loaded_out, loaded) = unbounded();
+    let builder = std::thread::spawn(move || builder::run(&job_box, &done_out));
+    let (cases, case_box) = unbounded();
+    let told = out.clone();
+    let judge = std::thread::spawn(move || judge::run(&case_box, &|report| told.send(report)));
+    let mut run = Run {
+        lab,
+        out,
+        wish: Wish::default(),
+        slots: Default::default(),
+        jobs,
+        cases,
+        scene: None,
+        scene_key: None,
+        scene_number: 0,
+        loading: None,
+        loaded: loaded_out,
+        clock: Clocked { now: 0.0, last: Instant::now(), steps: 0, jumps: 0 },
+        turn: 0,
+        renderdoc: false,
+        last_look: Instant::now(),
+    };
+    run.change(wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
+    let result = loop {
+        let (idle, awaits) = (!run.busy(), run.awaits_build());
+        let mut orders: Vec<Order> = Vec::new();
+        let mut builds: Vec<Done> = Vec::new();
+        let mut scenes = Vec::new();
+        if idle {
+            select! {
+                recv(inbox) -> order => orders.push(order.unwrap_or(Order::Quit)),
+                recv(done) -> d => builds.extend(d),
+                recv(loaded) -> l => scenes.extend(l),
+            }
+        } else if awaits {
+            select! {
+                recv(inbox) -> order => orders.push(order.unwrap_or(Order::Quit)),
+                recv(done) -> d => builds.extend(d),
+                default(Duration::from_millis(10)) => {}
+            }
+        }
+        orders.extend(inbox.try_iter());
+        builds.extend(done.try_iter());
+        scenes.extend(loaded.try_iter());
+        if orders.iter().any(|o| matches!(o, Order::Quit)) {
+            break Ok(End::Quit);
+        }
+        if orders.iter().any(|o| matches!(o, Order::Restart)) {
+            break Ok(End::Restart);
+        }
+        let step = run.handle(orders, builds, scenes, wish).and_then(|()| run.render());
+        if let Err(e) = step {
+            break Err(e);
+        }
+    };
+    if let Some(cancel) = &run.loading {
+        cancel.store(true, Ordering::Relaxed);
+    }
+    drop(run);
+    // Builds in work hold the device; what they send goes nowhere.
+    while !(builder.is_finished() && judge.is_finished()) {
+        let _ = done.recv_timeout(Duration::from_millis(10));
+    }
+    messages.extend(gpu.messages());
+    result
+}
+
+impl Run<'_> {
+    fn busy(&self) -> bool {
+        self.slots.iter().any(|s| s.session.is_some() && s.due > 0)
+    }
+
+    /// Whether a build is about to be done, so that beginning a long frame of what it replaces would only delay it.
+    fn awaits_build(&self) -> bool {
+        let soon = |since: Instant| since.elapsed() < PATIENCE;
+        self.slots.iter().any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
+    }
+
+    fn handle(
+        &mut self,
+        orders: Vec<Order>,
+        builds: Vec<Done>,
+        scenes: Vec<Result<Arc<Scene>, SceneError>>,
+        wish: &Mutex<Wish>,
+    ) -> Result<(), LabError> {
+        for scene in scenes {
+            self.scene_came(scene)?;
+        }
+        for done in builds {
+            self.built(done)?;
+        }
+        for order in orders {
+            match order {
+                Order::CancelLoading => {
+                    if let Some(cancel) = &self.loading {
+                        cancel.store(true, Ordering::Relaxed);
+                    }
+                }
+                Order::Capture(slot, name, resources) => self.capture(slot, name, resources),
+                Order::Judge(slot, question) => self.judge(slot, question),
+                Order::Frames(count) => self.disturb(count),
+                Order::RenderDoc => {
+                    self.renderdoc = true;
+                    self.disturb(1);
+                }
+                Order::Look | Order::Quit | Order::Restart => {}
+            }
+        }
+        let latest = wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
+        if latest.number != self.wish.number {
+            self.change(latest)?;
+        }
+        Ok(())
+    }
+
+    /// Works through a new wish.
+    fn change(&mut self, wish: Wish) -> Result<(), LabError> {
+        let old = std::mem::replace(&mut self.wish, wish);
+        if self.wish.clock.jumps != self.clock.jumps {
+            self.clock.jumps = self.wish.clock.jumps;
+            self.clock.now = self.wish.clock.at;
+        }
+        if self.wish.clock.playing && !old.clock.playing {
+            self.clock.last = Instant::now();
+        }
+        if self.wish.lights != old.lights {
+            for slot in &mut self.slots {
+                slot.lights = true;
+            }
+        }
+        // Files, parameters and sizes disturb a slot when what they lead to has been built.
+        let seen = |w: &Wish| (w.camera, w.clock, w.continuous, w.look.clone(), w.table);
+        if seen(&self.wish) != seen(&old) || self.wish.lights != old.lights || self.wish.path != old.path {
+            self.disturb(1);
+        }
+        for i in 0..2 {
+            if self.wish.slots[i].is_none() {
+                self.slots[i] = Slot { building: self.slots[i].building, ..Slot::default() };
+            }
+        }
+        self.load_scene();
+        for i in 0..2 {
+            self.approach(i)?;
+        }
+        Ok(())
+    }
+
+    /// Frames are due: as many as it takes until those with a memory have settled.
+    fn disturb(&mut self, least: u32) {
+        for slot in &mut self.slots {
+            let settle = if slot.session.as_ref().is_some_and(|s| remembers(s)) { SETTLE } else { 1 };
+            slot.due = slot.due.max(least.max(settle));
+        }
+    }
+}
+
+/// A frame as long as this is worth waiting for, ms.
+const LONG: f64 = 4.0;
+
+/// How long frames wait for a build.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// Frames until what is gathered over time has settled.
+const SETTLE: u32 = 16;
+
+/// Whether a frame uses what the frame before left.
+fn remembers(session: &Session) -> bool {
+    session.program.plan.textures.iter().any(|t| t.history && !t.usage.is_empty())
+}

@@ -1,0 +1,73 @@
+//! The scene that is wished for, loaded on a thread of its own.
+
+use super::super::report::Report;
+use super::Run;
+use crate::lab::LabError;
+use crate::scene::{Scene, SceneError};
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+impl Run<'_> {
+    pub(super) fn load_scene(&mut self) {
+        let key = (self.wish.scene.clone(), self.wish.scene_revision);
+        if key.0.is_empty() || self.scene_key.as_ref() == Some(&key) {
+            return;
+        }
+        self.scene_key = Some(key.clone());
+        if let Some(cancel) = self.loading.take() {
+            cancel.store(true, Ordering::Relaxed);
+        }
+        let cancel = Arc::new(AtomicBool::new(false));
+        self.loading = Some(cancel.clone());
+        let (out, loaded) = (self.out.clone(), self.loaded.clone());
+        out.send(Report::Loading(key.0.clone(), 0.0));
+        std::thread::spawn(move || {
+            let last = Mutex::new(Instant::now());
+            let scene = Scene::open(&key.0, &|what, part| {
+                if cancel.load(Ordering::Relaxed) {
+                    return ControlFlow::Break(());
+                }
+                // The window need not hear of every texture.
+                if let Ok(mut last) = last.lock()
+                    && last.elapsed() > Duration::from_millis(30)
+                {
+                    *last = Instant::now();
+                    out.send(Report::Loading(what.to_string(), part));
+                }
+                ControlFlow::Continue(())
+            });
+            // A load that was replaced by another has nobody to tell.
+            if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
+                let _ = loaded.send(scene.map(Arc::new));
+            }
+        });
+    }
+
+    pub(super) fn scene_came(&mut self, scene: Result<Arc<Scene>, SceneError>) -> Result<(), LabError> {
+        match scene {
+            Ok(scene) => {
+                self.loading = None;
+                self.scene = Some(scene.clone());
+                self.scene_number += 1;
+                self.out.send(Report::Loaded(scene));
+                for i in 0..2 {
+                    self.approach(i)?;
+                }
+            }
+            Err(SceneError::Cancelled) => {
+                // Cancelled for another scene, the other is being loaded by now.
+                if self.loading.as_ref().is_some_and(|c| c.load(Ordering::Relaxed)) {
+                    self.loading = None;
+                    self.out.send(Report::LoadFailed("loading was cancelled".into()));
+                }
+            }
+            Err(e) => {
+                self.loading = None;
+                self.out.send(Report::LoadFailed(e.to_string()));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,118 @@
+//! Undo: states to go back and forth between.
+
+use super::Workbench;
+use super::wish::Wish;
+
+/// What an edit changes, and what opening an experiment changes beside it.
+#[derive(Clone)]
+pub struct State {
+    wish: Wish,
+    name: String,
+    fixed_size: Option<(u32, u32)>,
+    /// The scene's time, s.
+    time: f64,
+}
+
+/// A state, and whether the way to or from it was the opening of an experiment: then view, size and time are part of it.
+type Step = (State, bool);
+
+/// The states of a session.
+#[derive(Default)]
+pub struct History {
+    past: Vec<Step>,
+    future: Vec<Step>,
+    settled: Option<State>,
+    opened: bool,
+}
+
+/// States that are remembered.
+const MOST: usize = 200;
+
+impl State {
+    /// Whether undo has nothing to do between two states: views and measurements do not count, unless an experiment was
+    /// opened.
+    fn same(&self, other: &State, opened: bool) -> bool {
+        let (a, b) = (&self.wish, &other.wish);
+        let edit = a.slots == b.slots && a.scene == b.scene && a.lights == b.lights;
+        let view = a.camera == b.camera && self.fixed_size == other.fixed_size && self.name == other.name;
+        edit && (view || !opened)
+    }
+}
+
+impl History {
+    /// The edit in work opens an experiment.
+    pub fn opens(&mut self) {
+        self.opened = true;
+    }
+
+    /// Remembers the state after an edit; while `held` (a slider in the hand) it is still the same edit.
+    fn note(&mut self, state: State, held: bool) {
+        let opened = self.opened;
+        match &mut self.settled {
+            Some(settled) if !settled.same(&state, opened) => {
+                if !held {
+                    self.past.push((std::mem::replace(settled, state), opened));
+                    if self.past.len() > MOST {
+                        self.past.remove(0);
+                    }
+                    self.future.clear();
+                    self.opened = false;
+                }
+            }
+            // A view that moves without an edit is where the next edit begins.
+            _ => {
+                self.settled = Some(state);
+                self.opened = false;
+            }
+        }
+    }
+
+    /// Whether there is something to undo and to redo.
+    pub fn can(&self) -> (bool, bool) {
+        (!self.past.is_empty(), !self.future.is_empty())
+    }
+
+    /// The state to go to from this one.
+    fn step(&mut self, now: State, back: bool) -> Option<Step> {
+        let (from, to) = if back { (&mut self.past, &mut self.future) } else { (&mut self.future, &mut self.past) };
+        let (state, opened) = from.pop()?;
+        to.push((now, opened));
+        Some((state, opened))
+    }
+}
+
+impl Workbench {
+    fn state(&self) -> State {
+        let time = self.slots[0].picture.as_ref().map_or(self.wish.clock.at, |p| p.time);
+        State { wish: self.wish.clone(), name: self.name.clone(), fixed_size: self.fixed_size, time }
+    }
+
+    /// Remembers what there is now; see [`History::note`].
+    pub(super) fn remember(&mut self, held: bool) {
+        let state = self.state();
+        self.history.note(state, held);
+    }
+
+    /// Goes back, or forth, by one edit.
+    pub(super) fn go(&mut self, back: bool) {
+        let now = self.state();
+        let Some((State { wish, name, fixed_size, time }, opened)) = self.history.step(now, back) else { return };
+        if self.wish.scene != wish.scene {
+            self.open_scene(&wish.scene);
+            // It is seen as it was, not as an experiment would have it.
+            self.returning = wish.camera.is_some();
+            self.wish.camera = wish.camera;
+        }
+        self.wish.slots = wish.slots;
+        self.wish.lights = wish.lights;
+        if opened {
+            self.wish.camera = wish.camera;
+            self.wish.size = wish.size;
+            self.wish.clock.at = time;
+            self.wish.clock.jumps += 1;
+            (self.name, self.fixed_size, self.resize_since) = (name, fixed_size, None);
+            self.experiment = None;
+        }
+        self.history.settled = Some(self.state());
+    }
+}

@@ -1,0 +1,51 @@
+//! What a host (a window, a screenshot) asks: pixels to show, and what to tell scripts.
+
+use super::{NewPixels, Workbench, events};
+use serde_json::json;
+
+impl Workbench {
+    /// Pixels that the host has not shown yet.
+    pub fn pixels(&self) -> &[NewPixels] {
+        &self.pixels
+    }
+
+    /// Revision of the files that the shown picture of A was made from.
+    pub fn shown_revision(&self) -> u64 {
+        self.shown_revision
+    }
+
+    /// The host has shown them.
+    pub fn painted(&mut self) {
+        if let Some(picture) = self.slots[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.0 == 0)) {
+            self.shown_revision = picture.revision;
+        }
+        if !self.pixels.is_empty() {
+            if self.events.is_none() {
+                self.pixels.clear();
+                return;
+            }
+            let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
+            let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
+            let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
+            let wish = self.slots[0].picture.as_ref().map_or(0, |p| p.wish);
+            self.event(
+                "painted",
+                json!({ "pictures": list, "fingerprints": prints, "wish": wish, "since_change_ms": since }),
+            );
+        }
+        self.pixels.clear();
+    }
+
+    /// Tells where the widgets are, for scripts; `true` if there is more to tell.
+    pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
+        self.events.as_mut().is_some_and(|e| {
+            e.place(self.view.place, scale);
+            e.widgets(update, scale)
+        })
+    }
+
+    /// Whether the widgets are to be described.
+    pub fn is_described(&self) -> bool {
+        self.events.is_some()
+    }
+}

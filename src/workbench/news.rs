@@ -1,0 +1,156 @@
+//! What other threads have to say: the engine, the watch over files, what is worked out aside.
+
+use super::compare::MODES;
+use super::report::{PictureReport, Report};
+use super::{COMPARISON, INSPECTOR, Workbench, events, keep};
+use crate::experiment::{CameraChoice, Experiment};
+use crate::graph::successor::Change;
+use crate::lab::{Viewpoint, viewpoint_of};
+use crate::scene::Scene;
+use serde_json::json;
+use std::sync::Arc;
+use std::time::Duration;
+
+impl Workbench {
+    /// Takes in what other threads have to say. Returns how soon to ask again, if something is about to come.
+    pub fn pump(&mut self) -> Option<Duration> {
+        while let Ok(report) = self.engine.reports.try_recv() {
+            self.report(report);
+        }
+        while let Ok((mode, map)) = self.compared.1.try_recv() {
+            self.comparing = false;
+            if let Some(map) = map {
+                self.pixels.retain(|p| p.0 != COMPARISON);
+                self.pixels.push((COMPARISON, map.size, map.bytes.clone()));
+                let (mean, max, differing) = (map.mean, map.max, map.differing);
+                let name = MODES.iter().find(|m| m.0 == mode).map_or("", |m| m.1);
+                self.event("compared", json!({ "mode": name, "mean": mean, "max": max, "differing": differing }));
+                self.comparison = Some((mode, map));
+            }
+        }
+        if let Some(pixels) = self.inspector.take(&self.wake) {
+            self.pixels.retain(|p| p.0 != INSPECTOR);
+            self.pixels.push(pixels);
+        }
+        self.chart_news();
+        match self.watch.take() {
+            Ok(changed) => {
+                self.files_changed(&changed);
+                None
+            }
+            Err(wait) => wait,
+        }
+    }
+
+    fn report(&mut self, report: Report) {
+        match report {
+            Report::Device(device) => {
+                self.event("device", json!({ "name": device.name, "driver": device.driver }));
+                self.device = Some(device);
+                self.chart.restarted();
+                self.trouble = None;
+            }
+            Report::Built { slot, outline, change, ms, revision, objects } => {
+                let Change { kept, built, resized } = change;
+                self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
+                self.event(
+                    "built",
+                    json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
+                        "revision": revision, "objects": objects }),
+                );
+                self.times.built(slot, &outline);
+                self.mended(slot);
+                self.slots[slot].outline = Some(outline);
+            }
+            Report::Failed { slot, diagnostics, revision } => {
+                let texts: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
+                self.event("failed", json!({ "slot": slot, "errors": texts, "revision": revision }));
+                self.slots[slot].errors = diagnostics;
+            }
+            Report::Set { slot, .. } => {
+                self.mended(slot);
+            }
+            Report::Picture(picture) => self.picture_came(picture),
+            Report::Loading(what, part) => self.loading = Some((what, part)),
+            Report::Loaded(scene) => self.loaded(scene),
+            Report::LoadFailed(why) => {
+                self.loading = None;
+                self.event("load failed", json!({ "why": why }));
+                self.trouble = Some(why);
+            }
+            Report::Texels(look, texels) => self.inspector.note(look, *texels, &self.wake),
+            Report::Table(table, bytes) => self.tables.note(table, bytes),
+            Report::Checks(slot, failed) => self.slots[slot].checks = failed,
+            Report::Captured(result) => {
+                let ok = result.is_ok();
+                let text = match result {
+                    Ok(path) => {
+                        self.gallery.forget();
+                        format!("captured {}", path.display())
+                    }
+                    Err(why) => format!("not captured: {why}"),
+                };
+                self.event("captured", json!({ "ok": ok, "text": text }));
+                self.status = text;
+            }
+            Report::Judged(judged) => self.judged(judged),
+            Report::Trouble(text) => {
+                self.event("trouble", json!({ "text": text }));
+                self.trouble = Some(text);
+            }
+        }
+    }
+
+    fn mended(&mut self, slot: usize) {
+        if !self.slots[slot].errors.is_empty() {
+            self.slots[slot].errors.clear();
+            self.event("mended", json!({ "slot": slot }));
+        }
+    }
+
+    fn picture_came(&mut self, picture: PictureReport) {
+        if self.wish.slots[picture.slot].is_none() {
+            return;
+        }
+        self.times.note(&picture);
+        self.chart.note(&picture);
+        let number = picture.slot;
+        self.pixels.retain(|p| p.0 != number);
+        self.pixels.push((number, picture.size, picture.bytes.clone()));
+        if self.events.is_some() {
+            let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
+            let fields = json!({ "slot": number, "preview": picture.preview, "frame": picture.frame,
+                "wish": picture.wish, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
+                "since_change_ms": since,
+                "fingerprint": events::fingerprint(&picture.bytes) });
+            self.event("picture", fields);
+        }
+        self.slots[number].picture = Some(picture);
+    }
+
+    fn loaded(&mut self, scene: Arc<Scene>) {
+        self.loading = None;
+        self.trouble = None;
+        self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
+        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
+        if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
+            let fallback = Experiment { camera: CameraChoice::Named("default".into()), ..self.bare() };
+            let experiment = self.experiment.take().unwrap_or(fallback);
+            match keep::lights(&experiment, &scene) {
+                Ok(lights) => self.wish.lights = lights,
+                Err(e) => self.trouble = Some(e.to_string()),
+            }
+            match viewpoint_of(&experiment, &scene) {
+                Ok(v) => self.wish.camera = Some(v.camera),
+                Err(e) => {
+                    self.trouble = Some(e.to_string());
+                    self.wish.camera = Some(Viewpoint::around(&scene).camera);
+                }
+            }
+        }
+        let (low, high) = scene.bounds();
+        self.diagonal = (high - low).length().max(1e-3);
+        self.scene = Some(scene);
+        self.tell();
+    }
+}

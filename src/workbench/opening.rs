@@ -1,0 +1,98 @@
+//! What is opened: experiments, scenes, files that were edited or dropped on the window.
+
+use super::wish::SlotWish;
+use super::{Workbench, keep, watch};
+use crate::experiment::Experiment;
+use crate::lab::viewpoint_of;
+use serde_json::json;
+use std::path::Path;
+use std::time::Instant;
+
+impl Workbench {
+    pub(super) fn files_changed(&mut self, changed: &watch::Changed) {
+        if changed.method {
+            self.wish.revision += 1;
+            self.changed_at = Some(Instant::now());
+            self.event("changed", json!({ "revision": self.wish.revision }));
+        }
+        if changed.scene {
+            self.wish.scene_revision += 1;
+        }
+        for path in &changed.experiments {
+            self.experiment_changed(path);
+        }
+        self.tell();
+    }
+
+    /// The open experiment's file was edited: its values take the place of those here.
+    fn experiment_changed(&mut self, path: &Path) {
+        if path.file_stem().is_none_or(|s| s.to_string_lossy() != self.name.as_str()) {
+            return;
+        }
+        match Experiment::read(path) {
+            Ok(experiment) => {
+                self.slots[0].errors.clear();
+                if slot_of(&experiment) != self.wish.slots[0].clone().unwrap_or_default()
+                    || experiment.scene != self.wish.scene
+                {
+                    self.open(&experiment);
+                    self.status = format!("read {} again", path.display());
+                }
+            }
+            Err(errors) => self.slots[0].errors = errors,
+        }
+    }
+
+    /// Shows an experiment in slot A.
+    pub(super) fn open(&mut self, experiment: &Experiment) {
+        self.history.opens();
+        self.name.clone_from(&experiment.name);
+        self.wish.slots[0] = Some(slot_of(experiment));
+        if self.wish.scene == experiment.scene {
+            if let Some(scene) = &self.scene {
+                self.wish.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
+                self.wish.lights = keep::lights(experiment, scene).unwrap_or_default();
+            }
+        } else {
+            self.open_scene(&experiment.scene);
+        }
+        self.experiment = Some(experiment.clone());
+        self.wish.clock.at = experiment.time;
+        self.wish.clock.jumps += 1;
+    }
+
+    pub(super) fn open_scene(&mut self, spec: &str) {
+        self.wish.scene = spec.to_string();
+        self.wish.lights = None;
+        self.returning = false;
+        self.watch.scene(spec);
+    }
+
+    /// A file was dropped on the window.
+    pub fn dropped(&mut self, path: &Path) {
+        let spec = path.to_string_lossy().into_owned();
+        let is_ron = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ron"));
+        match Experiment::read(path) {
+            Ok(experiment) if is_ron => self.open(&experiment),
+            _ => {
+                self.experiment = None;
+                self.open_scene(&spec);
+            }
+        }
+        self.tell();
+    }
+
+    /// The present experiment, as slot A shows it.
+    pub(super) fn bare(&self) -> Experiment {
+        let slot = self.wish.slots[0].clone().unwrap_or_default();
+        Experiment { name: self.name.clone(), ..self.wish.experiment(&slot) }
+    }
+}
+
+/// A slot that shows an experiment.
+pub(super) fn slot_of(experiment: &Experiment) -> SlotWish {
+    SlotWish {
+        graph: experiment.graph.clone(),
+        params: experiment.params.iter().map(|(name, value)| (name.value.clone(), value.clone())).collect(),
+    }
+}
