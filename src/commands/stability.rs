@@ -75,7 +75,9 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
             doing = format!("{} {}: {}", job.case.name, job.case.variant, job.method);
             bar.set_message(doing.clone());
         }
-        Progress::Gathers(now) => bar.set_message(format!("{doing}, reference {} of {} samples", now.samples, now.goal)),
+        Progress::Gathers(now) => {
+            bar.set_message(format!("{doing}, reference {} of {} samples", now.samples, now.goal))
+        }
         Progress::Finished(record) => {
             let say = |text: &str| {
                 let first = text.lines().next().unwrap_or_default();

@@ -1,6 +1,6 @@
 //! Charts of a suite, SVG.
 
-use super::record::{Measured, PartResult, Record, Report};
+use super::record::{PartResult, Record, Report};
 use crate::lab::LabError;
 use crate::report::{COLORS, short};
 use plotters::prelude::*;
@@ -11,6 +11,9 @@ const LINES: (u32, u32) = (900, 420);
 const WIDTH: i32 = 900;
 const LEFT: i32 = 360;
 const ROW: i32 = 20;
+/// Lines that are no method: grey.
+const NOISE: &str = "noise of the reference";
+const REFERENCE: &str = "reference";
 
 /// A chart.
 pub(super) struct Chart {
@@ -21,6 +24,17 @@ pub(super) struct Chart {
     /// The chart.
     pub svg: String,
 }
+
+/// Bars over everything: part, name, title, value.
+type Bar = (&'static str, &'static str, &'static str, fn(&PartResult) -> Option<f64>);
+const BARS: [Bar; 4] = [
+    ("total", "all E_t", "E_t of the total, radiance", |p| p.e),
+    ("diffuse", "all E_t of diffuse", "E_t of diffuse light, radiance", |p| p.e),
+    ("diffuse", "all flicker of diffuse", "Flicker index of diffuse light, mean over pixels", |p| {
+        p.flicker.filter(|_| p.frames.len() > 1).map(|f| f.mean)
+    }),
+    ("total", "all relMSE", "relMSE of the total, last frame", |p| p.scores.as_ref().map(|s| s.relmse)),
+];
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -33,18 +47,11 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
         out.extend(drawn.map(|svg| Chart { name: plain.collect(), case: case.map(String::from), svg }));
         Ok::<(), LabError>(())
     };
-    let total = |m: &Measured, f: fn(&PartResult) -> Option<f64>| f(m.parts.get("total")?);
-    let bars: [(&str, &str, fn(&PartResult) -> Option<f64>); 3] = [
-        ("all E_t", "E_t of the total, radiance", |p| p.e),
-        ("all flicker", "Flicker index of the total, mean over pixels", |p| p.flicker.filter(|_| p.frames.len() > 1).map(|f| f.mean)),
-        ("all relMSE", "relMSE of the total, last frame", |p| p.scores.as_ref().map(|s| s.relmse)),
-    ];
-    for (name, title, value) in bars {
+    for (part, name, title, value) in BARS {
         let row = |r: &Record| {
-            let m = r.measured()?;
-            let v = total(m, value)?;
-            let noisy = name == "all E_t" && m.parts["total"].told_apart == Some(false);
-            Some((r.title(), r.method.clone(), v, noisy))
+            let part = r.measured()?.parts.get(part)?;
+            let noisy = title.starts_with("E_t") && part.told_apart == Some(false);
+            Some((r.title(), r.method.clone(), value(part)?, noisy))
         };
         let list: Vec<_> = report.results.iter().filter_map(row).collect();
         add(name, None, bars_of(title, &list))?;
@@ -53,23 +60,26 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
     cases.dedup();
     for case in &cases {
         let of = || report.results.iter().filter(|r| r.title() == *case);
-        let frames = |value: &dyn Fn(&super::FrameScore) -> Option<f64>, part: &str, suffix: &str| {
+        let frames = |value: &dyn Fn(&super::FrameScore) -> Option<f64>, part: &str| {
             let line = |r: &Record| {
                 let part = r.measured()?.parts.get(part)?;
                 let points: Vec<(f64, f64)> =
                     part.frames.iter().filter_map(|f| Some((f.frame as f64, value(f)?))).collect();
-                (points.len() > 1).then(|| (format!("{}{suffix}", r.method), points))
+                (points.len() > 1).then(|| (r.method.clone(), points))
             };
             of().filter_map(line).collect::<Vec<_>>()
         };
-        let mut lines = frames(&|f| f.change.map(|c| c.rms), "total", "");
-        let noise = frames(&|f| f.noise, "total", "").into_iter().next();
-        lines.extend(noise.map(|(_, points)| ("noise of the reference".to_string(), points)));
-        add(&format!("{case} E_t"), Some(case), lines_of(&format!("{case}: E_t of the total"), "radiance", &lines))?;
+        for part in ["total", "diffuse"] {
+            let mut lines = frames(&|f| f.change.map(|c| c.rms), part);
+            let noise = frames(&|f| f.noise, part).into_iter().next();
+            lines.extend(noise.map(|(_, points)| (NOISE.to_string(), points)));
+            let title = format!("{case}: E_t of {part}");
+            add(&format!("{case} E_t of {part}"), Some(case), lines_of(&title, "radiance", &lines))?;
+        }
         if of().any(|r| r.measured().is_some_and(|m| m.parts.values().any(|p| p.step.is_some()))) {
-            let mut lines = frames(&|f| f.mean, "diffuse", "");
-            let truth = frames(&|f| f.reference_mean, "diffuse", "").into_iter().next();
-            lines.extend(truth.map(|(_, points)| ("reference".to_string(), points)));
+            let mut lines = frames(&|f| f.mean, "diffuse");
+            let truth = frames(&|f| f.reference_mean, "diffuse").into_iter().next();
+            lines.extend(truth.map(|(_, points)| (REFERENCE.to_string(), points)));
             let title = format!("{case}: mean luminance of diffuse light");
             add(&format!("{case} response"), Some(case), lines_of(&title, "radiance", &lines))?;
         }
@@ -81,7 +91,7 @@ fn color(i: usize) -> RGBColor {
     COLORS[i % COLORS.len()]
 }
 
-/// Values over frames; lines that begin with what is no method are grey.
+/// Values over frames.
 fn lines_of(title: &str, unit: &str, lines: &[(String, Vec<(f64, f64)>)]) -> Result<Option<String>, Failure> {
     let points = || lines.iter().flat_map(|l| &l.1);
     let most = points().map(|p| p.1).fold(0.0, f64::max);
@@ -112,7 +122,7 @@ fn lines_of(title: &str, unit: &str, lines: &[(String, Vec<(f64, f64)>)]) -> Res
             .bold_line_style(RGBColor(225, 225, 225))
             .draw()?;
         for (i, (name, points)) in lines.iter().enumerate() {
-            let reference = name == "noise of the reference" || name == "reference";
+            let reference = name == NOISE || name == REFERENCE;
             let color = if reference { RGBColor(120, 120, 120) } else { color(i) };
             let style = color.stroke_width(if reference { 1 } else { 2 });
             chart.draw_series(std::iter::once(PathElement::new(points.clone(), style)))?;

@@ -63,7 +63,8 @@ pub(super) fn page(report: &Report, charts: &[Chart]) -> String {
         charts.iter().filter(|c| c.case.as_ref() == Some(case)).for_each(|c| figure(&mut out, c));
         for r in &of {
             if let Some((m, w)) = r.measured().and_then(|m| Some((m, m.worst.as_ref()?))) {
-                let warnings = if m.warnings.is_empty() { String::new() } else { format!(" {}.", m.warnings.join("; ")) };
+                let warnings =
+                    if m.warnings.is_empty() { String::new() } else { format!(" {}.", m.warnings.join("; ")) };
                 let _ = writeln!(
                     out,
                     "<figure><img src=\"pictures/{0}.png\" alt=\"\"><figcaption><b>{1}</b>, worst frame {2} \
@@ -120,7 +121,8 @@ fn table(out: &mut String, part: &str, records: &[&Record]) {
             let _ = write!(out, "<td class=\"bad\" colspan=\"{}\">{}</td>", columns.len(), escaped(why));
         }
         for c in columns.iter().filter(|_| r.measured().is_some()) {
-            let untold = c.0 == "E_t" && r.measured().and_then(|m| m.parts.get(part)).is_some_and(|p| p.told_apart == Some(false));
+            let untold = c.0 == "E_t"
+                && r.measured().and_then(|m| m.parts.get(part)).is_some_and(|p| p.told_apart == Some(false));
             let class = if untold { " class=\"noise\"" } else { "" };
             let _ = write!(out, "<td{class}>{}</td>", found(r, c).map_or(String::new(), short));
         }

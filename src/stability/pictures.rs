@@ -51,7 +51,8 @@ impl Panels {
 
     /// What they are, from the left.
     pub fn names(&self) -> Vec<String> {
-        let last = if self.pictures[0].0 == "the frame before" { "change against the reference's" } else { "difference" };
+        let last =
+            if self.pictures[0].0 == "the frame before" { "change against the reference's" } else { "difference" };
         self.pictures.iter().map(|p| p.0).chain([last]).map(String::from).collect()
     }
 
@@ -85,8 +86,10 @@ impl Panels {
                 }
             }
         }
-        let failed = |e: &dyn std::fmt::Display| LabError::Request(format!("cannot make the worst frame's picture: {e}"));
-        let (w, h) = (u32::try_from(row).map_err(|e| failed(&e))?, u32::try_from(height * scale).map_err(|e| failed(&e))?);
+        let failed =
+            |e: &dyn std::fmt::Display| LabError::Request(format!("cannot make the worst frame's picture: {e}"));
+        let (w, h) =
+            (u32::try_from(row).map_err(|e| failed(&e))?, u32::try_from(height * scale).map_err(|e| failed(&e))?);
         let mut out = Vec::new();
         PngEncoder::new(&mut out).write_image(&bytes, w, h, ExtendedColorType::Rgb8).map_err(|e| failed(&e))?;
         Ok(out)

@@ -250,11 +250,7 @@ fn cell_at(session: &mut Session, start: &Moment) -> Result<f32, LabError> {
 }
 
 /// The voxels of the last frame against exact ones, if the case asks for it and the method can.
-fn voxels(
-    session: &mut Session,
-    job: &Job,
-    warnings: &mut Vec<String>,
-) -> Result<Option<oracle::Score>, LabError> {
+fn voxels(session: &mut Session, job: &Job, warnings: &mut Vec<String>) -> Result<Option<oracle::Score>, LabError> {
     if !job.case.voxels || session.graph.voxels.is_none() {
         return Ok(None);
     }

@@ -44,8 +44,25 @@ pub(super) fn parts(report: &Report) -> Vec<String> {
 pub(super) fn rows(report: &Report) -> Result<String, LabError> {
     let parts = parts(report);
     let mut header: Vec<String> = [
-        "case", "variant", "method", "outcome", "error", "scene", "motion", "width", "height", "warmup", "frames",
-        "device", "driver", "reference samples", "warnings", "frame ms", "worst frame", "voxel recall", "voxel precision",
+        "case",
+        "variant",
+        "method",
+        "outcome",
+        "error",
+        "scene",
+        "motion",
+        "width",
+        "height",
+        "warmup",
+        "frames",
+        "device",
+        "driver",
+        "reference samples",
+        "warnings",
+        "frame ms",
+        "worst frame",
+        "voxel recall",
+        "voxel precision",
     ]
     .map(String::from)
     .to_vec();
@@ -91,8 +108,18 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
 /// A row for every frame of every part.
 pub(super) fn frames(report: &Report) -> Result<String, LabError> {
     let header = [
-        "case", "variant", "method", "frame", "part", "E_t", "E_t noise", "99.9th percentile", "peak jump /255",
-        "mean luminance", "reference mean luminance", "relMSE",
+        "case",
+        "variant",
+        "method",
+        "frame",
+        "part",
+        "E_t",
+        "E_t noise",
+        "99.9th percentile",
+        "peak jump /255",
+        "mean luminance",
+        "reference mean luminance",
+        "relMSE",
     ];
     let mut lines = vec![header.map(String::from).to_vec()];
     for (r, m) in report.results.iter().filter_map(|r| Some((r, r.measured()?))) {

@@ -67,6 +67,6 @@ fn room(name: &str, actor: Mesh, animation: Animation) -> Scene {
         direction: Vec3::new(-0.62, -0.55, -0.56).normalize(),
         shadow: true,
     });
-    scene.cameras.insert("default".into(), view(Vec3::new(0.9, 1.5, 4.6), Vec3::new(-0.15, 1.1, -0.6), 48.0, 6.4));
+    scene.cameras.insert("default".into(), view(Vec3::new(0.6, 1.4, 2.6), Vec3::new(-0.2, 1.1, -0.9), 64.0, 6.4));
     scene
 }
