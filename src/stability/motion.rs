@@ -156,6 +156,10 @@ impl Motion {
     pub fn moment(&self, start: &Moment, number: i64, cell: f32) -> Moment {
         let n = number as f32;
         let mut moment = start.clone();
+        if number == 0 && !matches!(self, Motion::Switch { .. }) {
+            // To the bit: cases that begin alike share a reference.
+            return moment;
+        }
         match self {
             Motion::Still => {}
             Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {

@@ -88,7 +88,8 @@ pub fn run(
                 let record = record_of(&lab, job, outcome);
                 folder.write(&record, picture.as_deref())?;
                 tell(Progress::Finished(&record));
-                record
+                // As the next run will read it: numbers that JSON rounds in the last place are the same in all tables.
+                folder.read(&record.id).unwrap_or(record)
             }
         };
         match record.outcome {
