@@ -238,7 +238,7 @@ impl Suite {
             }
         };
         // The graph first: it says which parameters there are.
-        let own_graph = all().filter(|s| s.name.value == "graph").next_back();
+        let own_graph = all().rfind(|s| s.name.value == "graph");
         own_graph.into_iter().for_each(|s| apply(s, &mut experiment));
         let other = experiment.graph != self.experiment.graph;
         let params = if other { known(&experiment.graph) } else { None };
