@@ -30,6 +30,7 @@ mod report;
 mod save;
 mod screenshot;
 mod split;
+mod stability;
 mod sweep;
 mod view;
 mod voxels;
@@ -63,6 +64,9 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
     Sweep(sweep::SweepArgs),
+    /// Look at methods while camera, actors or light move, frame by frame beside the truth; goes on where it was stopped.
+    /// Exit 1 if one failed.
+    Stability(stability::StabilityArgs),
     /// Make a page, charts and a table of sweeps: error against time.
     Report(report::ReportArgs),
     /// Compare pictures or experiments with a reference: table, JSON, maps of the error.
@@ -128,6 +132,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Capture(args) => capture::run(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Stability(args) => stability::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Report(args) => report::run(&args),
         Command::Compare(args) => compare::run(&args),

@@ -12,6 +12,17 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     write_with(path, |file| file.write_all(bytes))
 }
 
+/// [`write_whole`], and the bytes are on the disk before the file has its name: a machine that loses power keeps it.
+///
+/// # Errors
+/// As [`write_whole`].
+pub fn write_lasting(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    write_with(path, |file| {
+        file.write_all(bytes)?;
+        file.sync_all()
+    })
+}
+
 /// Like [`write_whole`], with a closure that does the writing.
 ///
 /// # Errors

@@ -21,6 +21,7 @@ pub mod report;
 pub mod scene;
 pub mod screenshot;
 pub mod shader;
+pub mod stability;
 pub mod stats;
 pub mod sweep;
 pub mod vulkan;

@@ -29,10 +29,12 @@ pub enum FileKind {
     Path,
     /// A sweep.
     Sweep,
+    /// A suite of stability.
+    Stability,
 }
 
 /// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights,
-/// camera paths hold keys, sweeps name experiments.
+/// camera paths hold keys, sweeps name experiments, suites of stability name methods.
 pub fn kind(path: &str) -> FileKind {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let has = |field: &str| {
@@ -42,6 +44,8 @@ pub fn kind(path: &str) -> FileKind {
         FileKind::Experiment
     } else if has("experiments") {
         FileKind::Sweep
+    } else if has("methods") {
+        FileKind::Stability
     } else if has("models") || has("lights") || has("cameras") {
         FileKind::Scene
     } else if has("keys") {
@@ -74,7 +78,7 @@ fn own_files(home: &Home) -> Vec<PathBuf> {
     }
     let mut files: Vec<PathBuf> = graphs.into_iter().filter(|g| !included.contains(g)).collect();
     files.extend(
-        ["configs", "configs/scenes", "configs/paths", "configs/sweeps"]
+        ["configs", "configs/scenes", "configs/paths", "configs/sweeps", "configs/stability"]
             .iter()
             .flat_map(|f| ron_files(&home.root.join(f))),
     );
@@ -99,6 +103,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
             },
             FileKind::Path => crate::camera_path::CameraPath::read(file).err().unwrap_or_default(),
             FileKind::Sweep => crate::sweep::check(&home, file).err().unwrap_or_default(),
+            FileKind::Stability => crate::stability::check(&home, file).err().unwrap_or_default(),
             FileKind::Experiment => check_experiment(&home, file),
             FileKind::Scene => {
                 match crate::scene::Scene::open(&name, &|_, _| ControlFlow::Continue(())) {

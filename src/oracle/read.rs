@@ -45,8 +45,7 @@ pub fn wanted(graph: &Graph) -> Result<Vec<String>, LabError> {
 pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
     let v = declared(&session.graph)?.clone();
     let occupied = session.texels(&v.occupied.value, 0, 0)?;
-    let borders = session.buffer(&v.borders.value)?;
-    let grid = grid_of(&borders, occupied.extent).map_err(LabError::Request)?;
+    let grid = grid_in(session, &v, occupied.extent)?;
     let bytes = occupied.format.bytes as usize;
     let numbers: Vec<u32> = occupied
         .bytes
@@ -66,6 +65,22 @@ pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
     });
     let voxels = voxels.collect();
     Ok((grid, voxels))
+}
+
+/// Where the cells of the last frame lie.
+///
+/// # Errors
+/// As [`read`].
+pub fn grid(session: &mut Session) -> Result<Grid, LabError> {
+    let v = declared(&session.graph)?.clone();
+    let index = session.graph.textures.iter().position(|t| t.0 == v.occupied.value);
+    let extent = index.map_or([0; 3], |i| session.program.plan.textures[i].extent);
+    grid_in(session, &v, extent)
+}
+
+fn grid_in(session: &mut Session, v: &VoxelsDecl, cells: [u32; 3]) -> Result<Grid, LabError> {
+    let borders = session.buffer(&v.borders.value)?;
+    grid_of(&borders, cells).map_err(LabError::Request)
 }
 
 /// Texels by number. Only those are turned into floats: a whole volume of them can take gigabytes.

@@ -1,12 +1,15 @@
 //! Gathers samples until a goal is reached; what has been gathered is kept on the way.
 
 use super::store::{self, Sums};
-use super::{Reference, experiment_for, key};
+use super::{Reference, key};
 use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError, Session};
+use crate::lab::{Lab, LabError, Loaded, Seed, Session};
+use crate::metrics::Linear;
 use crate::picture::to_floats;
 use crate::scene::Scene;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -50,38 +53,83 @@ pub fn gather(
     goal: Goal,
     progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
 ) -> Result<Reference, LabError> {
-    let mut traced = experiment_for(&lab.home, experiment, bounces)?;
-    let loaded = lab.home.load(&traced.graph).map_err(LabError::Input)?;
-    let folder = lab.home.root.join("captures/reference").join(key::key(&traced, &loaded, scene)?);
-    let parts: Vec<String> = loaded.graph.parts.iter().map(|p| p.0.clone()).collect();
-    let mut sums = match store::read(&folder, traced.size, &loaded.graph)? {
-        Some(sums) => sums,
-        None => Sums::new(traced.size, &parts),
-    };
-    let mut now = state(&sums, goal)?;
-    if now.samples >= now.goal {
-        return sums.reference(&folder);
-    }
-    let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
-    traced.set("samples", &per_frame.to_string());
-    let wanted = parts.iter().map(|p| store::sum_texture(p)).collect();
-    let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, None)?;
-    let mut kept = Instant::now();
-    while now.samples < now.goal {
-        frame(lab, &mut session, &mut sums, &parts, per_frame)?;
-        now = state(&sums, goal)?;
-        let stop = progress(now).is_break();
-        // Whole blocks only: then the sums do not depend on where a run was stopped.
-        let whole = sums.samples.is_multiple_of(store::BLOCK);
-        if whole && (stop || now.samples >= now.goal || kept.elapsed() > KEEP_EVERY) {
-            store::write(&folder, &sums, &traced, &lab.gpu.info)?;
-            kept = Instant::now();
-        }
-        if stop && whole {
-            break;
-        }
-    }
+    let (sums, folder) = Tracer::default().sums(lab, experiment, scene, bounces, goal, progress)?;
     sums.reference(&folder)
+}
+
+/// Gathers one reference after another, each on what the one before it left: the compiled graph, its pipelines, and the
+/// scene on the device. What it gathers are the bits that [`gather`] gathers.
+#[derive(Default)]
+pub struct Tracer {
+    loaded: Option<Loaded>,
+    lent: Option<Seed>,
+}
+
+impl Tracer {
+    /// [`gather`], with the means of both halves of the samples by part.
+    ///
+    /// # Errors
+    /// As [`gather`].
+    pub fn gather(
+        &mut self,
+        lab: &Lab,
+        experiment: &Experiment,
+        scene: &Arc<Scene>,
+        bounces: u32,
+        goal: Goal,
+        progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
+    ) -> Result<(Reference, BTreeMap<String, [Linear; 2]>), LabError> {
+        let (sums, folder) = self.sums(lab, experiment, scene, bounces, goal, progress)?;
+        Ok((sums.reference(&folder)?, sums.halves()))
+    }
+
+    fn sums(
+        &mut self,
+        lab: &Lab,
+        experiment: &Experiment,
+        scene: &Arc<Scene>,
+        bounces: u32,
+        goal: Goal,
+        progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
+    ) -> Result<(Sums, PathBuf), LabError> {
+        let loaded = match &self.loaded {
+            Some(loaded) => loaded.clone(),
+            None => lab.home.load(key::GRAPH).map_err(LabError::Input)?,
+        };
+        self.loaded = Some(loaded.clone());
+        let mut traced = key::traced_by(&loaded, experiment, bounces)?;
+        let folder = lab.home.root.join("captures/reference").join(key::key(&traced, &loaded, scene)?);
+        let parts: Vec<String> = loaded.graph.parts.iter().map(|p| p.0.clone()).collect();
+        let mut sums = match store::read(&folder, traced.size, &loaded.graph)? {
+            Some(sums) => sums,
+            None => Sums::new(traced.size, &parts),
+        };
+        let mut now = state(&sums, goal)?;
+        if now.samples >= now.goal {
+            return Ok((sums, folder));
+        }
+        let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
+        traced.set("samples", &per_frame.to_string());
+        let wanted = parts.iter().map(|p| store::sum_texture(p)).collect();
+        let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, self.lent.as_ref())?;
+        let mut kept = Instant::now();
+        while now.samples < now.goal {
+            frame(lab, &mut session, &mut sums, &parts, per_frame)?;
+            now = state(&sums, goal)?;
+            let stop = progress(now).is_break();
+            // Whole blocks only: then the sums do not depend on where a run was stopped.
+            let whole = sums.samples.is_multiple_of(store::BLOCK);
+            if whole && (stop || now.samples >= now.goal || kept.elapsed() > KEEP_EVERY) {
+                store::write(&folder, &sums, &traced, &lab.gpu.info)?;
+                kept = Instant::now();
+            }
+            if stop && whole {
+                break;
+            }
+        }
+        self.lent = Some(session.lend());
+        Ok((sums, folder))
+    }
 }
 
 /// How far the sums are from a goal.

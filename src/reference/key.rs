@@ -23,14 +23,19 @@ const DISPLAY: &str = "Display";
 /// # Errors
 /// The graph of references, or that of the experiment, cannot be read; a value that it does not take.
 pub fn experiment_for(home: &Home, experiment: &Experiment, bounces: u32) -> Result<Experiment, LabError> {
-    let graph = home.load(GRAPH).map_err(LabError::Input)?.graph;
+    traced_by(&home.load(GRAPH).map_err(LabError::Input)?, experiment, bounces)
+}
+
+/// [`experiment_for`] with the graph of references at hand.
+pub(super) fn traced_by(loaded: &Loaded, experiment: &Experiment, bounces: u32) -> Result<Experiment, LabError> {
+    let graph = &loaded.graph;
     let mut traced = experiment.clone();
     traced.graph = GRAPH.into();
     traced.params.retain(|(name, _)| graph.params.index(&name.value).is_some());
     traced.params.retain(|(name, _)| name.value != "bounces" && !WHICH_SAMPLES.contains(&name.value.as_str()));
     traced.set("bounces", &bounces.to_string());
     // Told now, with the place where it stands.
-    params_of(&graph, &traced)?;
+    params_of(graph, &traced)?;
     Ok(traced)
 }
 

@@ -5,7 +5,7 @@ mod gather;
 mod key;
 mod store;
 
-pub use gather::{Gathered, Goal, gather};
+pub use gather::{Gathered, Goal, Tracer, gather};
 pub use key::{GRAPH, experiment_for};
 
 use crate::experiment::Experiment;

@@ -97,6 +97,11 @@ impl Sums {
         crate::metrics::relmse(&even, &odd).map_err(|e| LabError::Request(format!("the reference's '{part}': {e}")))
     }
 
+    /// Means of the even and of the odd samples, by part.
+    pub fn halves(&self) -> BTreeMap<String, [Linear; 2]> {
+        self.parts.keys().map(|p| (p.clone(), [self.mean(p, &[0]), self.mean(p, &[1])])).collect()
+    }
+
     /// Means and noise of all parts.
     pub fn reference(&self, folder: &Path) -> Result<Reference, LabError> {
         let part = |name: &String| {

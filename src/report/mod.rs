@@ -9,6 +9,7 @@ mod scatter;
 pub use bars::{Bar, COLORS, bars};
 pub(crate) use data::{Data, Dot, Scored, error_of};
 pub use front::front;
+pub(crate) use page::escaped;
 pub(crate) use scatter::{axis_title, short, ticks};
 
 use crate::lab::LabError;

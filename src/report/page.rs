@@ -106,6 +106,7 @@ pub fn page(data: &Data, charts: &[Chart], passes: &[(String, String)], table: &
     Ok(out)
 }
 
-fn escaped(text: &str) -> String {
+/// Text that HTML shows as it is.
+pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -17,4 +17,5 @@ pub use points::{Labels, MAX_POINTS, Sweep};
 pub(crate) use record::write_file;
 pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
 pub use run::{Options, Progress, Shard, Tally, run};
+pub use settings::Setting;
 pub use table::{csv, numbers, parts_of};

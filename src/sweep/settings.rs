@@ -16,7 +16,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    pub(super) fn new(name: Loc<String>, value: &Loc<RawText>) -> Setting {
+    pub(crate) fn new(name: Loc<String>, value: &Loc<RawText>) -> Setting {
         // Mistakes are shown where the value stands.
         Setting { name: Loc { value: name.value, at: value.at }, text: value.value.0.clone() }
     }

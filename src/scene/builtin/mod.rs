@@ -3,6 +3,7 @@
 mod atrium;
 mod cornell;
 mod furnace;
+mod moving;
 mod noise;
 mod patterns;
 mod shapes;
@@ -25,6 +26,8 @@ const ALL: &[(&str, &str, Build)] = &[
     ("white-sky", "white sphere under a white sky: it must vanish", white_sky::build),
     ("thin-walls", "slabs of 2, 4 and 8 cm before a bright wall: light must not leak", thin_walls::build),
     ("triangles", "needles, obtuse, huge, sub-voxel and diagonal triangles in a 4 m cube", triangles::build),
+    ("moving-box", "a thin box that crosses a lit room", moving::thin_box),
+    ("blade", "a thin blade that turns before a lit wall", moving::blade),
 ];
 
 /// Names and one-line descriptions of all built-in scenes.

@@ -1,0 +1,117 @@
+//! `conelab stability`.
+
+use super::DeviceArgs;
+use super::adapt::parse_size;
+use crate::lab::{Home, Lab, LabError};
+use crate::stability::{Options, Outcome, Progress, Suite, run as run_suite};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::PathBuf;
+
+/// Arguments of `stability`.
+#[derive(Debug, Args)]
+pub struct StabilityArgs {
+    /// Suite file, for example configs/stability/motion.ron.
+    suite: PathBuf,
+    /// Where everything is kept; captures/stability/NAME when absent. What is finished there is not measured again.
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Set a parameter of every method whose graph has it; may be given many times.
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Picture size, instead of the suite's.
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
+    /// Frames of the cases that do not say themselves, instead of the suite's.
+    #[arg(long)]
+    frames: Option<usize>,
+    /// Samples a pixel of every frame's reference, instead of the suite's; rounded up to a multiple of 32.
+    #[arg(long, value_name = "SAMPLES")]
+    spp: Option<u64>,
+    /// Trace no references: only what stands still is scored.
+    #[arg(long)]
+    no_reference: bool,
+    /// Only these cases.
+    #[arg(long, value_name = "CASE", value_delimiter = ',')]
+    only: Vec<String>,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Runs a suite; an error if a method failed in a case.
+pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
+    let suite = Suite::read(&args.suite).map_err(LabError::Input)?;
+    let size = args.size.as_deref().map(parse_size).transpose()?;
+    if let Some(frames) = args.frames {
+        super::adapt::check_frames(frames, 0, 0.0)?;
+    }
+    if args.spp.is_some_and(|n| n == 0 || n > 1 << 20) {
+        return Err(LabError::Request("--spp must be 1 to 1048576".into()));
+    }
+    let home = Home::find()?;
+    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/stability").join(&suite.name));
+    let options = Options {
+        folder,
+        size,
+        set: args.set.clone(),
+        frames: args.frames,
+        samples: args.spp,
+        reference: !args.no_reference,
+        only: args.only.clone(),
+    };
+    let bar = ProgressBar::new(0).with_style(
+        ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
+    let mut doing = String::new();
+    let mut tell = |progress: Progress| match progress {
+        Progress::Begins { todo, before } => {
+            if before > 0 {
+                bar.suspend(|| say!("{before} are finished already, {todo} to go"));
+            }
+            bar.set_length(todo as u64);
+        }
+        Progress::Runs(job) => {
+            doing = format!("{} {}: {}", job.case.name, job.case.variant, job.method);
+            bar.set_message(doing.clone());
+        }
+        Progress::Gathers(now) => {
+            bar.set_message(format!("{doing}, reference {} of {} samples", now.samples, now.goal))
+        }
+        Progress::Finished(record) => {
+            let say = |text: &str| {
+                let first = text.lines().next().unwrap_or_default();
+                bar.suspend(|| eprintln!("{}, {}: {first}", record.title(), record.method));
+            };
+            match &record.outcome {
+                Outcome::Failed(error) => say(&format!("failed: {error}")),
+                Outcome::Done(measured) => measured.warnings.iter().for_each(|w| say(&format!("warning: {w}"))),
+            }
+            bar.inc(1);
+        }
+    };
+    let reopen = || Lab::open(home.clone(), args.device.options());
+    let result = run_suite(&reopen, &super::open_scene, &suite, &options, &mut tell);
+    bar.finish_and_clear();
+    let (tally, report) = result?;
+    for r in &report.results {
+        let Some(total) = r.measured().and_then(|m| m.parts.get("total")) else { continue };
+        let number = |v: Option<f64>| v.map_or("-".into(), crate::report::short);
+        let noise = if total.told_apart == Some(false) { " (within noise)" } else { "" };
+        say!(
+            "{:32} {:24} E_t {}{noise}, jump {}/255, flicker {}, relMSE {}",
+            r.title(),
+            r.method,
+            number(total.e),
+            number(total.jump),
+            number(total.flicker.filter(|_| r.frames > 1).map(|f| f.mean)),
+            number(total.scores.as_ref().map(|s| s.relmse))
+        );
+    }
+    say!("wrote {}", super::shown(&options.folder.join("index.html")).display());
+    say!("{} done, {} failed", tally.done, tally.failed);
+    match tally.failed {
+        0 => Ok(()),
+        n => Err(LabError::Request(format!("{n} failed: their errors are in stability.csv"))),
+    }
+}

@@ -1,0 +1,22 @@
+//! Stability: how methods behave when camera, actors or light move, frame by frame beside the truth, and how they fail in
+//! pictures that do not move (docs/stability.md).
+
+mod chart;
+mod file;
+mod motion;
+mod page;
+mod pictures;
+mod plan;
+mod record;
+mod run;
+mod score;
+mod series;
+mod table;
+mod truth;
+
+pub use file::{Suite, check};
+pub use motion::{Moment, Motion, Unit};
+pub use plan::{Job, Options, plan};
+pub use record::{FrameScore, Measured, Outcome, PartResult, Record, Report, Worst};
+pub use run::{Progress, Tally, run};
+pub use score::{Change, Flicker, Step, change, display, flicker, step};

@@ -1,0 +1,216 @@
+//! What moves, and where it is at each frame.
+
+use crate::experiment::PlacedCamera;
+use crate::scene::{Light, Scene};
+use glam::{Mat4, Quat, Vec3};
+use serde::Deserialize;
+
+/// What moves from frame to frame.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Motion {
+    /// Nothing.
+    #[default]
+    Still,
+    /// The camera, by so much a frame.
+    Camera {
+        /// Forwards.
+        #[serde(default)]
+        dolly: f32,
+        /// To the right.
+        #[serde(default)]
+        strafe: f32,
+        /// Upwards.
+        #[serde(default)]
+        rise: f32,
+        /// To the left, degrees.
+        #[serde(default)]
+        yaw: f32,
+        /// Upwards, degrees.
+        #[serde(default)]
+        pitch: f32,
+        /// Of the lengths.
+        #[serde(default)]
+        unit: Unit,
+    },
+    /// What is animated in the scene.
+    Actors {
+        /// Time from frame to frame, s.
+        step: f64,
+        /// Size of what is animated, along the axes of its own mesh.
+        #[serde(default = "one")]
+        scale: (f32, f32, f32),
+    },
+    /// A light, by so much a frame.
+    Light {
+        /// Its name in the scene.
+        name: String,
+        /// m; of a light that has a place.
+        #[serde(default)]
+        shift: (f32, f32, f32),
+        /// Around the y axis, degrees; of a light that has a direction.
+        #[serde(default)]
+        turn: f32,
+    },
+    /// A light that is switched.
+    Switch {
+        /// Its name in the scene.
+        name: String,
+        /// The first frame of the new light, counted from the first measured one, at least 1.
+        at: usize,
+        /// Part of the scene's colour before.
+        from: f32,
+        /// Part of the scene's colour from then on.
+        to: f32,
+    },
+}
+
+fn one() -> (f32, f32, f32) {
+    (1.0, 1.0, 1.0)
+}
+
+/// What a camera's lengths are counted in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Unit {
+    /// Metres.
+    #[default]
+    Metres,
+    /// Edges of the method's own level-0 cell at the camera: the graph declares its `voxels`.
+    Voxels,
+}
+
+/// What a frame sees: two frames with the same one have the same truth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// From where.
+    pub camera: PlacedCamera,
+    /// s.
+    pub time: f64,
+    /// The scene's lights.
+    pub lights: Vec<Light>,
+}
+
+impl Motion {
+    /// What is wrong with its numbers, or with them in a scene.
+    ///
+    /// # Errors
+    /// The text for the user.
+    pub fn check(&self, scene: &Scene) -> Result<(), String> {
+        let numbers: Vec<f64> = match self {
+            Motion::Still => vec![],
+            Motion::Camera { dolly, strafe, rise, yaw, pitch, .. } => {
+                [dolly, strafe, rise, yaw, pitch].map(|v| f64::from(*v)).to_vec()
+            }
+            Motion::Actors { step, scale } => {
+                if scale.0 <= 0.0 || scale.1 <= 0.0 || scale.2 <= 0.0 {
+                    return Err("the actors' scale must be above 0".into());
+                }
+                vec![*step, scale.0.into(), scale.1.into(), scale.2.into()]
+            }
+            Motion::Light { shift, turn, .. } => [shift.0, shift.1, shift.2, *turn].map(f64::from).to_vec(),
+            Motion::Switch { at, from, to, .. } => {
+                if *at == 0 || *from < 0.0 || *to < 0.0 {
+                    return Err("a switch has a frame `at` of 1 or more, and parts of 0 or more".into());
+                }
+                vec![f64::from(*from), f64::from(*to)]
+            }
+        };
+        if !numbers.iter().all(|n| n.is_finite() && n.abs() <= 1e6) {
+            return Err("its numbers must be finite, and at most a million".into());
+        }
+        match self {
+            Motion::Light { name, .. } | Motion::Switch { name, .. }
+                if !scene.lights.iter().any(|l| l.name == *name) =>
+            {
+                let known: Vec<&str> = scene.lights.iter().map(|l| l.name.as_str()).collect();
+                Err(format!("scene '{}' has no light '{name}'; it has {}", scene.name, known.join(", ")))
+            }
+            Motion::Actors { .. } if !scene.instances.iter().any(|i| i.animation.is_some()) => {
+                Err(format!("nothing is animated in scene '{}'", scene.name))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The scene with its actors as large as the motion says.
+    pub fn stage(&self, scene: &Scene) -> Option<Scene> {
+        let Motion::Actors { scale, .. } = self else { return None };
+        if *scale == one() {
+            return None;
+        }
+        let mut scene = scene.clone();
+        for instance in scene.instances.iter_mut().filter(|i| i.animation.is_some()) {
+            instance.transform *= Mat4::from_scale((*scale).into());
+        }
+        Some(scene)
+    }
+
+    /// The cells' edge is asked for.
+    pub fn in_voxels(&self) -> bool {
+        matches!(self, Motion::Camera { unit: Unit::Voxels, .. })
+    }
+
+    /// Frame `number`, where 0 is the first measured one and those before are negative: what moves has moved before. `cell`
+    /// is the edge of a cell, m.
+    pub fn moment(&self, start: &Moment, number: i64, cell: f32) -> Moment {
+        let n = number as f32;
+        let mut moment = start.clone();
+        if number == 0 && !matches!(self, Motion::Switch { .. }) {
+            // To the bit: cases that begin alike share a reference.
+            return moment;
+        }
+        match self {
+            Motion::Still => {}
+            Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {
+                let length = n * if *unit == Unit::Voxels { cell } else { 1.0 };
+                let (eye, up) = (Vec3::from(start.camera.eye), Vec3::from(start.camera.up));
+                let view = Vec3::from(start.camera.target) - eye;
+                let forward = view.try_normalize().unwrap_or(Vec3::NEG_Z);
+                let right = forward.cross(up).try_normalize().unwrap_or(forward.any_orthonormal_vector());
+                let above = right.cross(forward);
+                let eye = eye + (forward * *dolly + right * *strafe + above * *rise) * length;
+                let turn = Quat::from_axis_angle(above, (n * yaw).to_radians())
+                    * Quat::from_axis_angle(right, (n * pitch).to_radians());
+                moment.camera.eye = eye.into();
+                moment.camera.target = (eye + turn * view).into();
+            }
+            Motion::Actors { step, .. } => moment.time = start.time + number as f64 * step,
+            Motion::Light { name, shift, turn } => {
+                for light in moment.lights.iter_mut().filter(|l| l.name == *name) {
+                    light.position += Vec3::from(*shift) * n;
+                    let turned = Quat::from_rotation_y((n * turn).to_radians()) * light.direction;
+                    light.direction = if *turn == 0.0 { light.direction } else { turned.normalize_or(light.direction) };
+                }
+            }
+            Motion::Switch { name, at, from, to } => {
+                let part = if number < *at as i64 { *from } else { *to };
+                for light in moment.lights.iter_mut().filter(|l| l.name == *name) {
+                    light.color *= part;
+                }
+            }
+        }
+        moment
+    }
+
+    /// In a few words.
+    pub fn told(&self) -> String {
+        match self {
+            Motion::Still => "still".into(),
+            Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {
+                let length = if *unit == Unit::Voxels { " voxels" } else { " m" };
+                let parts = [("dolly", dolly, length), ("strafe", strafe, length), ("rise", rise, length)];
+                let turns = [("yaw", yaw, " degrees"), ("pitch", pitch, " degrees")];
+                let moved = parts.iter().chain(&turns).filter(|p| *p.1 != 0.0);
+                let list: Vec<String> = moved.map(|(name, v, unit)| format!("{name} {v}{unit}")).collect();
+                format!("camera: {} a frame", list.join(", "))
+            }
+            Motion::Actors { step, scale } if *scale == one() => format!("actors: {step} s a frame"),
+            Motion::Actors { step, scale: (x, y, z) } => format!("actors of {x} x {y} x {z}: {step} s a frame"),
+            Motion::Light { name, shift: (x, y, z), turn } => {
+                format!("light '{name}': ({x}, {y}, {z}) m and {turn} degrees a frame")
+            }
+            Motion::Switch { name, at, from, to } => format!("light '{name}': {from} to {to} at frame {at}"),
+        }
+    }
+}

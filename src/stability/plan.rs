@@ -1,0 +1,185 @@
+//! Every method in every case, as something to run, with the number of all that its result depends on.
+
+use super::file::{Case, Method, Suite};
+use super::motion::{Moment, Motion};
+use crate::capture::{hex, scene_hash};
+use crate::experiment::{Experiment, check_size};
+use crate::graph::source::{At, Diagnostic, Loc};
+use crate::lab::{Home, LabError, camera_of, parts_of};
+use crate::measure::{Frames, Warm};
+use crate::scene::Scene;
+use crate::sweep::Lister;
+use crate::vulkan::DeviceInfo;
+use sha2::{Digest, Sha256};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Most values that a case keeps, pixels times frames times parts: 4 bytes each, and as many for the references.
+const MAX_VALUES: u64 = 1 << 28;
+
+/// How a suite is run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Where everything is kept.
+    pub folder: PathBuf,
+    /// Another size of the pictures.
+    pub size: Option<(u32, u32)>,
+    /// Settings over all others, NAME=VALUE; of parameters, those that a method's graph has.
+    pub set: Vec<String>,
+    /// Frames of cases that do not say themselves.
+    pub frames: Option<usize>,
+    /// Samples a pixel of the references, instead of the suite's.
+    pub samples: Option<u64>,
+    /// Whether there are references.
+    pub reference: bool,
+    /// Names of the cases that are run; all when empty.
+    pub only: Vec<String>,
+}
+
+/// A method in a case.
+#[derive(Clone)]
+pub struct Job {
+    /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time, motion, frames, samples and
+    /// device.
+    pub id: String,
+    /// The method.
+    pub method: String,
+    /// The case.
+    pub case: Case,
+    /// What is run.
+    pub experiment: Experiment,
+    /// The scene, lit as the experiment says.
+    pub scene: Arc<Scene>,
+    /// Its content as a number.
+    pub scene_hash: String,
+    /// Camera, time and light before anything moved.
+    pub start: Moment,
+    /// Frames measured.
+    pub frames: usize,
+}
+
+/// Everything that a suite runs, case by case.
+///
+/// # Errors
+/// All that is wrong with its settings, scenes and motions: nothing is measured then.
+pub fn plan(
+    home: &Home,
+    device: &DeviceInfo,
+    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    warm: &mut Warm,
+    suite: &Suite,
+    options: &Options,
+) -> Result<Vec<Job>, LabError> {
+    if let Some(name) = options.only.iter().find(|n| !suite.cases.iter().any(|c| c.name == **n)) {
+        let mut known: Vec<&str> = suite.cases.iter().map(|c| c.name.as_str()).collect();
+        known.dedup();
+        return Err(LabError::Request(format!("--only {name}: the suite's cases are {}", known.join(", "))));
+    }
+    let mut lister = Lister::new(home, open_scene);
+    let mut jobs: Vec<Job> = Vec::new();
+    let mut errors: Vec<Diagnostic> = Vec::new();
+    let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
+    for case in suite.cases.iter().filter(wanted) {
+        for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
+            match job(home, device, &mut lister, warm, suite, options, (method, case)) {
+                Ok(job) => jobs.push(job),
+                Err(LabError::Input(list)) => {
+                    for diagnostic in list {
+                        if !errors.contains(&diagnostic) {
+                            errors.push(diagnostic);
+                        }
+                    }
+                }
+                Err(other) => return Err(other),
+            }
+        }
+    }
+    if errors.is_empty() { Ok(jobs) } else { Err(LabError::Input(errors)) }
+}
+
+fn job(
+    home: &Home,
+    device: &DeviceInfo,
+    lister: &mut Lister,
+    warm: &mut Warm,
+    suite: &Suite,
+    options: &Options,
+    (method, case): (&Method, &Case),
+) -> Result<Job, LabError> {
+    let mut params = |graph: &str| warm.graph(home, graph).ok().map(|l| l.graph.params.clone());
+    let mut experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input)?;
+    let loaded = warm.graph(home, &experiment.graph)?.clone();
+    let other = experiment.graph != suite.experiment.graph;
+    let file = experiment.sources.add("--set".as_ref(), options.set.join("\n"));
+    let mut offset = 0;
+    for setting in &options.set {
+        let (name, value) = setting
+            .split_once('=')
+            .ok_or_else(|| LabError::Request(format!("--set {setting}: expected NAME=VALUE")))?;
+        if !other || loaded.graph.params.index(name.trim()).is_some() {
+            experiment.params.push((Loc { value: name.trim().into(), at: At { file, offset } }, value.into()));
+        }
+        offset += u32::try_from(setting.len() + 1).unwrap_or(0);
+    }
+    experiment.size = options.size.unwrap_or(experiment.size);
+    check_size(experiment.size).map_err(LabError::Request)?;
+    let title = if case.variant.is_empty() { case.name.clone() } else { format!("{}: {}", case.name, case.variant) };
+    let wrong = |why: String| LabError::Request(format!("case '{title}': {why}"));
+    let frames = options.frames.filter(|_| !case.own_frames).unwrap_or(case.frames);
+    let parts = parts_of(&loaded.graph).len() as u64;
+    let values = u64::from(experiment.size.0) * u64::from(experiment.size.1) * frames as u64 * parts;
+    if values > MAX_VALUES {
+        return Err(wrong(format!(
+            "{frames} frames of {}x{} and {parts} parts are too many to keep; ask for fewer with --frames, or a smaller --size",
+            experiment.size.0, experiment.size.1
+        )));
+    }
+    if parts == 0 {
+        return Err(wrong(format!("graph '{}' has neither `parts` nor `hdr`", loaded.graph.name)));
+    }
+    let listed = lister.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
+    case.motion.check(&listed.scene).map_err(wrong)?;
+    if let Motion::Switch { at, .. } = case.motion
+        && at + 2 > frames
+    {
+        return Err(wrong(format!("a light that is switched at frame {at} needs at least {} frames", at + 2)));
+    }
+    let (scene, hash) = match case.motion.stage(&listed.scene) {
+        Some(staged) => {
+            let hash = scene_hash(&staged);
+            (Arc::new(staged), hash)
+        }
+        None => (listed.scene.clone(), listed.subject.sha256.clone()),
+    };
+    let start = Moment {
+        camera: camera_of(&listed.experiment, &scene)?,
+        time: listed.experiment.time,
+        lights: scene.lights.clone(),
+    };
+    let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
+    let mut sum = Sha256::new();
+    let facts = [
+        listed.id,
+        format!("{:?}", case.motion),
+        format!("{samples:?} {} {} {}", suite.bounces, suite.seed, case.voxels),
+        format!("{} {} {}", device.name, device.driver, device.api),
+        // Two names of the same thing are two rows.
+        format!("{:?} {:?} {:?}", method.name, case.name, case.variant),
+    ];
+    for fact in &facts {
+        sum.update((fact.len() as u64).to_le_bytes());
+        sum.update(fact);
+    }
+    let mut id = hex(&sum.finalize());
+    id.truncate(32);
+    Ok(Job {
+        id,
+        method: method.name.clone(),
+        case: case.clone(),
+        experiment: listed.experiment,
+        scene,
+        scene_hash: hash,
+        start,
+        frames,
+    })
+}

@@ -1,0 +1,287 @@
+//! Running a suite: every method in every case, one after another, each kept as soon as it is finished.
+
+use super::file::Suite;
+use super::motion::{Moment, Motion};
+use super::pictures::Panels;
+use super::plan::{Job, Options, plan};
+use super::record::{Folder, Measured, Outcome, RESULT_SCHEMA, Record, Report, SCHEMA, Worst, json, lasting};
+use super::series::{Known, PartSeries};
+use super::truth::{Tracing, Truth, Truths};
+use super::{chart, page, table};
+use crate::lab::{Lab, LabError, Seed, Session, parts_of};
+use crate::measure::Warm;
+use crate::metrics::Linear;
+use crate::oracle::{self, Surfaces};
+use crate::reference::Gathered;
+use crate::scene::Scene;
+use crate::stats::DeviceStats;
+use crate::vulkan::VulkanError;
+use glam::DVec3;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+/// What a suite tells while it runs.
+pub enum Progress<'a> {
+    /// Methods in cases: to measure, and finished before.
+    Begins {
+        /// To measure.
+        todo: usize,
+        /// Finished before.
+        before: usize,
+    },
+    /// A method in a case begins.
+    Runs(&'a Job),
+    /// A reference is being traced.
+    Gathers(Gathered),
+    /// A method in a case is finished.
+    Finished(&'a Record),
+}
+
+/// How far a suite is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Measured.
+    pub done: usize,
+    /// Failed.
+    pub failed: usize,
+}
+
+/// Runs what is not finished of a suite, and writes tables, charts and the page of all of it. An error that belongs to a
+/// method in a case is kept in its place; it is tried again by the next run.
+///
+/// # Errors
+/// What is wrong with the suite as a whole, before anything is measured; a folder that cannot be written to; no device.
+pub fn run(
+    reopen: &dyn Fn() -> Result<Lab, LabError>,
+    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    suite: &Suite,
+    options: &Options,
+    tell: &mut dyn FnMut(Progress),
+) -> Result<(Tally, Report), LabError> {
+    let mut lab = reopen()?;
+    let mut warm = Warm::default();
+    let jobs = plan(&lab.home.clone(), &lab.gpu.info, open_scene, &mut warm, suite, options)?;
+    let folder = Folder(options.folder.clone());
+    let samples = options.samples.unwrap_or(suite.samples);
+    let tracing = Tracing { samples, bounces: suite.bounces, seed: suite.seed };
+    let mut runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), reference: options.reference };
+    let finished: Vec<Option<Record>> = jobs.iter().map(|j| folder.read(&j.id)).collect();
+    let before = finished.iter().flatten().count();
+    tell(Progress::Begins { todo: jobs.len() - before, before });
+    let mut results = Vec::new();
+    let mut tally = Tally::default();
+    for (job, kept) in jobs.iter().zip(finished) {
+        let record = match kept {
+            Some(record) => record,
+            None => {
+                tell(Progress::Runs(job));
+                let result = runner.measure(&lab, &mut warm, job, tell);
+                if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
+                    warm.leave_device();
+                    lab = reopen()?;
+                    runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), ..runner };
+                }
+                let (outcome, picture) = match result {
+                    Ok((measured, picture)) => (Outcome::Done(Box::new(measured)), picture),
+                    Err(error) => (Outcome::Failed(error.to_string()), None),
+                };
+                let record = record_of(&lab, job, outcome);
+                folder.write(&record, picture.as_deref())?;
+                tell(Progress::Finished(&record));
+                // As the next run will read it: numbers that JSON rounds in the last place are the same in all tables.
+                folder.read(&record.id).unwrap_or(record)
+            }
+        };
+        match record.outcome {
+            Outcome::Done(_) => tally.done += 1,
+            Outcome::Failed(_) => tally.failed += 1,
+        }
+        results.push(record);
+    }
+    let report = Report {
+        schema: SCHEMA.into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        suite: suite.name.clone(),
+        text: suite.text.clone(),
+        reference: options.reference.then_some((samples, suite.bounces)),
+        results,
+    };
+    write(&report, options)?;
+    Ok((tally, report))
+}
+
+/// Tables, JSON, charts and the page.
+fn write(report: &Report, options: &Options) -> Result<(), LabError> {
+    let charts = chart::charts(report)?;
+    let mut files = vec![
+        ("stability.json".to_string(), json(report)?),
+        ("stability.csv".into(), table::rows(report)?.into_bytes()),
+        ("frames.csv".into(), table::frames(report)?.into_bytes()),
+    ];
+    files.extend(charts.iter().map(|c| (format!("charts/{}.svg", c.name), c.svg.clone().into_bytes())));
+    files.push(("index.html".into(), page::page(report, &charts).into_bytes()));
+    files.iter().try_for_each(|(name, bytes)| lasting(&options.folder.join(name), bytes))
+}
+
+fn record_of(lab: &Lab, job: &Job, outcome: Outcome) -> Record {
+    Record {
+        schema: RESULT_SCHEMA.into(),
+        id: job.id.clone(),
+        case: job.case.name.clone(),
+        variant: job.case.variant.clone(),
+        about: job.case.about.clone(),
+        motion: job.case.motion.told(),
+        method: job.method.clone(),
+        scene: job.scene.name.clone(),
+        size: job.experiment.size.into(),
+        warmup: job.case.warmup,
+        frames: job.frames,
+        device: DeviceStats::of(&lab.gpu.info),
+        outcome,
+    }
+}
+
+/// What one method in a case leaves to the next: references, and each method's pipelines.
+struct Runner {
+    truths: Truths,
+    lent: HashMap<String, Seed>,
+    reference: bool,
+}
+
+/// A frame that may be the worst.
+struct Bad {
+    frame: usize,
+    bad: f64,
+    panels: Panels,
+}
+
+impl Runner {
+    fn measure(
+        &mut self,
+        lab: &Lab,
+        warm: &mut Warm,
+        job: &Job,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<(Measured, Option<Vec<u8>>), LabError> {
+        let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
+        let motion = &job.case.motion;
+        let mut wanted: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.1).collect();
+        if job.case.voxels && loaded.graph.voxels.is_some() || motion.in_voxels() {
+            wanted.extend(oracle::wanted(&loaded.graph)?);
+        }
+        let seed = self.lent.get(&job.method);
+        let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, seed)?;
+        let cell = if motion.in_voxels() { cell_at(&mut session, &job.start)? } else { 0.0 };
+        let step = if let Motion::Actors { step, .. } = motion { *step } else { 0.0 };
+        let (mut times, mut warnings) = (Vec::new(), Vec::new());
+        let mut series: BTreeMap<String, PartSeries> = BTreeMap::new();
+        let mut worst: Option<Bad> = None;
+        let mut samples = 0;
+        let mut lights = job.scene.lights.clone();
+        let mut before: Option<(Moment, Option<Arc<Truth>>)> = None;
+        let warmup = i64::try_from(job.case.warmup).unwrap_or(0);
+        let frames = i64::try_from(job.frames).unwrap_or(1);
+        for number in -warmup..frames {
+            let moment = motion.moment(&job.start, number, cell);
+            session.look(&moment.camera);
+            session.set_time(moment.time);
+            if moment.lights != lights {
+                if !session.set_lights(&moment.lights, job.scene.sky) {
+                    return Err(LabError::Request("a light that moves must keep its kind and its shadow".into()));
+                }
+                lights.clone_from(&moment.lights);
+            }
+            times.extend(session.frame(step)?);
+            let Ok(frame) = usize::try_from(number) else { continue };
+            times.extend(session.finish()?);
+            for message in session.failed_checks()? {
+                if !warnings.contains(&message) {
+                    warnings.push(message);
+                }
+            }
+            let changed = before.as_ref().is_none_or(|b| b.0 != moment);
+            let truth = match (&before, self.reference) {
+                (_, false) => None,
+                (Some((_, Some(truth))), true) if !changed => Some(truth.clone()),
+                _ => Some(self.truths.get(lab, warm, job, &moment, &mut |now| tell(Progress::Gathers(now)))?),
+            };
+            samples = truth.as_ref().map_or(samples, |t| t.samples);
+            let earlier = before.as_ref().and_then(|b| b.1.as_ref());
+            for (part, x) in session.parts()? {
+                let known = known(&part, truth.as_deref(), earlier.map(|t| &**t), changed);
+                let own = series.entry(part.clone()).or_insert_with(|| PartSeries::new(&part));
+                let shown = (part == "total").then(|| Panels::of(own.before(), &x, known));
+                let bad = own.add(x, known, number + 1 == frames);
+                if let (Some(panels), Some(bad)) = (shown, bad.or((frame == 0).then_some(0.0)))
+                    && worst.as_ref().is_none_or(|w| bad > w.bad || w.frame == 0)
+                {
+                    worst = Some(Bad { frame, bad, panels });
+                }
+            }
+            before = Some((moment, truth));
+        }
+        let times: Vec<f64> = times.iter().skip(job.case.warmup).map(|t| t.gpu_ms).collect();
+        let voxels = voxels(&mut session, job, &mut warnings)?;
+        self.lent.insert(job.method.clone(), session.lend());
+        let switched = if let Motion::Switch { at, .. } = motion { Some(*at) } else { None };
+        let parts = series.into_iter().map(|(name, s)| (name, s.finish(switched))).collect();
+        let picture = worst.as_ref().map(|w| w.panels.png()).transpose()?;
+        let worst = worst.map(|w| Worst { frame: w.frame, full: w.panels.full(), panels: w.panels.names() });
+        Ok((Measured { frame_ms: median(times), samples, parts, voxels, worst, warnings }, picture))
+    }
+}
+
+/// What is known of a part's truth; `earlier` is that of the frame before.
+fn known<'a>(part: &str, truth: Option<&'a Truth>, earlier: Option<&'a Truth>, changed: bool) -> Known<'a> {
+    let of = |t: Option<&'a Truth>| t.and_then(|t| t.parts.get(part));
+    match (of(truth), of(earlier)) {
+        (Some(now), before) => Known::Truth { now, before: before.filter(|_| changed) },
+        (None, _) => Known::Nothing { changed },
+    }
+}
+
+/// The least edge of the method's cell at the camera, m.
+fn cell_at(session: &mut Session, start: &Moment) -> Result<f32, LabError> {
+    session.look(&start.camera);
+    session.frame(0.0)?;
+    session.finish()?;
+    let (x, y, z) = start.camera.eye;
+    let edges = oracle::grid(session)?.edges_at(DVec3::new(x.into(), y.into(), z.into()));
+    Ok(edges.min_element() as f32)
+}
+
+/// The voxels of the last frame against exact ones, if the case asks for it and the method can.
+fn voxels(session: &mut Session, job: &Job, warnings: &mut Vec<String>) -> Result<Option<oracle::Score>, LabError> {
+    if !job.case.voxels || session.graph.voxels.is_none() {
+        return Ok(None);
+    }
+    match oracle::read(session) {
+        Ok((grid, voxels)) => {
+            let triangles = oracle::triangles_of(&job.scene, job.start.time);
+            let cells = oracle::exact(&triangles, &Surfaces::new(&job.scene), &grid);
+            Ok(Some(oracle::compare(&grid, &cells, &voxels).score))
+        }
+        Err(LabError::Request(why)) => {
+            warnings.push(format!("voxels not compared: {why}"));
+            Ok(None)
+        }
+        Err(other) => Err(other),
+    }
+}
+
+fn median(mut list: Vec<f64>) -> f64 {
+    list.sort_by(f64::total_cmp);
+    list.get(list.len() / 2).copied().unwrap_or(0.0)
+}
+
+impl Panels {
+    /// The pictures of a frame: before, now, the reference, and how the change differs from the reference's; of a first
+    /// frame, how the picture differs.
+    fn of(before: Option<&Linear>, x: &Linear, known: Known) -> Panels {
+        let (truth, truth_before) = match known {
+            Known::Truth { now, before } => (Some(&now.mean), before.map(|b| &b.mean)),
+            Known::Nothing { .. } => (None, None),
+        };
+        Panels::new(before, x, truth, truth_before)
+    }
+}

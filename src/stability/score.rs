@@ -1,0 +1,152 @@
+//! The definitions, on pictures and sequences at hand; docs/stability.md tells them with their sources.
+
+use crate::metrics::colour::luminance;
+use crate::metrics::{Kind, Linear};
+use serde::{Deserialize, Serialize};
+
+/// What is near enough to the final value after a step.
+const SETTLED: f64 = 0.05;
+/// Largest change from the last frame but one to the last that still counts as the end, part of the step.
+const AT_REST: f64 = 0.01;
+
+/// How a picture changed from one frame to the next, against how it should have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Change {
+    /// E_t: root of mean ((x_t - x_{t-1}) - (r_t - r_{t-1}))^2 over pixels and channels, of linear radiance.
+    pub rms: f64,
+    /// The 99.9th percentile over pixels of the same, of each pixel's largest channel, absolute.
+    pub p999: f64,
+    /// The largest over pixels and channels of the same after [`display`], in 1/255.
+    pub jump: f64,
+}
+
+/// A channel as it is displayed, 0 to 1: c / (1 + c) for radiance, as it is for what is 0 to 1 ([`Kind`]); then encoded
+/// as sRGB (IEC 61966-2-1). Not rounded.
+pub fn display(kind: Kind, c: f32) -> f64 {
+    let c = f64::from(c.max(0.0));
+    let shown = if kind == Kind::Radiance { c / (1.0 + c) } else { c.min(1.0) };
+    if shown <= 0.003_130_8 { 12.92 * shown } else { 1.055 * shown.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The change between two frames `x`, less that of their references `r`; none stands for references that are equal.
+/// Pixels that are no number in any of them are left out.
+pub fn change(kind: Kind, x: [&Linear; 2], r: Option<[&Linear; 2]>) -> Change {
+    let [before, now] = x;
+    let (mut sum, mut count, mut jump) = (0.0, 0usize, 0.0f64);
+    let mut errors = Vec::with_capacity(now.rgb.len());
+    for i in 0..now.rgb.len().min(before.rgb.len()) {
+        let (b, n) = (before.rgb[i], now.rgb[i]);
+        let (rb, rn) = r.map_or(([0.0; 3], [0.0; 3]), |r| (r[0].rgb[i], r[1].rgb[i]));
+        if ![b, n, rb, rn].iter().flatten().all(|v| v.is_finite()) {
+            continue;
+        }
+        let mut most = 0.0f64;
+        for c in 0..3 {
+            let wide = |v: f32| f64::from(v);
+            let e = (wide(n[c]) - wide(b[c])) - (wide(rn[c]) - wide(rb[c]));
+            sum += e * e;
+            most = most.max(e.abs());
+            let show = |v: f32| display(kind, v);
+            jump = jump.max(((show(n[c]) - show(b[c])) - (show(rn[c]) - show(rb[c]))).abs());
+        }
+        errors.push(most);
+        count += 3;
+    }
+    Change { rms: (sum / count.max(1) as f64).sqrt(), p999: percentile(&mut errors, 0.999), jump: jump * 255.0 }
+}
+
+/// The least value that is not less than this part of all: nearest rank. 0 of nothing.
+pub(super) fn percentile(values: &mut [f64], part: f64) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let rank = ((part * values.len() as f64).ceil() as usize).clamp(1, values.len());
+    *values.select_nth_unstable_by(rank - 1, f64::total_cmp).1
+}
+
+/// Flicker index over the frames of a sequence (IES Lighting Handbook): area above the mean over the whole area.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Flicker {
+    /// Mean over pixels, 0 to 1.
+    pub mean: f64,
+    /// 99th percentile over pixels.
+    pub p99: f64,
+}
+
+/// The flicker index of every pixel's luminance, less the truth's own change: of y_t = x_t - (r_t - r_0), whose area is
+/// taken to be that of x. `differences` holds (x_t - x_0) - (r_t - r_0) of every pixel, frame by frame; `areas` the sum
+/// of x over the frames. Where nothing moves y is x, and the index is the usual one.
+pub fn flicker(differences: &[Vec<f32>], areas: &[f64]) -> Flicker {
+    let frames = differences.len() as f64;
+    let index = |(i, area): (usize, &f64)| {
+        let values = || differences.iter().map(|f| f.get(i).map_or(0.0, |v| f64::from(*v)));
+        let mean = values().sum::<f64>() / frames;
+        let above: f64 = values().map(|v| (v - mean).max(0.0)).sum();
+        match above > 0.0 {
+            true if *area > 0.0 => (above / area).min(1.0),
+            true => 1.0,
+            false => 0.0,
+        }
+    };
+    let mut list: Vec<f64> = areas.iter().enumerate().map(index).collect();
+    let mean = list.iter().sum::<f64>() / list.len().max(1) as f64;
+    Flicker { mean, p99: percentile(&mut list, 0.99) }
+}
+
+/// What [`flicker`] takes, gathered frame by frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FlickerSeries {
+    first: Vec<(f64, f64)>,
+    differences: Vec<Vec<f32>>,
+    areas: Vec<f64>,
+}
+
+impl FlickerSeries {
+    /// Adds a frame; without a reference it is taken to stand still.
+    pub fn add(&mut self, x: &Linear, r: Option<&Linear>) {
+        let finite = |v: f64| if v.is_finite() { v } else { 0.0 };
+        let pair = |i: usize| {
+            let truth = r.map_or(0.0, |r| finite(luminance(r.rgb[i])));
+            (finite(luminance(x.rgb[i])), truth)
+        };
+        let now: Vec<(f64, f64)> = (0..x.rgb.len()).map(pair).collect();
+        if self.first.is_empty() {
+            self.first.clone_from(&now);
+            self.areas = vec![0.0; now.len()];
+        }
+        self.areas.iter_mut().zip(&now).for_each(|(area, n)| *area += n.0.max(0.0));
+        let difference = |(n, f): (&(f64, f64), &(f64, f64))| ((n.0 - f.0) - (n.1 - f.1)) as f32;
+        self.differences.push(now.iter().zip(&self.first).map(difference).collect());
+    }
+
+    pub fn index(&self) -> Flicker {
+        flicker(&self.differences, &self.areas)
+    }
+}
+
+/// What follows a step change.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    /// Frames, the first changed one included, until the signal stays within 5 % of the step of its final value: 1 is at
+    /// once. None where it still moved at the end.
+    pub frames: Option<usize>,
+    /// How far it went beyond its final value, part of the step; 0 where it did not.
+    pub overshoot: f64,
+}
+
+/// The step of a signal whose frame `at` is the first changed one. Its final value is that of the last frame. None
+/// without a frame before and two after it, or where before and after are equal.
+pub fn step(signal: &[f64], at: usize) -> Option<Step> {
+    let before = *signal.get(at.checked_sub(1)?)?;
+    let after = signal.get(at..).filter(|a| a.len() >= 2)?;
+    let last = *after.last()?;
+    let size = last - before;
+    if size == 0.0 || !size.is_finite() {
+        return None;
+    }
+    let off = |v: f64| (v - last) / size;
+    let late = after.iter().rposition(|v| off(*v).abs() > SETTLED);
+    let at_rest = off(after[after.len() - 2]).abs() <= AT_REST;
+    let overshoot = after.iter().map(|v| off(*v)).fold(0.0, f64::max);
+    Some(Step { frames: at_rest.then(|| late.map_or(1, |l| l + 2)), overshoot })
+}

@@ -1,0 +1,128 @@
+//! A part of the light, frame by frame beside its truth.
+
+use super::record::{FrameScore, PartResult};
+use super::score::{FlickerSeries, change, step};
+use super::truth::TruthPart;
+use crate::metrics::colour::luminance;
+use crate::metrics::{Compared, Kind, Linear, relmse};
+
+/// Results below so many times what the noise of the reference gives are not told apart from it.
+const NOISE_FACTOR: f64 = 4.0;
+
+/// What is known of the truth at a frame.
+#[derive(Clone, Copy)]
+pub(super) enum Known<'a> {
+    /// Nothing; whether it may have changed since the frame before.
+    Nothing { changed: bool },
+    /// The reference now, and at the frame before where it is another one.
+    Truth { now: &'a TruthPart, before: Option<&'a TruthPart> },
+}
+
+/// Gathers the scores of a part.
+pub(super) struct PartSeries {
+    kind: Kind,
+    before: Option<Linear>,
+    frames: Vec<FrameScore>,
+    flicker: FlickerSeries,
+    noise: FlickerSeries,
+    /// The truth's changes are known at every frame so far.
+    known: bool,
+    result: PartResult,
+}
+
+impl PartSeries {
+    pub fn new(part: &str) -> PartSeries {
+        PartSeries {
+            kind: Kind::of_part(part),
+            before: None,
+            frames: Vec::new(),
+            flicker: FlickerSeries::default(),
+            noise: FlickerSeries::default(),
+            known: true,
+            result: PartResult::default(),
+        }
+    }
+
+    /// Adds the next frame; `last`: the whole of its scores against the reference is wanted. Gives E_t, or relMSE at the
+    /// first frame: how bad it is.
+    pub fn add(&mut self, x: Linear, known: Known, last: bool) -> Option<f64> {
+        let truth = match known {
+            Known::Truth { now, .. } => Some(now),
+            Known::Nothing { .. } => None,
+        };
+        let mut frame = FrameScore {
+            frame: self.frames.len(),
+            mean: number(mean_luminance(&x)),
+            reference_mean: truth.and_then(|t| number(mean_luminance(&t.mean))),
+            relmse: truth.and_then(|t| relmse(&x, &t.mean).ok()).and_then(number),
+            ..FrameScore::default()
+        };
+        if let Some(previous) = &self.before {
+            let now = [previous, &x];
+            match known {
+                Known::Nothing { changed: true } => self.known = false,
+                Known::Nothing { changed: false } | Known::Truth { before: None, .. } => {
+                    frame.change = Some(change(self.kind, now, None));
+                    frame.noise = truth.map(|_| 0.0);
+                }
+                Known::Truth { now: truth, before: Some(before) } => {
+                    frame.change = Some(change(self.kind, now, Some([&before.mean, &truth.mean])));
+                    let halves = |i: usize| [&before.halves[i], &truth.halves[i]];
+                    frame.noise = Some(change(self.kind, halves(0), Some(halves(1))).rms);
+                }
+            }
+        }
+        if self.known {
+            self.flicker.add(&x, truth.map(|t| &t.mean));
+        }
+        if let Some(t) = truth {
+            self.noise.add(&t.halves[0], Some(&t.halves[1]));
+            if last {
+                let compared = Compared::new(&x, &t.mean, self.kind).ok();
+                self.result.scores = compared.and_then(|c| c.scores(None));
+                self.result.noise = number(t.noise);
+            }
+        }
+        let bad = frame.change.map(|c| c.rms).or(frame.relmse.filter(|_| self.before.is_none()));
+        self.frames.push(frame);
+        self.before = Some(x);
+        bad
+    }
+
+    /// The frame before the next one.
+    pub fn before(&self) -> Option<&Linear> {
+        self.before.as_ref()
+    }
+
+    /// What came of it; `switched` is the first frame of a light that was switched.
+    pub fn finish(mut self, switched: Option<usize>) -> PartResult {
+        let changes: Vec<_> = self.frames.iter().filter_map(|f| f.change).collect();
+        let root = |list: &[f64]| (list.iter().map(|v| v * v).sum::<f64>() / list.len() as f64).sqrt();
+        if self.known && !changes.is_empty() {
+            let rms: Vec<f64> = changes.iter().map(|c| c.rms).collect();
+            self.result.e = Some(root(&rms));
+            let noise: Vec<f64> = self.frames.iter().skip(1).filter_map(|f| f.noise).collect();
+            self.result.e_noise = (noise.len() == rms.len()).then(|| root(&noise));
+            self.result.pops = changes.iter().map(|c| c.p999).reduce(f64::max);
+            self.result.jump = changes.iter().map(|c| c.jump).reduce(f64::max);
+            self.result.flicker = Some(self.flicker.index());
+            let noisy = self.result.e_noise.is_some() && self.frames.len() > 1;
+            self.result.flicker_noise = noisy.then(|| self.noise.index().mean);
+            self.result.told_apart = self.result.e.zip(self.result.e_noise).map(|(e, n)| e >= NOISE_FACTOR * n);
+        }
+        if let Some(at) = switched {
+            let signal: Vec<f64> = self.frames.iter().map(|f| f.mean.unwrap_or(f64::NAN)).collect();
+            self.result.step = step(&signal, at);
+        }
+        self.result.frames = self.frames;
+        self.result
+    }
+}
+
+fn number(v: f64) -> Option<f64> {
+    v.is_finite().then_some(v)
+}
+
+fn mean_luminance(picture: &Linear) -> f64 {
+    picture.rgb.iter().map(|c| luminance(*c)).sum::<f64>() / picture.rgb.len().max(1) as f64
+}

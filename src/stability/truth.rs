@@ -1,0 +1,110 @@
+//! References of frames.
+
+use super::motion::Moment;
+use super::plan::Job;
+use crate::experiment::{CameraChoice, Experiment};
+use crate::lab::{Lab, LabError};
+use crate::measure::Warm;
+use crate::metrics::Linear;
+use crate::reference::{GRAPH, Gathered, Goal, Tracer};
+use crate::scene::Scene;
+use std::collections::{BTreeMap, HashMap};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// Most bytes of references in memory: what is thrown away is read again.
+const MAX_BYTES: usize = 512 << 20;
+
+/// A part of a reference.
+pub(super) struct TruthPart {
+    pub mean: Linear,
+    /// Of the even and of the odd samples.
+    pub halves: [Linear; 2],
+    /// relMSE between the halves.
+    pub noise: f64,
+}
+
+/// A reference of one frame.
+pub(super) struct Truth {
+    pub parts: BTreeMap<String, TruthPart>,
+    pub samples: u64,
+    bytes: usize,
+}
+
+/// How references are made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tracing {
+    pub samples: u64,
+    pub bounces: u32,
+    pub seed: u32,
+}
+
+/// The references of one device.
+pub(super) struct Truths {
+    tracing: Tracing,
+    tracer: Tracer,
+    found: HashMap<String, Arc<Truth>>,
+}
+
+impl Truths {
+    pub fn new(tracing: Tracing) -> Truths {
+        Truths { tracing, tracer: Tracer::default(), found: HashMap::new() }
+    }
+
+    /// The reference of a moment of a job, from memory, from the disk, or traced now.
+    pub fn get(
+        &mut self,
+        lab: &Lab,
+        warm: &mut Warm,
+        job: &Job,
+        moment: &Moment,
+        tell: &mut dyn FnMut(Gathered),
+    ) -> Result<Arc<Truth>, LabError> {
+        let key = key(lab, warm, job, moment)?;
+        if let Some(found) = self.found.get(&key) {
+            return Ok(found.clone());
+        }
+        let mut experiment: Experiment = job.experiment.clone();
+        experiment.camera = CameraChoice::Placed(moment.camera);
+        experiment.time = moment.time;
+        // One seed for all frames: what noise they have is much the same, and goes out of their differences.
+        experiment.set("seed", &self.tracing.seed.to_string());
+        let scene = match moment.lights == job.scene.lights {
+            true => job.scene.clone(),
+            false => Arc::new(Scene { lights: moment.lights.clone(), ..Scene::clone(&job.scene) }),
+        };
+        let goal = Goal::Samples(self.tracing.samples);
+        let (reference, mut halves) =
+            self.tracer.gather(lab, &experiment, &scene, self.tracing.bounces, goal, &mut |now| {
+                tell(now);
+                ControlFlow::Continue(())
+            })?;
+        let samples = reference.samples;
+        let parts: BTreeMap<String, TruthPart> = reference
+            .parts
+            .into_iter()
+            .filter_map(|(name, part)| {
+                let halves = halves.remove(&name)?;
+                Some((name, TruthPart { mean: part.mean, halves, noise: part.noise }))
+            })
+            .collect();
+        let bytes = parts.values().map(|p| 3 * 12 * p.mean.rgb.len()).sum();
+        let truth = Arc::new(Truth { parts, samples, bytes });
+        if self.found.values().map(|t| t.bytes).sum::<usize>() + bytes > MAX_BYTES {
+            self.found.clear();
+        }
+        self.found.insert(key, truth.clone());
+        Ok(truth)
+    }
+}
+
+/// What the reference of a moment depends on: what is looked at, and the parameters that its graph shares with that of
+/// references.
+fn key(lab: &Lab, warm: &mut Warm, job: &Job, moment: &Moment) -> Result<String, LabError> {
+    let shared = warm.graph(&lab.home, GRAPH)?.graph.params.clone();
+    let own = &warm.graph(&lab.home, &job.experiment.graph)?.graph.params;
+    let params = job.experiment.params_over(own)?;
+    let values = params.list.iter().zip(&params.values).filter(|(p, _)| shared.index(&p.name).is_some());
+    let values: Vec<String> = values.map(|(p, v)| format!("{}={v}", p.name)).collect();
+    Ok(format!("{} {:?} {moment:?} {}", job.scene_hash, job.experiment.size, values.join(" ")))
+}

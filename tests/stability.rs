@@ -1,0 +1,289 @@
+//! Stability: the definitions on sequences with known answers, and methods whose behaviour is known.
+
+mod common;
+
+use common::{conelab, fails, root, succeeds};
+use conelab::metrics::{Kind, Linear};
+use conelab::stability::{Suite, change, display, flicker, step};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+fn grey(values: &[f32]) -> Linear {
+    Linear { size: (values.len() as u32, 1), rgb: values.iter().map(|v| [*v; 3]).collect() }
+}
+
+/// A sequence of one pixel as `flicker` takes it: differences to its first frame, and its area.
+fn index_of(sequence: &[f32]) -> f64 {
+    let differences: Vec<Vec<f32>> = sequence.iter().map(|v| vec![v - sequence[0]]).collect();
+    let area = sequence.iter().map(|v| f64::from(*v)).sum();
+    flicker(&differences, &[area]).mean
+}
+
+/// A constant does not flicker; a sine of amplitude a around 1 has a / pi of its area above the mean; light that is on in
+/// one frame of n has 1 - 1/n there.
+#[test]
+fn flicker_index() {
+    assert_eq!(index_of(&[0.3; 24]), 0.0);
+    let sine = |a: f32| (0..240).map(|i| 1.0 + a * (std::f32::consts::TAU * i as f32 / 24.0).sin()).collect::<Vec<_>>();
+    for a in [0.1, 0.5, 1.0] {
+        // 24 frames a period: the sum stands for the integral to 1 %.
+        assert!((index_of(&sine(a)) - f64::from(a) / std::f64::consts::PI).abs() < 0.01 * f64::from(a));
+    }
+    assert!((index_of(&[0.0, 0.0, 0.0, 8.0]) - 0.75).abs() < 1e-12);
+    assert_eq!(index_of(&[0.0; 8]), 0.0, "black does not flicker");
+}
+
+/// What the truth does is no error; a pop in a few pixels is in the percentile and the jump, hardly in the mean.
+#[test]
+fn change_of_a_frame() {
+    let (a, b) = (grey(&[0.1, 0.2, 0.3]), grey(&[0.2, 0.4, 0.1]));
+    let none = change(Kind::Radiance, [&a, &b], Some([&a, &b]));
+    assert_eq!((none.rms, none.p999, none.jump), (0.0, 0.0, 0.0));
+    // The truth rises by 1 everywhere, the method in one of four pixels only: errors 0, 1, 1, 1.
+    let (x0, x1) = (grey(&[0.0; 4]), grey(&[1.0, 0.0, 0.0, 0.0]));
+    let (r0, r1) = (grey(&[0.0; 4]), grey(&[1.0; 4]));
+    let c = change(Kind::Radiance, [&x0, &x1], Some([&r0, &r1]));
+    assert!((c.rms - 0.75f64.sqrt()).abs() < 1e-12 && (c.p999 - 1.0).abs() < 1e-12);
+    // 1 is shown as 1/2, which sRGB encodes as .7354.
+    assert!((c.jump - 255.0 * 0.735_357).abs() < 0.01, "{}", c.jump);
+    assert!((display(Kind::Displayed, 1.0) - 1.0).abs() < 1e-9);
+    // One pixel in 500 pops.
+    let (calm, mut pop) = (vec![0.5; 500], vec![0.5; 500]);
+    pop[77] = 1.5;
+    let c = change(Kind::Radiance, [&grey(&calm), &grey(&pop)], None);
+    assert!((c.p999 - 1.0).abs() < 1e-6 && (c.rms - (1.0f64 / 500.0).sqrt()).abs() < 1e-6);
+}
+
+/// A step that decays by a factor arrives after log(.05) / log(factor) frames; one that overshoots says by how much.
+#[test]
+fn step_response() {
+    for factor in [0.0f64, 0.5, 0.8, 0.9] {
+        let mut signal = vec![2.0; 3];
+        signal.extend((1..200).map(|k| 5.0 - 3.0 * factor.powi(k)));
+        let found = step(&signal, 3).unwrap();
+        let expected = if factor == 0.0 { 1 } else { (0.05f64.ln() / factor.ln()).ceil() as usize };
+        assert_eq!((found.frames, found.overshoot < 1e-6), (Some(expected), true), "factor {factor}");
+    }
+    let over = step(&[0.0, 0.0, 6.0, 5.5, 5.0, 5.0, 5.0], 2).unwrap();
+    assert_eq!((over.frames, (over.overshoot - 0.2).abs() < 1e-12), (Some(3), true));
+    let falls = step(&[4.0, -1.0, 0.0, 0.0], 1).unwrap();
+    assert_eq!((falls.frames, falls.overshoot), (Some(2), 0.25));
+    assert_eq!(step(&[0.0, 1.0, 2.0, 3.0, 4.0], 1).unwrap().frames, None, "it has not arrived");
+    assert!(step(&[1.0, 1.0, 1.0], 1).is_none(), "nothing changed");
+}
+
+/// A folder with the program's graphs and shaders, so that references and captures are the test's own.
+fn home() -> TempDir {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["passes", "shaders", "configs"] {
+        std::os::unix::fs::symlink(root().join(folder), home.path().join(folder)).unwrap();
+    }
+    home
+}
+
+/// A suite on small voxels of the room with the moving box.
+fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
+    let path = home.join("small.ron");
+    let text = format!(
+        "(experiment: \"configs/default.ron\", warmup: 3, frames: 4, samples: 32,\n\
+         set: {{ \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256 }},\n\
+         methods: {{\n{methods}\n}},\ncases: {{\n{cases}\n}})"
+    );
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn stability(home: &Path, file: &Path, folder: &str, more: &[&str]) -> Command {
+    let mut command = conelab(home);
+    command.arg("stability").arg(file).arg("-o").arg(home.join(folder)).args(more);
+    command
+}
+
+/// A table without what differs from run to run: a line for each row, by column.
+fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let names = reader.headers().unwrap().clone();
+    let line = |record: csv::StringRecord| {
+        let cells = names.iter().zip(&record).filter(|c| !c.0.ends_with(" ms"));
+        cells.map(|(name, value)| (name.to_string(), value.to_string())).collect()
+    };
+    reader.records().map(|r| line(r.unwrap())).collect()
+}
+
+/// A column of a method in a case.
+#[track_caller]
+fn value(table: &[BTreeMap<String, String>], case: &str, method: &str, column: &str) -> Option<f64> {
+    let row = table.iter().find(|r| r["case"] == case && r["method"] == method).unwrap();
+    row.get(column).unwrap_or_else(|| panic!("no column '{column}'")).parse().ok()
+}
+
+/// Where nothing moves, nothing changes: to the bit, in every part, with and without filters over time.
+#[test]
+fn a_still_scene_is_still() {
+    let home = home();
+    let methods = "\"uniform\": {}, \"temporal\": { \"temporal\": true }, \"tracking\": { \"volume\": \"camera\", \
+                   \"volume_size\": (10, 10, 10) }, \"tessellated\": { \"voxelizer\": \"tessellated\" }";
+    let file = suite(home.path(), methods, "\"still\": (), \"yaw\": (motion: Camera(yaw: 1))");
+    succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
+    let table = table(&home.path().join("out/stability.csv"));
+    for method in ["uniform", "temporal", "tracking", "tessellated"] {
+        for part in ["total", "direct", "diffuse", "specular", "occlusion"] {
+            for column in ["E_t", "pops", "peak jump /255", "flicker mean", "flicker p99"] {
+                assert_eq!(value(&table, "still", method, &format!("{part} {column}")), Some(0.0), "{method} {part}");
+            }
+        }
+        // Without a reference nobody knows how a moving camera's picture should change.
+        assert_eq!(value(&table, "yaw", method, "total E_t"), None);
+        assert_eq!(value(&table, "yaw", method, "total flicker mean"), None);
+    }
+}
+
+/// A path tracer with other random numbers as the method: two pictures of s samples each differ by 2/s, the two halves of
+/// one by 4/s of a sample's variance, so E_t is .71 of the noise that is told, and not told apart from it.
+#[test]
+fn the_reference_as_a_method_is_at_its_own_noise() {
+    let home = home();
+    let methods = "\"path tracer\": { \"graph\": \"reference.ron\", \"samples\": 64, \"seed\": 7 }";
+    let file = suite(
+        home.path(),
+        methods,
+        "\"yaw\": (warmup: 0, motion: Camera(yaw: 0.5)), \"box\": (warmup: 0, motion: Actors(step: 0.1))",
+    );
+    succeeds(&mut stability(home.path(), &file, "out", &["--spp", "64"]));
+    let table = table(&home.path().join("out/stability.csv"));
+    for case in ["yaw", "box"] {
+        let of = |column: &str| value(&table, case, "path tracer", column).unwrap();
+        let ratio = of("diffuse E_t") / of("diffuse E_t noise");
+        assert!((0.5..1.0).contains(&ratio), "{case}: E_t is {ratio} of the noise");
+        assert!(of("direct E_t") < 1e-6, "direct light of lights without extent has no noise");
+        let row = table.iter().find(|r| r["case"] == case).unwrap();
+        assert_eq!(row["diffuse told apart"], "no");
+        assert!(of("diffuse flicker mean") < of("diffuse flicker noise"));
+    }
+}
+
+/// T11: a lamp is switched on. Without a filter the voxels follow at once; with one that keeps a part f of the frame before,
+/// 5 % are left after log(.05) / log(f) frames.
+#[test]
+fn a_switched_light_arrives_as_late_as_the_filter_says() {
+    let home = home();
+    let methods = "\"none\": {}, \"half\": { \"temporal\": true, \"temporal_factor\": 0.5 }, \"slow\": { \"temporal\": true, \"temporal_factor\": 0.8 }";
+    let cases = "\"on\": (frames: 40, motion: Switch(name: \"lamp\", at: 1, from: 0, to: 1)), \
+                 \"off\": (frames: 40, motion: Switch(name: \"lamp\", at: 1, from: 1, to: 0.2))";
+    let file = suite(home.path(), methods, cases);
+    succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
+    let table = table(&home.path().join("out/stability.csv"));
+    for case in ["on", "off"] {
+        for (method, factor) in [("none", 0.0f64), ("half", 0.5), ("slow", 0.8)] {
+            let expected = if factor == 0.0 { 1.0 } else { (0.05f64.ln() / factor.ln()).ceil() };
+            assert_eq!(value(&table, case, method, "diffuse convergence frames"), Some(expected), "{case} {method}");
+            assert!(value(&table, case, method, "diffuse overshoot").unwrap() < 0.01);
+            assert_eq!(value(&table, case, method, "direct convergence frames"), Some(1.0), "the filter is for voxels");
+        }
+    }
+}
+
+/// What moves makes references of its own, and what stands still shares them: 2 frames each of camera, actor and light that
+/// begin alike are 4 pictures.
+#[test]
+fn references_know_what_moved() {
+    let home = home();
+    let cases = "\"camera\": (motion: Camera(strafe: 0.1)), \"actor\": (motion: Actors(step: 0.2)), \
+                 \"light\": (motion: Light(name: \"lamp\", shift: (0, -0.1, 0))), \"still\": ()";
+    let file = suite(home.path(), "\"uniform\": {}, \"warped\": { \"warp\": \"spline\" }", cases);
+    succeeds(&mut stability(home.path(), &file, "out", &["--frames", "2"]));
+    let kept = || std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
+    assert_eq!(kept(), 4);
+    let page = std::fs::read_to_string(home.path().join("out/index.html")).unwrap();
+    let pictures: Vec<_> =
+        std::fs::read_dir(home.path().join("out/pictures")).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(pictures.len(), 8);
+    assert!(pictures.iter().all(|p| page.contains(&*p.to_string_lossy())), "every worst frame is named in the page");
+}
+
+/// Killed as soon as something is finished and started again: what was finished stays, and the tables are those of a run
+/// that was left alone.
+#[test]
+fn killed_and_continued() {
+    let home = home();
+    let methods = "\"a\": {}, \"b\": { \"temporal\": true }, \"c\": { \"warp\": \"spline\" }";
+    let cases = "\"still\": (), \"yaw\": (motion: Camera(yaw: 0.5)), \"on\": (frames: 6, motion: Switch(name: \"lamp\", at: 1, from: 0, to: 1))";
+    let file = suite(home.path(), methods, cases);
+    let results = home.path().join("out/results");
+    let finished = || -> BTreeMap<String, Vec<u8>> {
+        let entries = std::fs::read_dir(&results).into_iter().flatten().flatten();
+        let named = entries.map(|e| e.file_name().to_string_lossy().into_owned()).filter(|n| !n.starts_with('.'));
+        named.map(|n| (n.clone(), std::fs::read(results.join(&n)).unwrap())).collect()
+    };
+    let mut child =
+        stability(home.path(), &file, "out", &[]).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+    let begun = Instant::now();
+    while finished().len() < 2 && begun.elapsed() < Duration::from_secs(300) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let before = finished();
+    assert!((2..9).contains(&before.len()), "{} of 9 were finished", before.len());
+    let told = succeeds(&mut stability(home.path(), &file, "out", &[]));
+    assert!(told.contains(&format!("{} are finished already", before.len())), "{told}");
+    let after = finished();
+    assert_eq!(after.len(), 9);
+    assert!(before.iter().all(|(name, bytes)| after[name] == *bytes), "what was finished is kept as it was");
+    succeeds(&mut stability(home.path(), &file, "whole", &[]));
+    for name in ["stability.csv", "frames.csv"] {
+        assert_eq!(table(&home.path().join("out").join(name)), table(&home.path().join("whole").join(name)));
+    }
+}
+
+/// The shipped suites are right, and two of the failures are as the physics says.
+#[test]
+fn shipped_suites() {
+    let home = home();
+    for name in ["motion", "failures"] {
+        let path = root().join(format!("configs/stability/{name}.ron"));
+        assert!(Suite::read(&path).unwrap().cases.len() > 8);
+        succeeds(conelab(home.path()).arg("check").arg(path));
+    }
+    let file = root().join("configs/stability/failures.ron");
+    let more = ["--size", "40x30", "--spp", "32", "--set", "voxel_dim=32", "--only", "volume off the scene,thin walls"];
+    succeeds(&mut stability(home.path(), &file, "out", &more));
+    let table = table(&home.path().join("out/stability.csv"));
+    let nothing = table.iter().find(|r| r["variant"] == "nothing").unwrap();
+    assert_eq!(nothing["diffuse energy ratio"], "0", "a volume without the scene has no light to give");
+    assert_eq!(nothing["direct relMSE"], table.iter().find(|r| r["variant"] == "half").unwrap()["direct relMSE"]);
+    for row in table.iter().filter(|r| r["case"] == "thin walls") {
+        let recall: f64 = row["voxel recall"].parse().unwrap();
+        let least = if row["method"] == "tessellated" { 0.9 } else { 1.0 };
+        assert!(recall >= least, "{}: recall {recall}", row["method"]);
+    }
+}
+
+/// Mistakes are told before anything is measured.
+#[test]
+fn mistakes() {
+    let home = home();
+    let told = |methods: &str, cases: &str, more: &[&str]| {
+        let file = suite(home.path(), methods, cases);
+        fails(&mut stability(home.path(), &file, "out", more))
+    };
+    let has = |text: String, part: &str| assert!(text.contains(part), "{text}");
+    has(told("\"a\": {}", "\"x\": (motion: Light(name: \"sun\"))", &[]), "has no light 'sun'; it has lamp");
+    has(
+        told("\"a\": {}", "\"x\": (set: { \"scene\": \"cornell\" }, motion: Actors(step: 0.1))", &[]),
+        "nothing is animated",
+    );
+    has(told("\"a\": {}", "\"x\": ()", &["--only", "y"]), "the suite's cases are x");
+    has(told("\"a\": { \"voxel_dimm\": 3 }", "\"x\": ()", &[]), "voxel_dim");
+    has(told("\"a\": {}", "\"x\": (methods: [\"b\"])", &[]), "none of the suite's");
+    has(told("\"a\": {}", "\"x\": (motion: Camera(dolley: 1))", &[]), "dolley");
+    has(
+        told("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
+        "needs at least 11 frames",
+    );
+    has(told("", "\"x\": ()", &[]), "at least one method");
+    assert!(!home.path().join("out").exists(), "nothing was written");
+}
