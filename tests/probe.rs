@@ -92,7 +92,7 @@ fn samples_add_up_to_what_shading_found() {
 
         let rows = rows(&mut session);
         let cone = |number: u32| rows.iter().filter(|r| r.cone == number).collect::<Vec<_>>();
-        for number in 0..7 {
+        for number in 0..10 {
             let samples = cone(number);
             // Around the sphere the volume is so tight that a cone may leave it at once.
             assert!(name == "white-sky" || !samples.is_empty(), "{what}: cone {number} has no samples");
@@ -105,17 +105,17 @@ fn samples_add_up_to_what_shading_found() {
                 before = row.transmittance;
             }
         }
-        assert!(rows.iter().all(|r| r.cone < 7), "{what}: more cones than there are");
+        assert!(rows.iter().all(|r| r.cone < 10), "{what}: more cones than there are");
 
-        // The wide set: .15 on the normal, the rest shared by the ring of five.
+        // The wide set: .15 on the normal, the rest shared by the ring of eight.
         let hemisphere: Vec3 =
-            (1..7).map(|n| if n == 1 { 0.15 } else { 0.85 / 5.0 } * cone_radiance(&cone(n), opened.sky)).sum();
+            (1..10).map(|n| if n == 1 { 0.15 } else { 0.85 / 8.0 } * cone_radiance(&cone(n), opened.sky)).sum();
         let expected = albedo * hemisphere;
         let shaded = Vec3::from_slice(&floats(&mut session, "diffuseIndirect", 0)[pixel][..3]);
         println!("{what}: {} samples, {expected:.5} expected, {shaded:.5} shaded", rows.len());
-        // A step of a 16-bit float is at most 2^-10 of the value, and software devices cut off.
+        // A step of a 16-bit float is at most 2^-10 of the value, and software devices cut off; the albedo has 16 bits too.
         let error = ((expected - shaded) / shaded.max(Vec3::splat(1e-3))).abs().max_element();
-        assert!(error < 1e-3, "{what}: {expected} is not {shaded} ({error})");
+        assert!(error < 2e-3, "{what}: {expected} is not {shaded} ({error})");
     }
 }
 

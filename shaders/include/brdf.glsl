@@ -57,12 +57,4 @@ vec3 diffuseBrdf(Surface s) {
     return s.albedo / PI;
 }
 
-// Integral of the specular BRDF over the lobe, f0 * scale + bias (Karis 2014, "Physically Based Shading on Mobile").
-vec3 environmentBrdf(vec3 f0, float roughness, float n_v) {
-    vec4 r = roughness * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
-    float a = min(r.x * r.x, exp2(-9.28 * n_v)) * r.x + r.y;
-    vec2 ab = vec2(-1.04, 1.04) * a + r.zw;
-    return f0 * ab.x + ab.y;
-}
-
 #endif

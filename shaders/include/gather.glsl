@@ -14,6 +14,8 @@
 #include "cone.glsl"
 #endif
 
+uniform sampler2D specularAlbedo; // of the lobe, from specular_albedo.comp
+
 // Centre of the pixel that is shaded: defined by the shader.
 vec2 pixelCentre();
 
@@ -107,7 +109,8 @@ vec3 specularCone(ConeOrigin o, Surface s, vec3 face, vec3 v) {
 #endif
     vec3 l = coneRadiance(traceAny(o, d, tan(half_angle), params.specular_steps, 0u));
     if (params.specular_weight == SPECULAR_WEIGHT_PLAIN) return l; // as the thesis adds it
-    return l * environmentBrdf(s.f0, s.roughness, max(dot(s.normal, v), 0.0));
+    vec2 albedo = textureLod(specularAlbedo, (vec2(sqrt(max(dot(s.normal, v), 0.0)), s.roughness) * 31.0 + 0.5) / 32.0, 0.0).rg;
+    return l * (s.f0 * albedo.r + albedo.g);
 }
 
 #endif
