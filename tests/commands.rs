@@ -161,7 +161,12 @@ fn the_same_command_gives_the_same_bytes() {
 fn resources_come_as_they_are() {
     let out = Out::new();
     // Slices of a volume lie below one another: mip 2 of 32^3 is 8 wide and 8 * 8 high.
-    succeeds(render("cornell", &out.path("mip.exr")).args(["--resource", "voxelRadiance:2", "--set", "directional=false"]));
+    succeeds(render("cornell", &out.path("mip.exr")).args([
+        "--resource",
+        "voxelRadiance:2",
+        "--set",
+        "directional=false",
+    ]));
     let (width, height, texels) = read_exr(&out.path("mip.exr"));
     assert_eq!((width, height), (8, 64));
     assert!(texels.iter().any(|t| t[3] > 0.0) && texels.iter().flatten().all(|v| v.is_finite()));
