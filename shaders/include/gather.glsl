@@ -92,18 +92,18 @@ vec3 specularCone(ConeOrigin o, Surface s, vec3 face, vec3 v) {
 #ifdef VOXEL_RAYS
     if (TRACE == TRACE_LOBE_RAYS) return specularRays(o, s, face, v);
 #endif
+    float alpha = ggxAlpha(s.roughness);
     vec3 d = reflect(-v, s.normal);
     // Where a rough lobe's weight lies: between the mirror direction and the normal (Lagarde and de Rousiers 2014,
     // Section 4.9.3, with Smith's term).
     if (params.specular_axis == SPECULAR_AXIS_DOMINANT) {
-        float alpha = s.roughness * s.roughness;
         d = normalize(mix(s.normal, d, (1.0 - alpha) * (sqrt(1.0 - alpha) + alpha)));
     }
     d = normalize(d + face * max(0.02 - dot(d, face), 0.0)); // mapped normals may reflect into the surface
     // Half of a GGX lobe lies within 2 atan(alpha) of the mirror direction; the thesis takes 0.1 pi roughness
     // for the whole aperture.
     float half_angle = params.specular_aperture == SPECULAR_APERTURE_THESIS ? 0.05 * PI * s.roughness
-                                                                            : min(2.0 * atan(s.roughness * s.roughness), PI / 3.0);
+                                                                            : min(2.0 * atan(alpha), PI / 3.0);
 #ifdef CONE_RECORD
     recordCone(0u);
 #endif

@@ -1,5 +1,6 @@
 // The surface that each pixel sees, between the pass that writes it (surfaces.frag) and those that shade it. Every value
-// is 0 or more: where triangles meet in one depth the larger one stays, whatever their order.
+// is 0 or more: where triangles meet in one depth the larger one stays, channel by channel, whatever their order. What is
+// then shaded may be a mixture of both, on the viewer's side.
 #ifndef SEEN_GLSL
 #define SEEN_GLSL
 #include "scene.glsl"
@@ -53,7 +54,10 @@ Seen seenAt(ivec2 pixel) {
     seen.position = camera.position + range * ray;
     seen.to_viewer = -ray;
     seen.face = unpackNormal(normals.zw);
-    seen.surface = makeSurface(unpackNormal(normals.xy), base.rgb, base.a, emission.a);
+    if (dot(seen.face, ray) > 0.0) seen.face = -seen.face;
+    vec3 normal = unpackNormal(normals.xy);
+    if (dot(normal, seen.face) < -0.5) normal = -normal; // mapped normals lean, mixtures may point anywhere
+    seen.surface = makeSurface(normal, base.rgb, base.a, emission.a);
     seen.emission = emission.rgb;
     return seen;
 }

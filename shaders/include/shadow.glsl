@@ -35,19 +35,20 @@ vec3 offSurface(vec3 p, vec3 n, vec3 to_light, float radius) {
 
 // How fast depth in the map grows over the plane through p [a map's width]. It is linear over a plane, in perspective too,
 // so it is taken from points far apart, which keeps digits.
-vec2 planeSlope(int view, vec3 p, vec3 q, vec3 n, vec3 to_light, float reach) {
+vec2 planeSlope(int view, vec3 p, vec3 n, vec3 to_light, float reach) {
     mat3 frame = frameOf(n);
-    vec3 a = shadowPosition(view, p + reach * frame[0]) - q, b = shadowPosition(view, p + reach * frame[1]) - q;
+    vec3 q = shadowPositionBeyond(view, p);
+    vec3 a = shadowPositionBeyond(view, p + reach * frame[0]) - q, b = shadowPositionBeyond(view, p + reach * frame[1]) - q;
     float area = a.x * b.y - a.y * b.x;
     vec2 slope = vec2(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / (abs(area) > 1e-20 ? area : 1e-20);
     // A plane seen edge on has no depth of its own: at most 64 texels deep a texel.
-    float towards = abs(shadowPosition(view, p + reach * to_light).z - q.z) * 64.0;
+    float towards = abs(shadowPositionBeyond(view, p + reach * to_light).z - q.z) * 64.0;
     return slope * min(1.0, 64.0 * towards / max(length(slope), 1e-20));
 }
 
 // Visibility in [0,1] of a light from p on a surface with geometric normal n (facing the viewer). With the plane's depth at
-// each texel (Isidoro 2006) a quarter of a texel off is enough; without it a whole one, which lets light in where surfaces
-// meet.
+// each texel (Isidoro 2006) a few hundredths of a texel off are enough; without it a whole one, which lets light in where
+// surfaces meet.
 float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
     int view = shadowViewOf(light, p);
@@ -56,7 +57,7 @@ float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     vec3 q = shadowPosition(view, from);
     if (SHADOW_RECEIVER == SHADOW_RECEIVER_OFFSET) return shadowTaps(view, q, vec2(0.0));
     // 1/64 of the map's width.
-    vec2 slope = planeSlope(view, from, q, n, to_light, texel * float(params.shadow_dim) / 64.0);
+    vec2 slope = planeSlope(view, from, n, to_light, texel * float(params.shadow_dim) / 64.0);
     return shadowTaps(view, q - vec3(0.0, 0.0, params.shadow_format == SHADOW_FORMAT_D16 ? 1.0 / 65535.0 : 1e-6), slope);
 }
 

@@ -30,11 +30,17 @@ float shadowTexel(int view, Light light, vec3 p) {
     return t.x * (t.z > 0.0 ? distance(light.position, p) : 1.0) / float(params.shadow_dim);
 }
 
-// xy: shadow-map coordinates in [0,1]; z: depth.
-vec3 shadowPosition(int view, vec3 p) {
+// xy: shadow-map coordinates in [0,1]; z: depth, outside [0,1] beyond the map's ends.
+vec3 shadowPositionBeyond(int view, vec3 p) {
     vec4 c = shadowViews.views[view].view_projection * vec4(p, 1.0);
     vec3 q = c.xyz / max(c.w, 1e-6); // a spot light's plane has w = 0; behind it no light arrives
-    return vec3(q.xy * 0.5 + 0.5, clamp(q.z, 0.0, 1.0));
+    return vec3(q.xy * 0.5 + 0.5, q.z);
+}
+
+// The same, as the map has it.
+vec3 shadowPosition(int view, vec3 p) {
+    vec3 q = shadowPositionBeyond(view, p);
+    return vec3(q.xy, clamp(q.z, 0.0, 1.0));
 }
 
 #endif

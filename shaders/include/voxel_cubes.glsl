@@ -18,7 +18,7 @@ uniform sampler3D level; // the mip of voxelRadiance that is shown; of direction
 uniform sampler3D faces; // the mip of voxelFaces that is shown, if one is
 
 bool showsFaces() {
-    return DIRECTIONAL && params.voxel_view_mip > 0;
+    return DIRECTIONAL && min(params.voxel_view_mip, params.voxel_mips - 1) > 0;
 }
 
 // Cells along an edge of the shown level.

@@ -39,6 +39,15 @@ pub(super) fn traced_by(loaded: &Loaded, experiment: &Experiment, bounces: u32) 
     Ok(traced)
 }
 
+/// SHA-256 of all passes' compiled shaders, hexadecimal.
+pub(super) fn shaders(loaded: &Loaded) -> String {
+    let mut hash = Sha256::new();
+    for stage in loaded.linked.iter().flat_map(|link| &link.stages) {
+        hash.update(bytemuck::cast_slice::<u32, u8>(&stage.words));
+    }
+    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+}
+
 /// 16 hexadecimal digits of everything that the samples of an experiment of [`GRAPH`] depend on: the compiled shaders,
 /// the scene's content, camera, size, time, and parameters.
 pub(super) fn key(traced: &Experiment, loaded: &Loaded, scene: &Arc<Scene>) -> Result<String, LabError> {

@@ -39,6 +39,15 @@ pub struct ReferencePart {
     pub noise: f64,
 }
 
+/// A number of the shaders that references are made with, 64 hexadecimal digits.
+///
+/// # Errors
+/// A graph of references that cannot be read.
+pub fn shaders(home: &Home) -> Result<String, LabError> {
+    let loaded = home.load(GRAPH).map_err(LabError::Input)?;
+    Ok(key::shaders(&loaded))
+}
+
 /// The reference of an experiment for so many bounces, if it has been gathered. `scene` is lit as the experiment says.
 ///
 /// # Errors

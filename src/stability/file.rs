@@ -11,7 +11,7 @@ use serde::Deserialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Most frames of a case, warm-up included.
+/// Most frames of a case, and most before them.
 pub(super) const MAX_FRAMES: usize = 10_000;
 /// Most methods times cases.
 const MAX_JOBS: usize = 2000;

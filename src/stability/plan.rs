@@ -7,6 +7,7 @@ use crate::experiment::{Experiment, check_size};
 use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::{Home, LabError, camera_of, parts_of};
 use crate::measure::{Frames, Warm};
+use crate::reference;
 use crate::scene::Scene;
 use crate::sweep::Lister;
 use crate::vulkan::DeviceInfo;
@@ -75,13 +76,15 @@ pub fn plan(
         known.dedup();
         return Err(LabError::Request(format!("--only {name}: the suite's cases are {}", known.join(", "))));
     }
+    // What the frames are compared with is part of a result.
+    let truth = if options.reference { reference::shaders(home)? } else { String::new() };
     let mut lister = Lister::new(home, open_scene);
     let mut jobs: Vec<Job> = Vec::new();
     let mut errors: Vec<Diagnostic> = Vec::new();
     let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
     for case in suite.cases.iter().filter(wanted) {
         for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
-            match job(home, device, &mut lister, warm, suite, options, (method, case)) {
+            match job(home, device, &mut lister, warm, suite, options, (method, case, &truth)) {
                 Ok(job) => jobs.push(job),
                 Err(LabError::Input(list)) => {
                     for diagnostic in list {
@@ -104,7 +107,7 @@ fn job(
     warm: &mut Warm,
     suite: &Suite,
     options: &Options,
-    (method, case): (&Method, &Case),
+    (method, case, truth): (&Method, &Case, &str),
 ) -> Result<Job, LabError> {
     let mut params = |graph: &str| warm.graph(home, graph).ok().map(|l| l.graph.params.clone());
     let mut experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input)?;
@@ -140,9 +143,9 @@ fn job(
     let listed = lister.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
     case.motion.check(&listed.scene).map_err(wrong)?;
     if let Motion::Switch { at, .. } = case.motion
-        && at + 2 > frames
+        && frames.saturating_sub(2) < at
     {
-        return Err(wrong(format!("a light that is switched at frame {at} needs at least {} frames", at + 2)));
+        return Err(wrong(format!("a light that is switched at frame {at} needs two frames more, there are {frames}")));
     }
     let (scene, hash) = match case.motion.stage(&listed.scene) {
         Some(staged) => {
@@ -161,7 +164,7 @@ fn job(
     let facts = [
         listed.id,
         format!("{:?}", case.motion),
-        format!("{samples:?} {} {} {}", suite.bounces, suite.seed, case.voxels),
+        format!("{samples:?} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels),
         format!("{} {} {}", device.name, device.driver, device.api),
         // Two names of the same thing are two rows.
         format!("{:?} {:?} {:?}", method.name, case.name, case.variant),

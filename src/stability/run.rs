@@ -205,9 +205,23 @@ impl Runner {
                 (Some((_, Some(truth))), true) if !changed => Some(truth.clone()),
                 _ => Some(self.truths.get(lab, warm, job, &moment, &mut |now| tell(Progress::Gathers(now)))?),
             };
-            samples = truth.as_ref().map_or(samples, |t| t.samples);
+            if let Some(truth) = &truth {
+                if frame > 0 && truth.samples != samples {
+                    let unequal =
+                        "references have different numbers of samples, some were kept with more: noise is larger";
+                    if !warnings.iter().any(|w| w == unequal) {
+                        warnings.push(unequal.into());
+                    }
+                }
+                samples = truth.samples;
+            }
             let earlier = before.as_ref().and_then(|b| b.1.as_ref());
             for (part, x) in session.parts()? {
+                let lost = x.rgb.iter().filter(|c| !c.iter().all(|v| v.is_finite())).count();
+                let told = format!("pixels of '{part}' are no number and left out of its scores");
+                if lost > 0 && !warnings.iter().any(|w| w.ends_with(&told)) {
+                    warnings.push(format!("frame {frame}, perhaps others too: {lost} {told}"));
+                }
                 let known = known(&part, truth.as_deref(), earlier.map(|t| &**t), changed);
                 let own = series.entry(part.clone()).or_insert_with(|| PartSeries::new(&part));
                 let shown = (part == "total").then(|| Panels::of(own.before(), &x, known));
@@ -221,7 +235,8 @@ impl Runner {
             before = Some((moment, truth));
         }
         let times: Vec<f64> = times.iter().skip(job.case.warmup).map(|t| t.gpu_ms).collect();
-        let voxels = voxels(&mut session, job, &mut warnings)?;
+        let last = before.map_or(job.start.time, |b| b.0.time);
+        let voxels = voxels(&mut session, job, last, &mut warnings)?;
         self.lent.insert(job.method.clone(), session.lend());
         let switched = if let Motion::Switch { at, .. } = motion { Some(*at) } else { None };
         let parts = series.into_iter().map(|(name, s)| (name, s.finish(switched))).collect();
@@ -251,13 +266,18 @@ fn cell_at(session: &mut Session, start: &Moment) -> Result<f32, LabError> {
 }
 
 /// The voxels of the last frame against exact ones, if the case asks for it and the method can.
-fn voxels(session: &mut Session, job: &Job, warnings: &mut Vec<String>) -> Result<Option<oracle::Score>, LabError> {
+fn voxels(
+    session: &mut Session,
+    job: &Job,
+    time: f64,
+    warnings: &mut Vec<String>,
+) -> Result<Option<oracle::Score>, LabError> {
     if !job.case.voxels || session.graph.voxels.is_none() {
         return Ok(None);
     }
     match oracle::read(session) {
         Ok((grid, voxels)) => {
-            let triangles = oracle::triangles_of(&job.scene, job.start.time);
+            let triangles = oracle::triangles_of(&job.scene, time);
             let cells = oracle::exact(&triangles, &Surfaces::new(&job.scene), &grid);
             Ok(Some(oracle::compare(&grid, &cells, &voxels).score))
         }
