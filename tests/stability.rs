@@ -282,7 +282,7 @@ fn mistakes() {
     has(told("\"a\": {}", "\"x\": (motion: Camera(dolley: 1))", &[]), "dolley");
     has(
         told("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
-        "needs at least 11 frames",
+        "needs two frames more, there are 4",
     );
     has(told("", "\"x\": ()", &[]), "at least one method");
     assert!(!home.path().join("out").exists(), "nothing was written");
