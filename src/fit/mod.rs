@@ -1,6 +1,7 @@
 //! The cheapest setting that stays within a bound: a search over a few values of a few parameters.
 
 mod evaluate;
+mod model;
 mod search;
 
 pub use evaluate::{Evaluator, Goal, Metric, Subject};

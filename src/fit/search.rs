@@ -1,10 +1,12 @@
-//! The search: neighbours on a grid, a few evaluations, no model of the method.
+//! The search: neighbours on a grid, a few evaluations, no knowledge of the method.
 //!
 //! While the bound is not met, the step that lowers the bounded quantity most for what it costs is taken. Once it is
 //! met, single steps that cost less and stay within it; then exchanges of two steps, one that saves and one that mends,
 //! of which only those are tried that a model promises: that the ratio by which a step changes a quantity is the same
-//! wherever it is taken. A local optimum is where the search ends.
+//! wherever it is taken. From where no step helps any more, a model of all that was tried proposes settings farther away
+//! ([`propose`]); several in a row that are no better end the search.
 
+use super::model::propose;
 use std::collections::HashMap;
 
 /// Both quantities of one setting, in their own units; smaller is better.
@@ -148,12 +150,11 @@ fn moved(place: &[usize], steps: &[Move]) -> Vec<usize> {
     place
 }
 
-/// Walks in vain, from other places, after which the best is taken.
-const HOPS: usize = 3;
+/// Proposals in vain after which the best is taken.
+const PROPOSALS: usize = 24;
 
-/// Searches on a grid with so many values on each axis: from `start`, from the first value of every axis, and from places
-/// near the best, because a local optimum is not always the best. `evaluate` gives a setting's quantities, or nothing where it cannot
-/// be run.
+/// Searches on a grid with so many values on each axis: from `start`, from the first value of every axis, and from what
+/// the trials so far promise. `evaluate` gives a setting's quantities, or nothing where it cannot be run.
 ///
 /// # Errors
 /// Those of `evaluate`; `None` when not even the start can be run.
@@ -165,18 +166,28 @@ pub fn search<E>(
 ) -> Result<Option<Found>, E> {
     let mut s = Search { evaluate, sizes, limits, known: HashMap::new(), tried: Vec::new(), ratios: HashMap::new() };
     let Some((mut place, mut trial)) = descend(&mut s, start)? else { return Ok(None) };
-    let mut random = 1u64;
-    let mut from = vec![0; sizes.len()];
+    if let Some(found) = descend(&mut s, &vec![0; sizes.len()])?.filter(|f| s.better(f.1, trial)) {
+        (place, trial) = found;
+    }
+    // Every value of every axis once, so that the model knows of all of them.
+    for (axis, values) in sizes.iter().enumerate() {
+        for value in 0..*values {
+            s.trial(&moved(&place, &[(axis, value)]))?;
+        }
+    }
     let mut in_vain = 0;
-    while in_vain < HOPS && !s.spent() {
-        match descend(&mut s, &from)? {
-            Some(found) if s.better(found.1, trial) => {
-                (place, trial) = found;
+    while in_vain < PROPOSALS && !s.spent() {
+        // What should miss the bound by a little may turn out to be within.
+        let bound = limits.bound * (1.0 + 0.02 * (in_vain % 3) as f64);
+        let tried: Vec<(&[usize], Trial)> = s.tried.iter().filter_map(|t| Some((&t.place[..], t.trial?))).collect();
+        let Some(from) = propose(sizes, &s.known, &tried, bound) else { break };
+        match s.trial(&from)? {
+            Some(found) if s.better(found, trial) => {
+                (place, trial) = descend(&mut s, &from)?.unwrap_or((from, found));
                 in_vain = 0;
             }
             _ => in_vain += 1,
         }
-        from = hop(&place, sizes, &mut random);
     }
     let stop = match trial.bounded <= limits.bound {
         _ if s.spent() => Stop::Evaluations,
@@ -184,20 +195,6 @@ pub fn search<E>(
         false => Stop::Unreachable,
     };
     Ok(Some(Found { place, trial, tried: s.tried, stop }))
-}
-
-/// A setting a few axes away. The numbers are the same in every search (Knuth's MMIX generator).
-fn hop(place: &[usize], sizes: &[usize], random: &mut u64) -> Vec<usize> {
-    let mut draw = |below: usize| {
-        *random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        usize::try_from(*random >> 33).unwrap_or(0) % below.max(1)
-    };
-    let mut to = place.to_vec();
-    for _ in 0..3 {
-        let axis = draw(sizes.len());
-        to[axis] = draw(sizes[axis]);
-    }
-    to
 }
 
 /// Walks from a setting to one that no step betters.
@@ -363,6 +360,51 @@ mod tests {
                 assert!(found.trial.cost <= 1.05 * best, "{bound} {start:?}: {} against {best}", found.trial.cost);
                 assert!(found.tried.len() < grid.len() / 4, "{} evaluations", found.tried.len());
                 assert_eq!(found.stop, Stop::Local);
+            }
+        }
+    }
+
+    /// Passes and parts of a renderer on a grid of twelve thousand: shadows whose finest map costs more than all the rest,
+    /// voxels, their coverage, cones and steps. Three axes must change together to leave the nearest optimum.
+    fn passes(place: &[usize]) -> Trial {
+        let dim = [64.0, 96.0, 128.0, 160.0, 192.0, 256.0][place[1]];
+        let cones = [4.0, 5.0, 6.0, 7.0, 9.0][place[3]];
+        let step = [2.0, 1.5, 1.0, 0.7][place[4]];
+        let exact = place[2] == 1;
+        let shadows = [(0.2, 0.020), (0.65, 0.0105), (2.25, 0.0045), (12.9, 0.0025)][place[0]];
+        let cost = 0.9
+            + shadows.0
+            + 0.3
+            + dim / 256.0 * if exact { 1.9 } else { 0.7 }
+            + 0.02 * cones / step
+            + [0.0, 0.05, 0.1][place[5]];
+        let voxels = 0.012 * (64.0f64 / dim).powf(0.6) * if exact || dim > 150.0 { 1.0 } else { 1.4 };
+        let cone = 0.05 / cones * (0.8 + 0.2 * step) * [1.0, 0.9, 0.97][place[5]];
+        Trial { cost, bounded: 0.02 + shadows.1 + voxels + cone }
+    }
+
+    #[test]
+    fn leaves_a_local_optimum_where_several_things_must_change_at_once() {
+        const SIZES: [usize; 6] = [4, 6, 2, 5, 4, 3];
+        let count: usize = SIZES.iter().product();
+        let place = |mut i: usize| {
+            SIZES.map(|n| {
+                let at = i % n;
+                i /= n;
+                at
+            })
+        };
+        let grid: Vec<Trial> = (0..count).map(|i| passes(&place(i))).collect();
+        for bound in [0.040, 0.042, 0.045, 0.048, 0.051, 0.055, 0.06] {
+            let best = grid.iter().filter(|t| t.bounded <= bound).map(|t| t.cost).fold(f64::INFINITY, f64::min);
+            for start in [[2, 3, 1, 4, 2, 0], [3, 5, 1, 4, 3, 0], [0, 0, 0, 0, 0, 0]] {
+                let limits = Limits { bound, evaluations: 400, least_gain: 0.005 };
+                let found = search::<()>(&SIZES, &start, limits, &mut |p| Ok(Some(passes(p)))).unwrap().unwrap();
+                println!("{bound} {start:?}: {:.3} for {best:.3}, {} tried", found.trial.cost, found.tried.len());
+                assert!(
+                    found.trial.bounded <= bound && found.trial.cost <= 1.05 * best,
+                    "{bound} {start:?}: {found:?}"
+                );
             }
         }
     }
