@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, fails, root, succeeds};
+use common::{conelab, fails, root, succeeds, table};
 use conelab::metrics::{Kind, Linear};
 use conelab::stability::{Suite, change, display, flicker, step};
 use std::collections::BTreeMap;
@@ -100,17 +100,6 @@ fn stability(home: &Path, file: &Path, folder: &str, more: &[&str]) -> Command {
     let mut command = conelab(home);
     command.arg("stability").arg(file).arg("-o").arg(home.join(folder)).args(more);
     command
-}
-
-/// A table without what differs from run to run: a line for each row, by column.
-fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    let names = reader.headers().unwrap().clone();
-    let line = |record: csv::StringRecord| {
-        let cells = names.iter().zip(&record).filter(|c| !c.0.ends_with(" ms"));
-        cells.map(|(name, value)| (name.to_string(), value.to_string())).collect()
-    };
-    reader.records().map(|r| line(r.unwrap())).collect()
 }
 
 /// A column of a method in a case.

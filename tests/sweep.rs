@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, fails, root, succeeds};
+use common::{conelab, fails, root, succeeds, table};
 use conelab::sweep::Sweep;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,17 +34,6 @@ fn sweep(home: &Path, file: &Path, folder: &Path, more: &[&str]) -> std::process
     let mut command = conelab(home);
     command.arg("sweep").arg(file).arg("-o").arg(folder).args(more);
     command
-}
-
-/// A table without what differs from run to run: a line for each point, by column.
-fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    let names = reader.headers().unwrap().clone();
-    let line = |record: csv::StringRecord| {
-        let cells = names.iter().zip(&record).filter(|c| !c.0.ends_with(" ms"));
-        cells.map(|(name, value)| (name.to_string(), value.to_string())).collect()
-    };
-    reader.records().map(|r| line(r.unwrap())).collect()
 }
 
 /// The files of a folder with their bytes; those that are still being written have other names.

@@ -25,6 +25,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
     // Blocks of faces are level beside level as long as their sizes halve.
     float last = float(DIRECTIONAL ? min(params.voxel_mips - 1, findLSB(params.voxel_dim)) : textureQueryLevels(voxelRadiance) - 1);
     float v0 = cellAlong(g, o.position, d), v = v0;
+    vec3 way = gridDirection(g, o.position, d);
     float rise = max(dot(d, o.normal), 0.0);
     float s = params.cone_height * v0;
     vec3 color = vec3(0.0);
@@ -36,7 +37,10 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
         // outermost wall reaches to the border, and stopping short of it would let light out.
         bool outside = !inVolume(u);
         if (outside && (i == 0 || WARP == WARP_PERSPECTIVE || OPACITY == OPACITY_STORED)) break;
-        if (WARP != WARP_NONE) v = cellAlong(g, p, d);
+        if (WARP != WARP_NONE) {
+            v = cellAlong(g, p, d);
+            way = gridDirection(g, p, d);
+        }
         float radius = s * tan_half;
         float lod = log2(max(2.0 * radius / v, 1.0)) + params.lod_offset;
         if (params.lod_clearance) {
@@ -50,7 +54,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
         float cell = v * exp2(lod);
         float ds = max(CONE_STEP == CONE_STEP_RADIUS ? radius : params.step_factor * cell, 0.05 * v);
 
-        vec4 texel = sampleCone(u, gridDirection(g, p, d), lod);
+        vec4 texel = sampleCone(u, way, lod);
         if (texel.a > 1e-5) {
             float remaining = 1.0 - alpha;
             float a;

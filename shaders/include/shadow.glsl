@@ -34,10 +34,9 @@ vec3 offSurface(vec3 p, vec3 n, vec3 to_light, float radius) {
 }
 
 // How fast depth in the map grows over the plane through p [a map's width]. It is linear over a plane, in perspective too,
-// so it is taken from points far apart, which keeps digits.
-vec2 planeSlope(int view, vec3 p, vec3 n, vec3 to_light, float reach) {
+// so it is taken from points far apart, which keeps digits. q: where p is in the map.
+vec2 planeSlope(int view, vec3 p, vec3 q, vec3 n, vec3 to_light, float reach) {
     mat3 frame = frameOf(n);
-    vec3 q = shadowPositionBeyond(view, p);
     vec3 a = shadowPositionBeyond(view, p + reach * frame[0]) - q, b = shadowPositionBeyond(view, p + reach * frame[1]) - q;
     float area = a.x * b.y - a.y * b.x;
     vec2 slope = vec2(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / (abs(area) > 1e-20 ? area : 1e-20);
@@ -54,11 +53,11 @@ float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     int view = shadowViewOf(light, p);
     float texel = shadowTexel(view, light, p);
     vec3 from = offSurface(p, n, to_light, params.shadow_bias * texel);
-    vec3 q = shadowPosition(view, from);
-    if (SHADOW_RECEIVER == SHADOW_RECEIVER_OFFSET) return shadowTaps(view, q, vec2(0.0));
+    vec3 q = shadowPositionBeyond(view, from), at = vec3(q.xy, clamp(q.z, 0.0, 1.0));
+    if (SHADOW_RECEIVER == SHADOW_RECEIVER_OFFSET) return shadowTaps(view, at, vec2(0.0));
     // 1/64 of the map's width.
-    vec2 slope = planeSlope(view, from, n, to_light, texel * float(params.shadow_dim) / 64.0);
-    return shadowTaps(view, q - vec3(0.0, 0.0, params.shadow_format == SHADOW_FORMAT_D16 ? 1.0 / 65535.0 : 1e-6), slope);
+    vec2 slope = planeSlope(view, from, q, n, to_light, texel * float(params.shadow_dim) / 64.0);
+    return shadowTaps(view, at - vec3(0.0, 0.0, params.shadow_format == SHADOW_FORMAT_D16 ? 1.0 / 65535.0 : 1e-6), slope);
 }
 
 #endif

@@ -197,7 +197,9 @@ fn names(axes: &[Axis], place: &[usize]) -> String {
 
 fn why(stop: Stop) -> &'static str {
     match stop {
-        Stop::Local => "no step of one parameter, and no promising pair of steps, is better",
+        Stop::Local => {
+            "no step of one parameter, no promising pair of steps, and nothing that all trials together promise is better"
+        }
         Stop::Evaluations => "the evaluations are used up",
         Stop::Unreachable => "no step comes nearer to the bound",
     }

@@ -41,7 +41,7 @@ pub struct Step {
 /// Why a search has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
-    /// No step, and no promising pair of steps, is better.
+    /// No step, no promising pair of steps and no proposal is better.
     Local,
     /// The evaluations are used up.
     Evaluations,

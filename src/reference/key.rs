@@ -1,6 +1,6 @@
 //! What a reference depends on, as an experiment and as one number.
 
-use crate::capture::scene_hash;
+use crate::capture::{hex, scene_hash};
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
 use crate::lab::{Home, LabError, Loaded, camera_of, params_of};
@@ -45,7 +45,7 @@ pub(super) fn shaders(loaded: &Loaded) -> String {
     for stage in loaded.linked.iter().flat_map(|link| &link.stages) {
         hash.update(bytemuck::cast_slice::<u32, u8>(&stage.words));
     }
-    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+    hex(&hash.finalize())
 }
 
 /// 16 hexadecimal digits of everything that the samples of an experiment of [`GRAPH`] depend on: the compiled shaders,

@@ -5,6 +5,7 @@ use conelab::experiment::Experiment;
 use conelab::lab::{Home, Lab, Session};
 use conelab::scene::Scene;
 use conelab::vulkan::GpuOptions;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Arc;
@@ -104,4 +105,15 @@ pub fn floats(session: &mut Session, name: &str, mip: u32) -> Vec<[f32; 4]> {
 /// Mean of the red, green and blue of some texels.
 pub fn mean(texels: &[[f32; 4]]) -> f64 {
     texels.iter().flat_map(|t| &t[..3]).map(|v| f64::from(*v)).sum::<f64>() / (3 * texels.len()) as f64
+}
+
+/// A table without what differs from run to run: a line for each row, by column.
+pub fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let names = reader.headers().unwrap().clone();
+    let line = |record: csv::StringRecord| {
+        let cells = names.iter().zip(&record).filter(|c| !c.0.ends_with(" ms"));
+        cells.map(|(name, value)| (name.to_string(), value.to_string())).collect()
+    };
+    reader.records().map(|r| line(r.unwrap())).collect()
 }
