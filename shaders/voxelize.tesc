@@ -29,14 +29,18 @@ float cellsAlong(Grid g, vec3 a, vec3 b) {
     return edge / cell;
 }
 
+// Whether a block gets nothing from a triangle: it lies outside, or wholly where content stays.
 bool outside(Grid g, vec3 a, vec3 b, vec3 c) {
-    if (WARP == WARP_PERSPECTIVE) {
+    if (WARP == WARP_SPHERICAL && g.curved != 0) return false; // a sphere has no sides
+    if (WARP == WARP_PERSPECTIVE && g.curved != 0) {
         vec3 w = vec3(dot(a - g.eye, g.axis_z), dot(b - g.eye, g.axis_z), dot(c - g.eye, g.axis_z));
         if (all(lessThan(w, vec3(g.range.x))) || all(greaterThan(w, vec3(g.range.y)))) return true;
         if (any(lessThan(w, vec3(g.range.x)))) return false;
     }
     vec3 u = worldToVolume(g, a), v = worldToVolume(g, b), w = worldToVolume(g, c);
-    return any(lessThan(max(u, max(v, w)), vec3(0.0))) || any(greaterThan(min(u, min(v, w)), vec3(1.0)));
+    vec3 low = min(u, min(v, w)), high = max(u, max(v, w));
+    if (VOLUME_SCROLL && isKept(g, low * float(params.voxel_dim)) && isKept(g, high * float(params.voxel_dim))) return true;
+    return any(lessThan(high, vec3(0.0))) || any(greaterThan(low, vec3(1.0)));
 }
 
 void main() {
@@ -46,16 +50,19 @@ void main() {
     if (gl_InvocationID != 0) return;
 
     // Only inputs are read below: other invocations' outputs would need a barrier.
-    Grid g = volume.grid;
     vec3 a = in_position[0], b = in_position[1], c = in_position[2];
     material = in_material[0];
-    if (outside(g, a, b, c)) {
+    // The finest block that the triangle lies in decides; all get their voxels in the same pass.
+    int finest = 0;
+    while (finest < tessellatedBlocks() && outside(volume.grids[finest], a, b, c)) finest++;
+    if (finest == tessellatedBlocks()) {
         gl_TessLevelOuter = float[4](0.0, 0.0, 0.0, 0.0); // discards the patch
         gl_TessLevelInner = float[2](0.0, 0.0);
         footprint = 0.0;
         single = 0;
         return;
     }
+    Grid g = volume.grids[finest];
     vec3 cells = vec3(cellsAlong(g, b, c), cellsAlong(g, c, a), cellsAlong(g, a, b)) * params.tess_rate;
     float longest = max(cells.x, max(cells.y, cells.z));
 

@@ -23,13 +23,16 @@ void main() {
         b = vec3(1.0 / 3.0);
     }
     vec3 p = mat3(position[0], position[1], position[2]) * b;
-    ivec3 cell = ivec3(floor(worldToVolume(volume.grid, p) * float(params.voxel_dim)));
-    if (!inGrid(cell)) return;
     vec2 at = mat3x2(uv[0], uv[1], uv[2]) * b;
     Gradient g = Gradient(vec2(footprint, 0.0), vec2(0.0, footprint));
     Material m = materials.materials[material];
     vec4 base = baseColor(m, at, g);
     if (base.a < m.alpha_cutoff) return;
     vec3 n = mat3(normal[0], normal[1], normal[2]) * b;
-    storeVoxel(cell, base.rgb, dot(n, n) > 0.0 ? normalize(n) : n, emission(m, at, g));
+    n = dot(n, n) > 0.0 ? normalize(n) : n;
+    vec3 light = emission(m, at, g);
+    for (int k = 0; k < tessellatedBlocks(); k++) {
+        ivec3 cell = ivec3(floor(worldToVolume(volume.grids[k], p) * float(params.voxel_dim)));
+        if (inGrid(cell)) storeVoxel(cell, k, base.rgb, n, light);
+    }
 }

@@ -448,8 +448,9 @@ pub struct VoxelsDecl {
     pub color: Loc<String>,
     /// 3D texture of the unit normal * 0.5 + 0.5.
     pub normal: Loc<String>,
-    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; then, as floats, the
-    /// world coordinates (m) of the cells' borders along x, y and z, one more than cells each.
+    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; the z of the first of
+    /// them in the textures; how many there are along x, y and z; then, as floats, the world coordinates (m) of their
+    /// borders along x, y and z, one more than cells each.
     pub borders: Loc<String>,
     /// Ways of making them that are worth comparing.
     #[serde(default)]
