@@ -5,19 +5,6 @@
 
 const uint SLIVER = 4u; // flag beside the axis: drawn as its bounding rectangle
 
-// Pixels a cell along the warped axes: the steepest slope of the warp, or neighbouring fragments would skip
-// cells (thesis, Section 4.6.1). The viewport's expression in voxels.ron must say the same.
-float rasterScale() {
-    if (WARP == WARP_SPLINE) return 1.5 - 0.5 * params.warp_alpha;
-    if (WARP == WARP_LOGISTIC) return 0.25 * params.warp_steepness / tanh(0.25 * params.warp_steepness);
-    if (WARP == WARP_PERSPECTIVE) return params.warp_far / params.warp_near;
-    return 1.0;
-}
-
-float rasterSize() {
-    return min(ceil(float(params.voxel_dim) * rasterScale() - 1e-3), 16384.0);
-}
-
 // Homogeneous coordinates in [0,w]^3 in which triangles stay flat. Under the perspective warp depth is the
 // projective one here, and made linear only in the fragment.
 vec4 toRasterSpace(Grid g, vec3 p) {
@@ -38,7 +25,7 @@ ivec3 planeAxes(uint axis) {
 vec4 project(vec4 r, uint axis) {
     ivec3 axes = planeAxes(axis);
     vec2 used = vec2(1.0);
-    if (WARP == WARP_PERSPECTIVE) used = vec2(float(params.voxel_dim) / rasterSize(), axis == 2 ? float(params.voxel_dim) / rasterSize() : 1.0);
+    if (WARP == WARP_PERSPECTIVE) used = vec2(float(params.voxel_dim) / float(params.raster_size), axis == 2 ? float(params.voxel_dim) / float(params.raster_size) : 1.0);
     return vec4(2.0 * used * vec2(r[axes.x], r[axes.y]) - r.w, r[axes.z], r.w);
 }
 
