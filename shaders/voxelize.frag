@@ -63,7 +63,7 @@ void main() {
     vec3 c[3] = vec3[3](unwarped(corner[0]), unwarped(corner[1]), unwarped(corner[2]));
     vec3 face = cross(c[1] - c[0], c[2] - c[0]);
     vec2 slope = face[depth] != 0.0 ? -vec2(face[axes.x], face[axes.y]) / face[depth] : vec2(dim); // a line: any depth
-    float pixel = 1.0 / rasterSize();
+    float pixel = 1.0 / float(params.raster_size);
     vec2 first = floor(gl_FragCoord.xy) * pixel;
     float middle = c[0][depth] + dot(slope, first + 0.5 * pixel - vec2(c[0][axes.x], c[0][axes.y]));
     float reach = 0.5 * pixel * (abs(slope.x) + abs(slope.y)) + 0.01 / dim;

@@ -41,7 +41,7 @@ void emit(vec4 clip, vec3 b, uint flags, vec3 corners[3]) {
 // Too thin to dilate: the bounding rectangle, half a pixel wider. The fragments are tested exactly.
 void emitRectangle(Grid g, vec4 c[3], vec3 r[3], uint along, vec3 corners[3]) {
     ivec3 axes = planeAxes(along);
-    float half_pixel = 0.505 / rasterSize();
+    float half_pixel = 0.505 / float(params.raster_size);
     vec3 lo = min(r[0], min(r[1], r[2])) - half_pixel, hi = max(r[0], max(r[1], r[2])) + half_pixel;
     vec3 middle = (r[0] + r[1] + r[2]) / 3.0;
     for (int i = 0; i < 4; i++) {
@@ -85,7 +85,7 @@ void main() {
     // corners, and barycentric coordinates put those back onto the triangle's plane.
     mat3 m = mat3(clip[0].xyw, clip[1].xyw, clip[2].xyw);
     float area = determinant(m);
-    float half_pixel = 1.01 / rasterSize();
+    float half_pixel = 1.01 / float(params.raster_size);
     float longest = max(distance(m[0], m[1]), max(distance(m[1], m[2]), distance(m[2], m[0])));
     if (abs(area) < half_pixel * longest) {
         emitRectangle(g, clip, raster, along, corners);

@@ -29,6 +29,7 @@ const uint MAX_BLOCKS = 6;
 #endif
 layout(std430) VOLUME_ACCESS buffer Volume { Grid grids[MAX_BLOCKS]; } volume;
 
+// voxels.ron says the same in `curved` and `blocks`.
 #define CURVED (WARP == WARP_PERSPECTIVE || WARP == WARP_SPHERICAL)
 #define BLOCKS (!CURVED ? CASCADES : FALLBACK ? 1 + CASCADES : 1)
 

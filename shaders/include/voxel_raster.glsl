@@ -5,18 +5,6 @@
 
 const uint SLIVER = 4u; // flag beside the axis: drawn as its bounding rectangle
 
-// Pixels a cell along the warped axes: the steepest slope of the warp, or neighbouring fragments would skip
-// cells (thesis, Section 4.6.1). The viewport's expression in voxels.ron must say the same.
-float rasterScale() {
-    if (WARP == WARP_SPLINE) return 1.5 - 0.5 * params.warp_alpha;
-    if (WARP == WARP_LOGISTIC) return 0.25 * params.warp_steepness / tanh(0.25 * params.warp_steepness);
-    return 1.0;
-}
-
-float rasterSize() {
-    return min(ceil(float(params.voxel_dim) * rasterScale() - 1e-3), 16384.0);
-}
-
 // The block that is drawn. Not a curved one: in a frustum with depth in equal steps, pixels along depth must be as small
 // as the nearest cell is against the farthest, (far / near)^2 of them near the camera; on spheres triangles are not flat.
 int rasterBlock() {

@@ -14,6 +14,8 @@ pub struct GraphFile {
     pub include: Items<String>,
     /// Parameters.
     pub params: Items<Decl>,
+    /// Expressions by name, for other expressions and shaders.
+    pub values: Entries<ValueDecl>,
     /// Textures by name.
     pub textures: Entries<TextureDecl>,
     /// Buffers by name.
@@ -50,6 +52,15 @@ pub struct GraphFile {
 
 /// An expression with its place.
 pub type Ex = Loc<Expr>;
+
+/// What a name stands for.
+#[derive(Clone, Debug, Deserialize)]
+pub enum ValueDecl {
+    /// A number.
+    Float(Ex),
+    /// A whole number.
+    Int(Ex),
+}
 
 /// Geometry prepared for the graph.
 #[derive(Clone, Debug, Deserialize)]
