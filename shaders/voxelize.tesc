@@ -17,6 +17,7 @@ layout(location = 2) out vec2 uv[];
 layout(location = 3) patch out uint material;
 layout(location = 4) patch out float footprint; // texture coordinates a cell
 layout(location = 5) patch out uint single; // 1: the whole triangle lies in one cell
+layout(location = 6) patch out float spacing; // of the points [m]
 
 // Cells along an edge: its length over the smallest cell on the way.
 float cellsAlong(Grid g, vec3 a, vec3 b) {
@@ -60,6 +61,7 @@ void main() {
         gl_TessLevelInner = float[2](0.0, 0.0);
         footprint = 0.0;
         single = 0;
+        spacing = 0.0;
         return;
     }
     Grid g = volume.grids[finest];
@@ -85,6 +87,8 @@ void main() {
         gl_TessLevelOuter = float[4](1.0, 1.0, 1.0, 1.0);
         gl_TessLevelInner = float[2](1.0, 1.0);
     }
+
+    spacing = max(distance(a, b), max(distance(b, c), distance(c, a))) / clamp(gl_TessLevelInner[0], 1.0, 64.0);
 
     // Square root of the ratio of areas: texture coordinates against cells.
     vec2 s = in_uv[1] - in_uv[0], t = in_uv[2] - in_uv[0];

@@ -5,6 +5,7 @@
 #include "materials.glsl"
 #include "volume.glsl"
 #include "store_voxel.glsl"
+#include "random.glsl"
 
 layout(triangles, equal_spacing, point_mode) in;
 
@@ -14,6 +15,20 @@ layout(location = 2) in vec2 uv[];
 layout(location = 3) patch in uint material;
 layout(location = 4) patch in float footprint;
 layout(location = 5) patch in uint single;
+layout(location = 6) patch in float spacing;
+
+// Points for the densest cells of a patch are far too many for its other cells, and for coarser blocks: what is left there
+// is about this many for each cell that the surface crosses, chosen by a hash of the place (one in 3,000 gets none).
+const float POINTS_A_CELL = 8.0;
+
+bool chosen(Grid g, vec3 p) {
+    vec3 size = cellSize(g, p);
+    float cell = min(size.x, min(size.y, size.z));
+    float share = POINTS_A_CELL * spacing * spacing / (cell * cell);
+    if (share >= 1.0) return true;
+    Random random = Random(uvec4(floatBitsToUint(p), 0u));
+    return next4(random).x < share;
+}
 
 void main() {
     gl_Position = vec4(0.0);
@@ -33,6 +48,6 @@ void main() {
     vec3 light = emission(m, at, g);
     for (int k = 0; k < tessellatedBlocks(); k++) {
         ivec3 cell = ivec3(floor(worldToVolume(volume.grids[k], p) * float(params.voxel_dim)));
-        if (inGrid(cell)) storeVoxel(cell, k, base.rgb, n, light);
+        if (inGrid(cell) && (single != 0 || chosen(volume.grids[k], p))) storeVoxel(cell, k, base.rgb, n, light);
     }
 }
