@@ -53,10 +53,19 @@ void main() {
     // Only inputs are read below: other invocations' outputs would need a barrier.
     vec3 a = in_position[0], b = in_position[1], c = in_position[2];
     material = in_material[0];
-    // The finest block that the triangle lies in decides; all get their voxels in the same pass.
-    int finest = 0;
-    while (finest < tessellatedBlocks() && outside(volume.grids[finest], a, b, c)) finest++;
-    if (finest == tessellatedBlocks()) {
+    // The block that asks for most points decides; all get their voxels in the same pass.
+    int finest = -1;
+    vec3 cells = vec3(0.0);
+    for (int k = 0; k < tessellatedBlocks(); k++) {
+        Grid g = volume.grids[k];
+        if (outside(g, a, b, c)) continue;
+        vec3 along = vec3(cellsAlong(g, b, c), cellsAlong(g, c, a), cellsAlong(g, a, b)) * params.tess_rate;
+        if (finest < 0 || max(along.x, max(along.y, along.z)) > max(cells.x, max(cells.y, cells.z))) {
+            finest = k;
+            cells = along;
+        }
+    }
+    if (finest < 0) {
         gl_TessLevelOuter = float[4](0.0, 0.0, 0.0, 0.0); // discards the patch
         gl_TessLevelInner = float[2](0.0, 0.0);
         footprint = 0.0;
@@ -65,7 +74,6 @@ void main() {
         return;
     }
     Grid g = volume.grids[finest];
-    vec3 cells = vec3(cellsAlong(g, b, c), cellsAlong(g, c, a), cellsAlong(g, a, b)) * params.tess_rate;
     float longest = max(cells.x, max(cells.y, cells.z));
 
     // Outer level i belongs to the edge opposite vertex i. A level of 0 would drop the patch, so small

@@ -43,6 +43,20 @@ float shareOfBlock(vec3 u, float lod) {
     return clamp(min(inside.x, min(inside.y, inside.z)) * 0.5 * float(params.voxel_dim) / exp2(max(lod, 0.0)), 0.0, 1.0);
 }
 
+// The level whose cells are as wide as the cone. `v`: length of the block's cell along the cone, `height`: above the
+// plane of the surface that the cone leaves [m].
+float levelAt(Grid g, vec3 p, float v, float radius, float height, ConeOrigin o) {
+    float lod = log2(max(2.0 * radius / v, 1.0)) + params.lod_offset;
+    if (params.lod_clearance) {
+        // A trilinear lookup reads 1.5 cells to each side. Coarser levels than fit above the surface
+        // would read the surface itself, and an open plane would shadow itself. Whole levels, because
+        // a fraction would blend in the coarser one.
+        float reach = WARP == WARP_NONE && BLOCKS == 1 ? o.reach : cellReach(g, p, o.normal);
+        lod = min(lod, floor(log2(max(height / (3.0 * reach), 1.0)) + 1e-3));
+    }
+    return clamp(lod, 0.0, g.last);
+}
+
 // Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
     int block = o.block;
@@ -56,6 +70,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
     for (int i = 0; i < steps; i++) {
         vec3 p = o.position + s * d;
         vec3 u;
+        int before = block;
         if (BLOCKS > 1) {
             block = blockAt(p, u);
             g = volume.grids[block];
@@ -65,21 +80,14 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
         // Past the border the clamped lookup gives the border cells once more: a coarse cell that holds the
         // outermost wall reaches to the border, and stopping short of it would let light out.
         bool outside = !inVolume(u);
-        if (outside && (i == 0 || CURVED && g.curved != 0 || OPACITY == OPACITY_STORED)) break;
+        if (outside && (i == 0 || block != before || CURVED && g.curved != 0 || OPACITY == OPACITY_STORED)) break;
         if (WARP != WARP_NONE || BLOCKS > 1) {
             v = cellAlong(g, p, d);
             way = gridDirection(g, p, d);
         }
         float radius = s * tan_half;
-        float lod = log2(max(2.0 * radius / v, 1.0)) + params.lod_offset;
-        if (params.lod_clearance) {
-            // A trilinear lookup reads 1.5 cells to each side. Coarser levels than fit above the surface
-            // would read the surface itself, and an open plane would shadow itself. Whole levels, because
-            // a fraction would blend in the coarser one.
-            float cells = (o.height + s * rise) * v0 / (3.0 * o.reach * v);
-            lod = min(lod, floor(log2(max(cells, 1.0)) + 1e-3));
-        }
-        lod = clamp(lod, 0.0, g.last);
+        float height = o.height + s * rise;
+        float lod = levelAt(g, p, v, radius, height, o);
         float cell = v * exp2(lod);
         float ds = max(CONE_STEP == CONE_STEP_RADIUS ? radius : params.step_factor * cell, 0.05 * v);
 
@@ -89,7 +97,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
             if (share < 1.0) {
                 Grid coarse = volume.grids[block + 1];
                 vec3 at = worldToVolume(coarse, p);
-                float v1 = cellAlong(coarse, p, d), lod1 = clamp(log2(cell / v1), 0.0, coarse.last);
+                float v1 = cellAlong(coarse, p, d), lod1 = levelAt(coarse, p, v1, radius, height, o);
                 if (inVolume(at)) {
                     vec4 other = sampleBox(at, block + 1, gridDirection(coarse, p, d), lod1);
                     // Of surfaces side by side opacity is a density: the step is told in this block's cells.

@@ -95,14 +95,19 @@ fn texels_at(session: &mut Session, name: &str, before: usize, numbers: &[u32]) 
 /// The grid that a buffer of borders describes; see [`VoxelsDecl::borders`].
 fn grid_of(bytes: &[u8], texture: [u32; 3]) -> Result<(Grid, u32), String> {
     let words: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|w| u32::from_ne_bytes(*w)).collect();
-    let ([boxes, first, x, y, z], mut rest) = words.split_first_chunk::<5>().ok_or("the buffer of the cells' borders is too short")?;
+    let ([boxes, first, x, y, z], mut rest) =
+        words.split_first_chunk::<5>().ok_or("the buffer of the cells' borders is too short")?;
     if *boxes == 0 {
-        return Err("the cells are curved, no boxes: the oracle knows boxes only. Choose another warp, or another block \
+        return Err(
+            "the cells are curved, no boxes: the oracle knows boxes only. Choose another warp, or another block \
                     of the volume"
-            .into());
+                .into(),
+        );
     }
     if [*x, *y] != [texture[0], texture[1]] || first.checked_add(*z).is_none_or(|end| end > texture[2]) {
-        return Err(format!("the cells' borders are of {x} x {y} x {z} cells from z = {first} on, the textures have {texture:?}"));
+        return Err(format!(
+            "the cells' borders are of {x} x {y} x {z} cells from z = {first} on, the textures have {texture:?}"
+        ));
     }
     let mut borders = [const { Vec::new() }; 3];
     for (list, cells) in borders.iter_mut().zip([x, y, z]) {
