@@ -10,6 +10,7 @@ layout(local_size_x = 1) in;
 
 void main() {
     float dim = float(params.voxel_dim);
+    vec3 eye = camera.position + params.volume_offset;
     vec3 center = params.volume_center;
     vec3 size = params.volume_size;
     if (params.volume == VOLUME_SCENE) {
@@ -21,7 +22,7 @@ void main() {
     }
     vec3 cell = size / dim;
     if (params.volume == VOLUME_CAMERA) {
-        center = camera.position;
+        center = eye;
         if (params.volume_snap) center = floor(center / cell + 0.5) * cell;
     }
 
@@ -33,7 +34,7 @@ void main() {
     volume.grid.minimum = center - 0.5 * size;
     volume.grid.size = size;
     volume.grid.cell = cell;
-    volume.grid.eye = camera.position;
+    volume.grid.eye = eye;
     volume.grid.axis_x = right * half_width;
     volume.grid.axis_y = down * half_height;
     volume.grid.axis_z = camera.direction;

@@ -193,6 +193,55 @@ fn references_know_what_moved() {
     assert!(pictures.iter().all(|p| page.contains(&*p.to_string_lossy())), "every worst frame is named in the page");
 }
 
+/// A volume that moves while pixels stand still: there the truth's change is 0 to the bit and no reference is needed. One
+/// that snaps to its own cells (31 cm) stands still until it crosses half of one; one that does not pops in every frame.
+#[test]
+fn a_parameter_moves() {
+    let home = home();
+    let volume = "\"volume\": \"camera\", \"volume_size\": (10, 10, 10)";
+    let methods = format!("\"snapped\": {{ {volume} }}, \"free\": {{ {volume}, \"volume_snap\": false }}");
+    let cases = "\"volume\": (warmup: 0, frames: 12, motion: Parameter(name: \"volume_offset\", step: (0.03, 0, 0))), \
+                 \"back\": (warmup: 2, frames: 3, motion: Parameter(name: \"volume_offset\", values: [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])), \
+                 \"twice\": (frames: 3, motion: Parameter(name: \"indirect_scale\", values: [1, 2, 2]))";
+    let file = suite(home.path(), &methods, cases);
+    succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
+    let frames = table(&home.path().join("out/frames.csv"));
+    let of = |case: &str, method: &str, column: &str| -> Vec<f64> {
+        let own = frames.iter().filter(|r| r["case"] == case && r["method"] == method && r["part"] == "diffuse");
+        own.filter_map(|r| r[column].parse().ok()).collect()
+    };
+    let jumps = of("volume", "snapped", "peak jump /255");
+    assert_eq!(jumps.len(), 11, "changes are known without a reference");
+    // 33 cm on the way: past one border, or two.
+    let moved = jumps.iter().filter(|j| **j > 0.0).count();
+    assert!((1..=2).contains(&moved), "{jumps:?}");
+    assert!(of("volume", "free", "peak jump /255").iter().all(|j| *j > 0.0));
+    for method in ["snapped", "free"] {
+        let back = of("back", method, "mean luminance");
+        assert!(back[0] == back[2] && back[0] != back[1], "{method} is where it was: {back:?}");
+        let twice = of("twice", method, "mean luminance");
+        assert!((twice[1] / twice[0] - 2.0).abs() < 1e-3 && twice[1] == twice[2], "{method}: {twice:?}");
+    }
+}
+
+/// A parameter that references have too moves the truth.
+#[test]
+fn a_parameter_of_the_truth() {
+    let home = home();
+    let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"ggx_alpha\", values: [\"squared\", \"roughness\", \"roughness\"]))";
+    let file = suite(home.path(), "\"a\": { \"scene\": \"configs/stability/scenes/metal-rough.ron\" }", cases);
+    succeeds(&mut stability(home.path(), &file, "out", &[]));
+    let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
+    assert_eq!(references, 2);
+    let frames = table(&home.path().join("out/frames.csv"));
+    let own = frames.iter().filter(|r| r["part"] == "specular");
+    let truth: Vec<&str> = own.map(|r| r["reference mean luminance"].as_str()).collect();
+    assert!(truth[0] != truth[1] && truth[1] == truth[2], "{truth:?}");
+    // Without references nobody knows the truth's change.
+    succeeds(&mut stability(home.path(), &file, "none", &["--no-reference"]));
+    assert_eq!(value(&table(&home.path().join("none/stability.csv")), "lobe", "a", "total E_t"), None);
+}
+
 /// Killed as soon as something is finished and started again: what was finished stays, and the tables are those of a run
 /// that was left alone.
 #[test]
@@ -273,6 +322,13 @@ fn mistakes() {
         told("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
         "needs two frames more, there are 4",
     );
+    let moves = |text: &str| told("\"a\": {}", &format!("\"x\": (motion: Parameter(name: {text}))"), &[]);
+    has(moves("\"volume_ofset\", step: (1, 0, 0)"), "volume_offset");
+    has(moves("\"volume_offset\", step: 1"), "expected 3 numbers");
+    has(moves("\"volume_offset\""), "either a `step` or `values`");
+    has(moves("\"volume\", step: 1"), "no option '1'");
+    has(moves("\"bias\", step: 3"), "outside 0 to 8");
+    has(moves("\"warp\", values: [\"none\"]"), "compiled into the shaders");
     has(told("", "\"x\": ()", &[]), "at least one method");
     assert!(!home.path().join("out").exists(), "nothing was written");
 }

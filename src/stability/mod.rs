@@ -4,6 +4,7 @@
 mod chart;
 mod file;
 mod motion;
+mod moved;
 mod page;
 mod pictures;
 mod plan;
@@ -16,6 +17,7 @@ mod truth;
 
 pub use file::{Suite, check};
 pub use motion::{Moment, Motion, Unit};
+pub use moved::Moved;
 pub use plan::{Job, Options, plan};
 pub use record::{FrameScore, Measured, Outcome, PartResult, Record, Report, Worst};
 pub use run::{Progress, Tally, run};

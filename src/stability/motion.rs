@@ -1,6 +1,8 @@
 //! What moves, and where it is at each frame.
 
 use crate::experiment::PlacedCamera;
+use crate::graph::file::RawText;
+use crate::graph::param::Value;
 use crate::scene::{Light, Scene};
 use glam::{Mat4, Quat, Vec3};
 use serde::Deserialize;
@@ -63,6 +65,17 @@ pub enum Motion {
         /// Part of the scene's colour from then on.
         to: f32,
     },
+    /// A parameter of the method's graph.
+    Parameter {
+        /// Its name.
+        name: String,
+        /// What a number or vector grows by, a frame.
+        #[serde(default)]
+        step: Option<RawText>,
+        /// Instead of a step: the values of the measured frames. The first holds before, the last after them.
+        #[serde(default)]
+        values: Vec<RawText>,
+    },
 }
 
 fn one() -> (f32, f32, f32) {
@@ -89,6 +102,8 @@ pub struct Moment {
     pub time: f64,
     /// The scene's lights.
     pub lights: Vec<Light>,
+    /// A moving parameter that the graph of references has too.
+    pub setting: Option<(String, Value)>,
 }
 
 impl Motion {
@@ -98,7 +113,8 @@ impl Motion {
     /// The text for the user.
     pub fn check(&self, scene: &Scene) -> Result<(), String> {
         let numbers: Vec<f64> = match self {
-            Motion::Still => vec![],
+            // A parameter's values are checked with its graph.
+            Motion::Still | Motion::Parameter { .. } => vec![],
             Motion::Camera { dolly, strafe, rise, yaw, pitch, .. } => {
                 [dolly, strafe, rise, yaw, pitch].map(|v| f64::from(*v)).to_vec()
             }
@@ -161,7 +177,7 @@ impl Motion {
             return moment;
         }
         match self {
-            Motion::Still => {}
+            Motion::Still | Motion::Parameter { .. } => {}
             Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {
                 let length = n * if *unit == Unit::Voxels { cell } else { 1.0 };
                 let (eye, up) = (Vec3::from(start.camera.eye), Vec3::from(start.camera.up));
@@ -211,6 +227,11 @@ impl Motion {
                 format!("light '{name}': ({x}, {y}, {z}) m and {turn} degrees a frame")
             }
             Motion::Switch { name, at, from, to } => format!("light '{name}': {from} to {to} at frame {at}"),
+            Motion::Parameter { name, step: Some(step), .. } => format!("parameter '{name}': {} a frame", step.0),
+            Motion::Parameter { name, values, .. } => {
+                let list: Vec<&str> = values.iter().map(|v| v.0.as_str()).collect();
+                format!("parameter '{name}': {}", list.join(", "))
+            }
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::file::{Case, Method, Suite};
 use super::motion::{Moment, Motion};
+use super::moved::Moved;
 use crate::capture::{hex, scene_hash};
 use crate::experiment::{Experiment, check_size};
 use crate::graph::source::{At, Diagnostic, Loc};
@@ -55,6 +56,10 @@ pub struct Job {
     pub scene_hash: String,
     /// Camera, time and light before anything moved.
     pub start: Moment,
+    /// The parameter that moves.
+    pub moved: Option<Moved>,
+    /// Whether the graph of references has it too, so that the truth moves with it.
+    pub truth_moves: bool,
     /// Frames measured.
     pub frames: usize,
 }
@@ -142,6 +147,12 @@ fn job(
     }
     let listed = lister.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
     case.motion.check(&listed.scene).map_err(wrong)?;
+    let params = listed.experiment.params_over(&loaded.graph.params)?;
+    let moved = Moved::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
+    let truth_moves = match &moved {
+        Some(moved) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&moved.name).is_some(),
+        None => false,
+    };
     if let Motion::Switch { at, .. } = case.motion
         && frames.saturating_sub(2) < at
     {
@@ -158,6 +169,7 @@ fn job(
         camera: camera_of(&listed.experiment, &scene)?,
         time: listed.experiment.time,
         lights: scene.lights.clone(),
+        setting: None,
     };
     let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
     let mut sum = Sha256::new();
@@ -183,6 +195,16 @@ fn job(
         scene,
         scene_hash: hash,
         start,
+        moved,
+        truth_moves,
         frames,
     })
+}
+
+impl Job {
+    /// What frame `number` sees; see [`Motion::moment`].
+    pub fn moment(&self, number: i64, cell: f32) -> Moment {
+        let setting = self.moved.as_ref().filter(|_| self.truth_moves).map(|m| (m.name.clone(), m.at(number)));
+        Moment { setting, ..self.case.motion.moment(&self.start, number, cell) }
+    }
 }

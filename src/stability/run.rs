@@ -8,6 +8,7 @@ use super::record::{Folder, Measured, Outcome, RESULT_SCHEMA, Record, Report, SC
 use super::series::{Known, PartSeries};
 use super::truth::{Tracing, Truth, Truths};
 use super::{chart, page, table};
+use crate::graph::param::Value;
 use crate::lab::{Lab, LabError, Seed, Session, parts_of};
 use crate::measure::Warm;
 use crate::metrics::Linear;
@@ -182,7 +183,10 @@ impl Runner {
         let warmup = i64::try_from(job.case.warmup).unwrap_or(0);
         let frames = i64::try_from(job.frames).unwrap_or(1);
         for number in -warmup..frames {
-            let moment = motion.moment(&job.start, number, cell);
+            let moment = job.moment(number, cell);
+            if let Some(moved) = &job.moved {
+                set(lab, &mut session, &moved.name, moved.at(number))?;
+            }
             session.look(&moment.camera);
             session.set_time(moment.time);
             if moment.lights != lights {
@@ -243,6 +247,20 @@ impl Runner {
         let picture = worst.as_ref().map(|w| w.panels.png()).transpose()?;
         let worst = worst.map(|w| Worst { frame: w.frame, full: w.panels.full(), panels: w.panels.names() });
         Ok((Measured { frame_ms: median(times), samples, parts, voxels, worst, warnings }, picture))
+    }
+}
+
+/// Sets a parameter for the next frame.
+fn set(lab: &Lab, session: &mut Session, name: &str, value: Value) -> Result<(), LabError> {
+    let mut params = session.params.clone();
+    if let Some(index) = params.index(name) {
+        params.values[index] = value;
+    }
+    match session.set_params(lab, &params)? {
+        true => Ok(()),
+        false => Err(LabError::Request(format!(
+            "'{name}' decides about passes or sizes of textures: only what shaders read can move"
+        ))),
     }
 }
 
