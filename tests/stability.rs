@@ -96,6 +96,12 @@ fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
     path
 }
 
+/// Gives a suite a chart.
+fn chart(file: &Path, text: &str) {
+    let suite = std::fs::read_to_string(file).unwrap();
+    std::fs::write(file, suite.replacen("methods:", &format!("chart: ({text}),\nmethods:"), 1)).unwrap();
+}
+
 fn stability(home: &Path, file: &Path, folder: &str, more: &[&str]) -> Command {
     let mut command = conelab(home);
     command.arg("stability").arg(file).arg("-o").arg(home.join(folder)).args(more);
@@ -242,6 +248,64 @@ fn a_parameter_of_the_truth() {
     assert_eq!(value(&table(&home.path().join("none/stability.csv")), "lobe", "a", "total E_t"), None);
 }
 
+/// Two panels: methods as they are, and one whose voxels were made so many that it is as fast as the first. A
+/// second run measures nothing and says the same.
+#[test]
+fn equal_cost() {
+    let home = home();
+    let methods = "\"first\": {}, \"large\": { \"voxel_dim\": 64 }, \"fitted\": { \"warp\": \"spline\" }";
+    let file = suite(
+        home.path(),
+        methods,
+        "\"still\": (), \"strafe\": (motion: Camera(strafe: 0.1)), \"yaw\": (motion: Camera(yaw: 2))",
+    );
+    chart(
+        &file,
+        "error: [\"still\"], motions: [\"strafe\", \"yaw\"], \
+         groups: { \"as they are\": [\"first\", \"large\"], \"equal time\": [\"first\", \"fitted\"] }, \
+         equal_time: (parameter: \"voxel_dim\", values: [16, 48, 96], methods: [\"fitted\"])",
+    );
+    succeeds(&mut stability(home.path(), &file, "out", &[]));
+    let out = |name: &str| std::fs::read_to_string(home.path().join("out").join(name)).unwrap();
+    let costs = table(&home.path().join("out/cost.csv"));
+    let results = table(&home.path().join("out/stability.csv"));
+    let groups: Vec<&str> = costs.iter().map(|r| r["group"].as_str()).collect();
+    assert_eq!(groups, ["as they are", "as they are", "equal time", "equal time"]);
+    let cell = |method: &str, column: &str| costs.iter().find(|r| r["method"] == method).unwrap()[column].clone();
+    let number = |method: &str, column: &str| cell(method, column).parse::<f64>().unwrap();
+    // The chart's values are those of the cases.
+    assert_eq!(number("large", "diffuse relMSE"), value(&results, "still", "large", "diffuse relMSE").unwrap());
+    let moving = ["strafe", "yaw"].map(|c| value(&results, c, "large", "diffuse E_t").unwrap());
+    assert!((number("large", "diffuse E_t") - ((moving[0].powi(2) + moving[1].powi(2)) / 2.0).sqrt()).abs() < 1e-12);
+    assert!(number("large", "memory MiB") > 4.0 * number("first", "memory MiB"));
+    assert!(value(&results, "still", "large", "memory MiB").unwrap() >= number("large", "memory MiB"));
+    // All values were timed, the nearest was taken, and the cases ran with it.
+    let json: serde_json::Value = serde_json::from_str(&out("stability.json")).unwrap();
+    let fitted = json["costs"].as_array().unwrap().iter().find(|c| c["method"] == "fitted").unwrap();
+    let median = |list: &serde_json::Value, first: &serde_json::Value| {
+        let pairs = list.as_array().unwrap().iter().zip(first.as_array().unwrap());
+        let mut ratios: Vec<f64> = pairs.map(|(a, b)| a.as_f64().unwrap() / b.as_f64().unwrap()).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios[ratios.len() / 2]
+    };
+    let candidates = fitted["candidates"].as_array().unwrap();
+    let off: Vec<f64> = candidates.iter().map(|c| median(&c["ms"], &c["first_ms"]).ln().abs()).collect();
+    let chosen = fitted["chosen"].as_u64().unwrap() as usize;
+    assert!(candidates.len() == 3 && off.iter().all(|o| *o >= off[chosen]), "{off:?}, chosen {chosen}");
+    assert_eq!(cell("fitted", "setting"), format!("voxel_dim = {}", [16, 48, 96][chosen]));
+    let sizes = [16u64, 48, 96].map(|d| d.pow(3)).into_iter().collect::<Vec<_>>();
+    let memory = |i: usize| candidates[i]["memory_bytes"].as_u64().unwrap();
+    assert!(memory(2) - memory(0) > 4 * (sizes[2] - sizes[0]), "bytes grow with the voxels");
+    let svg = out("charts/cost.svg");
+    assert!(["as they are", "equal time", "first", "large", "fitted"].iter().all(|t| svg.contains(t)));
+    assert!(out("index.html").contains(&svg) && out("index.html").contains("What stability costs"));
+    // What was chosen is taken again.
+    let before = ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out);
+    let told = succeeds(&mut stability(home.path(), &file, "out", &[]));
+    assert!(told.contains("9 done, 0 failed"), "{told}");
+    assert_eq!(before, ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out));
+}
+
 /// Killed as soon as something is finished and started again: what was finished stays, and the tables are those of a run
 /// that was left alone.
 #[test]
@@ -329,6 +393,19 @@ fn mistakes() {
     has(moves("\"volume\", step: 1"), "no option '1'");
     has(moves("\"bias\", step: 3"), "outside 0 to 8");
     has(moves("\"warp\", values: [\"none\"]"), "compiled into the shaders");
+    let charts = |text: &str| {
+        let file = suite(home.path(), "\"a\": {}, \"b\": {}", "\"x\": (methods: [\"a\"]), \"y\": ()");
+        chart(&file, text);
+        fails(&mut stability(home.path(), &file, "out", &[]))
+    };
+    has(charts("error: [\"z\"], motions: [\"y\"]"), "the case 'z', which is none");
+    has(charts("error: [\"x\"], motions: [\"y\"]"), "the method 'b' in the case 'x'");
+    has(charts("error: [\"y\"], motions: []"), "at least one case for `error`");
+    has(charts("error: [\"y\"], motions: [\"y\"], groups: { \"g\": [\"c\"] }"), "the method 'c'");
+    let equal = |text: &str| charts(&format!("error: [\"y\"], motions: [\"y\"], equal_time: (parameter: {text})"));
+    has(equal("\"voxel_dim\", values: [32], methods: [\"a\"]"), "'a' is the suite's first method");
+    has(equal("\"voxel_dimm\", values: [32], methods: [\"b\"]"), "voxel_dim");
+    has(equal("\"voxel_dim\", values: [3], methods: [\"b\"]"), "outside 16 to 512");
     has(told("", "\"x\": ()", &[]), "at least one method");
     assert!(!home.path().join("out").exists(), "nothing was written");
 }

@@ -71,6 +71,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
             }
             bar.set_length(todo as u64);
         }
+        Progress::Times { method, done, of } => bar.set_message(format!("timing {method}, {done} of {of}")),
         Progress::Runs(job) => {
             doing = format!("{} {}: {}", job.case.name, job.case.variant, job.method);
             bar.set_message(doing.clone());

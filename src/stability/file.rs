@@ -1,6 +1,7 @@
 //! Suite files: methods, and what moves (docs/stability.md).
 
 use super::motion::Motion;
+use super::wish::{ChartFile, CostChart};
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
 use crate::graph::param::Params;
@@ -32,6 +33,8 @@ struct SuiteFile {
     seed: Option<u32>,
     #[serde(default)]
     set: Entries<RawText>,
+    #[serde(default)]
+    chart: Option<Loc<ChartFile>>,
     methods: Entries<Entries<RawText>>,
     cases: Entries<CaseFile>,
 }
@@ -112,6 +115,8 @@ pub struct Suite {
     pub methods: Vec<Method>,
     /// The cases, in order.
     pub cases: Vec<Case>,
+    /// What is charted beside the cases.
+    pub chart: Option<CostChart>,
     /// Folder of the file.
     pub folder: PathBuf,
 }
@@ -188,6 +193,10 @@ impl Suite {
             let message = format!("a suite has at least one method and one case, and at most {MAX_JOBS} pairs of them");
             errors.push(sources.error(parsed.experiment.at, message));
         }
+        let chart = parsed
+            .chart
+            .as_ref()
+            .and_then(|c| c.value.wish(&methods, &cases).map_err(|why| errors.push(sources.error(c.at, why))).ok());
         let experiment = match Experiment::read(&folder.join(&parsed.experiment.value)) {
             Ok(experiment) => Some(experiment),
             Err(found) if found.iter().all(|d| d.place.line == 0) => {
@@ -211,6 +220,7 @@ impl Suite {
             set: settings(&parsed.set),
             methods,
             cases,
+            chart,
             folder,
         })
     }

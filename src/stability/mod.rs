@@ -2,19 +2,23 @@
 //! pictures that do not move (docs/stability.md).
 
 mod chart;
+mod cost;
 mod file;
 mod motion;
 mod moved;
 mod page;
 mod pictures;
 mod plan;
+mod plot;
 mod record;
 mod run;
 mod score;
 mod series;
 mod table;
 mod truth;
+mod wish;
 
+pub use cost::{Candidate, Cost};
 pub use file::{Suite, check};
 pub use motion::{Moment, Motion, Unit};
 pub use moved::Moved;
@@ -22,3 +26,4 @@ pub use plan::{Job, Options, plan};
 pub use record::{FrameScore, Measured, Outcome, PartResult, Record, Report, Worst};
 pub use run::{Progress, Tally, run};
 pub use score::{Change, Flicker, Step, change, display, flicker, step};
+pub use wish::{CostChart, EqualTime};

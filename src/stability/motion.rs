@@ -167,6 +167,11 @@ impl Motion {
         matches!(self, Motion::Camera { unit: Unit::Voxels, .. })
     }
 
+    /// Time from frame to frame as the method is told it, s.
+    pub fn delta(&self) -> f64 {
+        if let Motion::Actors { step, .. } = self { *step } else { 0.0 }
+    }
+
     /// Frame `number`, where 0 is the first measured one and those before are negative: what moves has moved before. `cell`
     /// is the edge of a cell, m.
     pub fn moment(&self, start: &Moment, number: i64, cell: f32) -> Moment {

@@ -1,6 +1,7 @@
 //! The page: tables, charts and the worst frames. It needs no network; pictures lie beside it.
 
 use super::chart::Chart;
+use super::plot::Plot;
 use super::record::{Measured, Outcome, PartResult, Record, Report};
 use super::table::parts;
 use crate::report::{escaped, short};
@@ -13,7 +14,7 @@ figure{margin:1em 0}figcaption{color:#555;font-size:13px}img{max-width:100%;imag
 .wide{overflow-x:auto}h2{margin-top:2em;border-top:2px solid #ccc;padding-top:.6em}";
 
 /// The page as HTML.
-pub(super) fn page(report: &Report, charts: &[Chart]) -> String {
+pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> String {
     let title = escaped(&report.suite);
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}: stability</title>\n\
@@ -35,6 +36,7 @@ pub(super) fn page(report: &Report, charts: &[Chart]) -> String {
          <a href=\"stability.json\">stability.json</a>.</p>",
         escaped(&devices)
     );
+    out += &plot.map_or(String::new(), Plot::html);
     let figure = |out: &mut String, chart: &Chart| {
         let _ = writeln!(out, "<figure>{}</figure>", chart.svg);
     };

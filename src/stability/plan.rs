@@ -44,6 +44,8 @@ pub struct Job {
     /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time, motion, frames, samples and
     /// device.
     pub id: String,
+    /// The same of what is run, without names and what it is compared with.
+    pub work: String,
     /// The method.
     pub method: String,
     /// The case.
@@ -172,23 +174,17 @@ fn job(
         setting: None,
     };
     let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
-    let mut sum = Sha256::new();
-    let facts = [
-        listed.id,
-        format!("{:?}", case.motion),
+    let work =
+        number(&[listed.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
+    let id = number(&[
+        work.clone(),
         format!("{samples:?} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels),
-        format!("{} {} {}", device.name, device.driver, device.api),
         // Two names of the same thing are two rows.
         format!("{:?} {:?} {:?}", method.name, case.name, case.variant),
-    ];
-    for fact in &facts {
-        sum.update((fact.len() as u64).to_le_bytes());
-        sum.update(fact);
-    }
-    let mut id = hex(&sum.finalize());
-    id.truncate(32);
+    ]);
     Ok(Job {
         id,
+        work,
         method: method.name.clone(),
         case: case.clone(),
         experiment: listed.experiment,
@@ -199,6 +195,18 @@ fn job(
         truth_moves,
         frames,
     })
+}
+
+/// 32 hexadecimal digits of SHA-256.
+fn number(facts: &[String]) -> String {
+    let mut sum = Sha256::new();
+    for fact in facts {
+        sum.update((fact.len() as u64).to_le_bytes());
+        sum.update(fact);
+    }
+    let mut id = hex(&sum.finalize());
+    id.truncate(32);
+    id
 }
 
 impl Job {

@@ -1,6 +1,7 @@
 //! What a suite leaves: `results/ID.json`, one finished method in one case each, and `stability.json`, all of them. Folders
 //! may come from anywhere and are not trusted.
 
+use super::cost::Cost;
 use super::score::{Change, Flicker, Step};
 use crate::files::write_lasting;
 use crate::lab::LabError;
@@ -78,6 +79,9 @@ pub struct Worst {
 pub struct Measured {
     /// Median of the frames' time on the device, ms.
     pub frame_ms: f64,
+    /// Bytes of all resources of the graph, with the parts of the light that a picture alone does not need.
+    #[serde(default)]
+    pub memory_bytes: u64,
     /// Samples a pixel of the references; 0 without.
     pub samples: u64,
     /// By part.
@@ -144,6 +148,9 @@ pub struct Report {
     pub text: String,
     /// Samples a pixel and bounces of the references; none without.
     pub reference: Option<(u64, u32)>,
+    /// What charted methods cost; empty without a chart.
+    #[serde(default)]
+    pub costs: Vec<Cost>,
     /// Every method in every case, in order.
     pub results: Vec<Record>,
 }

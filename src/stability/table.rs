@@ -27,8 +27,13 @@ const COLUMNS: [Column; 17] = [
     ("over-occluded", |p| text(p.scores.as_ref().map(|s| s.over_occluded))),
 ];
 
-fn text(v: Option<f64>) -> String {
+pub(super) fn text(v: Option<f64>) -> String {
     v.filter(|v| v.is_finite()).map_or(String::new(), |v| v.to_string())
+}
+
+/// Bytes in MiB, to a hundredth.
+pub(super) fn mebibytes(bytes: u64) -> String {
+    format!("{:.2}", bytes as f64 / f64::from(1 << 20))
 }
 
 /// All parts that results have: the total, then the others.
@@ -60,6 +65,7 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
         "reference samples",
         "warnings",
         "frame ms",
+        "memory MiB",
         "worst frame",
         "voxel recall",
         "voxel precision",
@@ -92,6 +98,7 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
             of(&|m| m.samples.to_string()),
             of(&|m| m.warnings.join("; ")),
             of(&|m| m.frame_ms.to_string()),
+            of(&|m| mebibytes(m.memory_bytes)),
             of(&|m| m.worst.as_ref().map_or(String::new(), |w| w.frame.to_string())),
             of(&|m| text(m.voxels.as_ref().and_then(|v| v.recall))),
             of(&|m| text(m.voxels.as_ref().and_then(|v| v.precision))),
@@ -146,7 +153,7 @@ pub(super) fn frames(report: &Report) -> Result<String, LabError> {
     write(&lines)
 }
 
-fn write(lines: &[Vec<String>]) -> Result<String, LabError> {
+pub(super) fn write(lines: &[Vec<String>]) -> Result<String, LabError> {
     let failed = |e: String| LabError::Request(format!("cannot make the table: {e}"));
     let mut out = csv::Writer::from_writer(Vec::new());
     lines.iter().try_for_each(|l| out.write_record(l)).map_err(|e| failed(e.to_string()))?;
