@@ -2,6 +2,7 @@
 
 use super::motion::Motion;
 use super::wish::{ChartFile, CostChart};
+use crate::camera_path::CameraPath;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
 use crate::graph::param::Params;
@@ -295,6 +296,12 @@ pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
             if !errors.contains(&diagnostic) {
                 errors.push(diagnostic);
             }
+        }
+    }
+    for case in &suite.cases {
+        if let Motion::Path { file, .. } = &case.motion {
+            let found = CameraPath::read(&suite.folder.join(file)).err().unwrap_or_default();
+            errors.extend(found.into_iter().filter(|d| !errors.contains(d)).collect::<Vec<_>>());
         }
     }
     if errors.is_empty() { Ok(()) } else { Err(errors) }

@@ -1,6 +1,6 @@
 //! What moves, and where it is at each frame.
 
-use crate::experiment::PlacedCamera;
+use crate::experiment::{CameraChoice, PlacedCamera};
 use crate::graph::file::RawText;
 use crate::graph::param::Value;
 use crate::scene::{Light, Scene};
@@ -65,6 +65,23 @@ pub enum Motion {
         /// Part of the scene's colour from then on.
         to: f32,
     },
+    /// The camera jumps to another one.
+    Cut {
+        /// A camera of the scene, or one written out.
+        to: CameraChoice,
+        /// Its first frame, counted from the first measured one, at least 1.
+        at: usize,
+    },
+    /// The camera along a path, in place of the experiment's.
+    Path {
+        /// The path's file, relative to the suite.
+        file: String,
+        /// The path's time at the first measured frame, s.
+        #[serde(default)]
+        from: f64,
+        /// Time from frame to frame, s.
+        step: f64,
+    },
     /// A parameter of the method's graph.
     Parameter {
         /// Its name.
@@ -113,8 +130,10 @@ impl Motion {
     /// The text for the user.
     pub fn check(&self, scene: &Scene) -> Result<(), String> {
         let numbers: Vec<f64> = match self {
-            // A parameter's values are checked with its graph.
-            Motion::Still | Motion::Parameter { .. } => vec![],
+            Motion::Cut { at: 0, .. } => return Err("a cut has a frame `at` of 1 or more".into()),
+            Motion::Path { from, step, .. } => vec![*from, *step],
+            // A parameter's values are checked with its graph, a camera with its scene.
+            Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } => vec![],
             Motion::Camera { dolly, strafe, rise, yaw, pitch, .. } => {
                 [dolly, strafe, rise, yaw, pitch].map(|v| f64::from(*v)).to_vec()
             }
@@ -167,6 +186,14 @@ impl Motion {
         matches!(self, Motion::Camera { unit: Unit::Voxels, .. })
     }
 
+    /// The first frame after something happened at once, counted from the first measured one.
+    pub fn event(&self) -> Option<usize> {
+        match self {
+            Motion::Switch { at, .. } | Motion::Cut { at, .. } => Some(*at),
+            _ => None,
+        }
+    }
+
     /// Time from frame to frame as the method is told it, s.
     pub fn delta(&self) -> f64 {
         if let Motion::Actors { step, .. } = self { *step } else { 0.0 }
@@ -182,7 +209,7 @@ impl Motion {
             return moment;
         }
         match self {
-            Motion::Still | Motion::Parameter { .. } => {}
+            Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } | Motion::Path { .. } => {}
             Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {
                 let length = n * if *unit == Unit::Voxels { cell } else { 1.0 };
                 let (eye, up) = (Vec3::from(start.camera.eye), Vec3::from(start.camera.up));
@@ -232,6 +259,9 @@ impl Motion {
                 format!("light '{name}': ({x}, {y}, {z}) m and {turn} degrees a frame")
             }
             Motion::Switch { name, at, from, to } => format!("light '{name}': {from} to {to} at frame {at}"),
+            Motion::Cut { to: CameraChoice::Named(name), at } => format!("cut to camera '{name}' at frame {at}"),
+            Motion::Cut { at, .. } => format!("cut to another camera at frame {at}"),
+            Motion::Path { file, from, step } => format!("camera along {file} from {from} s, {step} s a frame"),
             Motion::Parameter { name, step: Some(step), .. } => format!("parameter '{name}': {} a frame", step.0),
             Motion::Parameter { name, values, .. } => {
                 let list: Vec<&str> = values.iter().map(|v| v.0.as_str()).collect();

@@ -87,7 +87,7 @@ pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> St
 
 type Column = (&'static str, fn(&Measured, &PartResult) -> Option<f64>);
 
-const COLUMNS: [Column; 14] = [
+const COLUMNS: [Column; 15] = [
     ("E_t", |_, p| p.e),
     ("noise", |_, p| p.e_noise),
     ("pops", |_, p| p.pops),
@@ -97,6 +97,7 @@ const COLUMNS: [Column; 14] = [
     ("its noise", |_, p| p.flicker_noise),
     ("frames to 5 %", |_, p| p.step.and_then(|s| s.frames).map(|f| f as f64)),
     ("overshoot", |_, p| p.step.map(|s| s.overshoot)),
+    ("settling frames", |_, p| p.settling.map(|f| f as f64)),
     ("relMSE", |_, p| p.scores.as_ref().map(|s| s.relmse)),
     ("energy", |_, p| p.scores.as_ref().map(|s| s.energy_ratio)),
     ("leak", |_, p| p.scores.as_ref().map(|s| s.leak)),

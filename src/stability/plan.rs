@@ -1,7 +1,8 @@
 //! Every method in every case, as something to run, with the number of all that its result depends on.
 
+use super::cameras::Cameras;
 use super::file::{Case, Method, Suite};
-use super::motion::{Moment, Motion};
+use super::motion::Moment;
 use super::moved::Moved;
 use crate::capture::{hex, scene_hash};
 use crate::experiment::{Experiment, check_size};
@@ -58,6 +59,8 @@ pub struct Job {
     pub scene_hash: String,
     /// Camera, time and light before anything moved.
     pub start: Moment,
+    /// Cameras that do not move on from the start.
+    pub cameras: Option<Cameras>,
     /// The parameter that moves.
     pub moved: Option<Moved>,
     /// Whether the graph of references has it too, so that the truth moves with it.
@@ -155,11 +158,10 @@ fn job(
         Some(moved) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&moved.name).is_some(),
         None => false,
     };
-    if let Motion::Switch { at, .. } = case.motion
-        && frames.saturating_sub(2) < at
-    {
-        return Err(wrong(format!("a light that is switched at frame {at} needs two frames more, there are {frames}")));
+    if let Some(at) = case.motion.event().filter(|at| frames.saturating_sub(2) < *at) {
+        return Err(wrong(format!("what happens at frame {at} needs two frames more, there are {frames}")));
     }
+    let cameras = Cameras::of(&case.motion, &listed.experiment, &listed.scene, &suite.folder)?;
     let (scene, hash) = match case.motion.stage(&listed.scene) {
         Some(staged) => {
             let hash = scene_hash(&staged);
@@ -191,6 +193,7 @@ fn job(
         scene,
         scene_hash: hash,
         start,
+        cameras,
         moved,
         truth_moves,
         frames,
@@ -210,9 +213,11 @@ fn number(facts: &[String]) -> String {
 }
 
 impl Job {
-    /// What frame `number` sees; see [`Motion::moment`].
+    /// What frame `number` sees; see [`super::Motion::moment`].
     pub fn moment(&self, number: i64, cell: f32) -> Moment {
         let setting = self.moved.as_ref().filter(|_| self.truth_moves).map(|m| (m.name.clone(), m.at(number)));
-        Moment { setting, ..self.case.motion.moment(&self.start, number, cell) }
+        let moment = self.case.motion.moment(&self.start, number, cell);
+        let camera = self.cameras.as_ref().map_or(moment.camera, |c| c.at(&self.start.camera, number));
+        Moment { camera, setting, ..moment }
     }
 }

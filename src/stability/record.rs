@@ -55,6 +55,9 @@ pub struct PartResult {
     pub flicker_noise: Option<f64>,
     /// What follows a switched light.
     pub step: Option<Step>,
+    /// Frames from a switch or a cut until relMSE stays within 5 % of its last value.
+    #[serde(default)]
+    pub settling: Option<usize>,
     /// The last frame against its reference.
     pub scores: Option<Scores>,
     /// relMSE between the halves of that reference.
@@ -84,6 +87,9 @@ pub struct Measured {
     pub memory_bytes: u64,
     /// Samples a pixel of the references; 0 without.
     pub samples: u64,
+    /// The first frame after a switch or a cut.
+    #[serde(default)]
+    pub event: Option<usize>,
     /// By part.
     pub parts: BTreeMap<String, PartResult>,
     /// Voxels of the last frame against exact ones.

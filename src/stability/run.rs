@@ -253,13 +253,13 @@ impl Runner {
         let last = before.map_or(job.start.time, |b| b.0.time);
         let voxels = voxels(&mut session, job, last, &mut warnings)?;
         self.lent.insert(job.method.clone(), session.lend());
-        let switched = if let Motion::Switch { at, .. } = motion { Some(*at) } else { None };
+        let (event, switched) = (motion.event(), matches!(motion, Motion::Switch { .. }));
         let memory_bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
-        let parts = series.into_iter().map(|(name, s)| (name, s.finish(switched))).collect();
+        let parts = series.into_iter().map(|(name, s)| (name, s.finish(event, switched))).collect();
         let picture = worst.as_ref().map(|w| w.panels.png()).transpose()?;
         let worst = worst.map(|w| Worst { frame: w.frame, full: w.panels.full(), panels: w.panels.names() });
         let frame_ms = median(times);
-        Ok((Measured { frame_ms, memory_bytes, samples, parts, voxels, worst, warnings }, picture))
+        Ok((Measured { frame_ms, memory_bytes, samples, event, parts, voxels, worst, warnings }, picture))
     }
 }
 

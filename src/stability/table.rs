@@ -7,7 +7,7 @@ use crate::lab::LabError;
 type Column = (&'static str, fn(&PartResult) -> String);
 
 /// Columns of every part.
-const COLUMNS: [Column; 17] = [
+const COLUMNS: [Column; 18] = [
     ("E_t", |p| text(p.e)),
     ("E_t noise", |p| text(p.e_noise)),
     ("told apart", |p| p.told_apart.map_or("", |t| if t { "yes" } else { "no" }).into()),
@@ -18,6 +18,7 @@ const COLUMNS: [Column; 17] = [
     ("flicker noise", |p| text(p.flicker_noise)),
     ("convergence frames", |p| p.step.and_then(|s| s.frames).map_or(String::new(), |f| f.to_string())),
     ("overshoot", |p| text(p.step.map(|s| s.overshoot))),
+    ("settling frames", |p| p.settling.map_or(String::new(), |f| f.to_string())),
     ("relMSE", |p| text(p.scores.as_ref().map(|s| s.relmse))),
     ("relMSE noise", |p| text(p.noise)),
     ("energy ratio", |p| text(p.scores.as_ref().map(|s| s.energy_ratio))),
