@@ -4,7 +4,7 @@ mod common;
 
 use common::{conelab, fails, root, succeeds, table};
 use conelab::metrics::{Kind, Linear};
-use conelab::stability::{Suite, change, display, flicker, step};
+use conelab::stability::{Suite, change, display, flicker, settling, step};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -181,6 +181,54 @@ fn a_switched_light_arrives_as_late_as_the_filter_says() {
     }
 }
 
+/// After a cut an error that falls by a factor to its last value has settled when 5 % of that are left of the rest.
+#[test]
+fn settling_frames() {
+    let mut errors = vec![9.0; 3];
+    errors.extend((1..200).map(|k| 0.5 + 4.0 * 0.8f64.powi(k)));
+    // 4 f^k <= .05 * .5
+    assert_eq!(settling(&errors, 3), Some((0.05f64 * 0.5 / 4.0).log(0.8).ceil() as usize));
+    assert_eq!(settling(&[7.0, 1.0, 1.0, 1.0], 1), Some(1));
+    assert_eq!(settling(&[7.0, 1.0, 0.9, 1.0, 1.0], 1), Some(3), "below is not settled either");
+    assert_eq!(settling(&[7.0, 4.0, 3.0, 2.0], 1), None, "it has not arrived");
+    assert_eq!(settling(&[7.0, f64::NAN, 1.0, 1.0], 1), None, "nobody knows");
+    assert_eq!(settling(&[7.0, 0.0, 0.0], 1), Some(1));
+}
+
+/// The camera jumps: a volume around the whole scene does not notice; one that follows has other cells, and with a filter
+/// over time what it kept of those before fades. After the cut all frames share one reference, so two
+/// pictures are all it needs.
+#[test]
+fn a_cut_and_a_path() {
+    let home = home();
+    let path = home.path().join("turn.ron");
+    std::fs::write(&path, "(keys: [(time: 0, eye: (0, 1.5, 2.5), target: (0, 1, 0), fov_y: 60), (time: 1, eye: (1, 1.5, 2.5), target: (0, 1, 0), fov_y: 60)])").unwrap();
+    let methods = "\"uniform\": {}, \"filtered\": { \"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"volume_snap\": false, \"temporal\": true }";
+    let to = "(eye: (0.9, 1.4, 1.9), target: (0, 1, -1), fov_y: 60)";
+    let cases = format!(
+        "\"cut\": (warmup: 2, frames: 40, motion: Cut(to: {to}, at: 2)), \
+         \"path\": (warmup: 0, frames: 3, motion: Path(file: \"turn.ron\", from: 0.5, step: 0.5))"
+    );
+    let file = suite(home.path(), &methods, &cases);
+    succeeds(&mut stability(home.path(), &file, "out", &[]));
+    let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
+    // The path ends after a second, at its last key: two of its three frames are one picture.
+    assert_eq!(references, 2 + 2);
+    let results = table(&home.path().join("out/stability.csv"));
+    assert_eq!(value(&results, "cut", "uniform", "diffuse settling frames"), Some(1.0));
+    let late = value(&results, "cut", "filtered", "diffuse settling frames").unwrap();
+    assert!((5.0..14.0).contains(&late), "{late}");
+    assert_eq!(value(&results, "cut", "uniform", "diffuse convergence frames"), None, "another view is no step");
+    assert_eq!(value(&results, "path", "uniform", "diffuse settling frames"), None);
+    let frames = table(&home.path().join("out/frames.csv"));
+    let changes: Vec<f64> = frames
+        .iter()
+        .filter(|r| r["case"] == "path" && r["method"] == "uniform" && r["part"] == "total")
+        .filter_map(|r| r["reference mean luminance"].parse().ok())
+        .collect();
+    assert!(changes[0] != changes[1] && changes[1] == changes[2], "{changes:?}");
+}
+
 /// What moves makes references of its own, and what stands still shares them: 2 frames each of camera, actor and light that
 /// begin alike are 4 pictures.
 #[test]
@@ -341,13 +389,49 @@ fn killed_and_continued() {
     }
 }
 
+/// One picture with the worst case of each method: names and numbers are drawn beside it, and it is small.
+#[test]
+fn a_sheet_of_failures() {
+    let home = home();
+    let methods = "\"fine\": {}, \"coarse\": { \"voxel_dim\": 16 }";
+    let cases = "\"still\": (frames: 1, variants: { \"lit\": {}, \"dark\": { \"sky\": (0, 0, 0) } }), \"strafe\": (motion: Camera(strafe: 0.2))";
+    let file = suite(home.path(), methods, cases);
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replacen("methods:", "pictures: \"diffuse\", methods:", 1)).unwrap();
+    let picture = home.path().join("failures.jpg");
+    let told = succeeds(&mut stability(home.path(), &file, "out", &["--sheet", picture.to_str().unwrap()]));
+    let bytes = std::fs::read(&picture).unwrap();
+    assert!(bytes.len() < 200_000, "{} bytes", bytes.len());
+    let sheet = image::load_from_memory(&bytes).unwrap().to_luma8();
+    let rows: Vec<Vec<&str>> =
+        told.lines().filter(|l| l.starts_with("| ")).skip(1).map(|l| l.split(" | ").collect()).collect();
+    let names: Vec<(&str, &str)> = rows.iter().map(|r| (r[0], &r[2][..5])).collect();
+    assert_eq!(names, [("| fine", "relMS"), ("| fine", "E_t o"), ("| coarse", "relMS"), ("| coarse", "E_t o")]);
+    // The number is the largest of the method's cases of one frame.
+    let results = table(&home.path().join("out/stability.csv"));
+    let errors = results.iter().filter(|r| r["method"] == "coarse" && r["case"] == "still");
+    let worst = errors
+        .max_by(|a, b| a["diffuse relMSE"].parse::<f64>().unwrap().total_cmp(&b["diffuse relMSE"].parse().unwrap()))
+        .unwrap();
+    assert_eq!(rows[2][1], format!("still: {}", worst["variant"]));
+    // Four rows of 180 pixels below the head, with text on the left of each.
+    assert_eq!((sheet.width(), sheet.height()), (250 + 3 * 248 + 16, 22 + 8 + 4 * 188));
+    for row in 0..4 {
+        let dark = (0..70).flat_map(|y| (8..250).map(move |x| (x, 22 + 188 * row + y)));
+        let dark = dark.filter(|(x, y)| sheet.get_pixel(*x, *y).0[0] < 128).count();
+        assert!((200..4000).contains(&dark), "row {row}: {dark} dark pixels of text");
+    }
+    let wrong = fails(&mut stability(home.path(), &file, "out", &["--sheet", "failures.gif"]));
+    assert!(wrong.contains(".jpg"), "{wrong}");
+}
+
 /// The shipped suites are right, and two of the failures are as the physics says.
 #[test]
 fn shipped_suites() {
     let home = home();
-    for name in ["motion", "failures"] {
+    for name in ["motion", "failures", "cost"] {
         let path = root().join(format!("configs/stability/{name}.ron"));
-        assert!(Suite::read(&path).unwrap().cases.len() > 8);
+        assert!(Suite::read(&path).unwrap().cases.len() >= 5);
         succeeds(conelab(home.path()).arg("check").arg(path));
     }
     let file = root().join("configs/stability/failures.ron");
@@ -406,6 +490,13 @@ fn mistakes() {
     has(equal("\"voxel_dim\", values: [32], methods: [\"a\"]"), "'a' is the suite's first method");
     has(equal("\"voxel_dimm\", values: [32], methods: [\"b\"]"), "voxel_dim");
     has(equal("\"voxel_dim\", values: [3], methods: [\"b\"]"), "outside 16 to 512");
+    has(told("\"a\": {}", "\"x\": (motion: Cut(to: \"behind\", at: 1))", &[]), "no camera 'behind'");
+    has(told("\"a\": {}", "\"x\": (motion: Cut(to: \"default\", at: 0))", &[]), "`at` of 1 or more");
+    has(told("\"a\": {}", "\"x\": (motion: Path(file: \"none.ron\", step: 1))", &[]), "none.ron");
+    let file = suite(home.path(), "\"a\": {}", "\"x\": ()");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replacen("methods:", "pictures: \"glow\", methods:", 1)).unwrap();
+    has(fails(&mut stability(home.path(), &file, "out", &[])), "no pictures of 'glow'");
     has(told("", "\"x\": ()", &[]), "at least one method");
     assert!(!home.path().join("out").exists(), "nothing was written");
 }

@@ -36,6 +36,8 @@ struct SuiteFile {
     set: Entries<RawText>,
     #[serde(default)]
     chart: Option<Loc<ChartFile>>,
+    #[serde(default = "total")]
+    pictures: String,
     methods: Entries<Entries<RawText>>,
     cases: Entries<CaseFile>,
 }
@@ -116,10 +118,16 @@ pub struct Suite {
     pub methods: Vec<Method>,
     /// The cases, in order.
     pub cases: Vec<Case>,
+    /// The part of the light whose worst frames are kept as pictures.
+    pub pictures: String,
     /// What is charted beside the cases.
     pub chart: Option<CostChart>,
     /// Folder of the file.
     pub folder: PathBuf,
+}
+
+fn total() -> String {
+    "total".into()
 }
 
 fn settings(list: &Entries<RawText>) -> Vec<Setting> {
@@ -221,6 +229,7 @@ impl Suite {
             set: settings(&parsed.set),
             methods,
             cases,
+            pictures: parsed.pictures,
             chart,
             folder,
         })

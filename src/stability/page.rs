@@ -69,14 +69,15 @@ pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> St
                     if m.warnings.is_empty() { String::new() } else { format!(" {}.", m.warnings.join("; ")) };
                 let _ = writeln!(
                     out,
-                    "<figure><img src=\"pictures/{0}.png\" alt=\"\"><figcaption><b>{1}</b>, worst frame {2} \
+                    "<figure><img src=\"pictures/{0}.png\" alt=\"\"><figcaption><b>{1}</b>, worst frame {2} of {6} \
                      (pictures/{0}.png): {3}; red brighter, blue darker, full at {4} / 255.{5}</figcaption></figure>",
                     r.id,
                     escaped(&r.method),
                     w.frame,
                     escaped(&w.panels.join(" | ")),
                     short(w.full),
-                    escaped(&warnings)
+                    escaped(&warnings),
+                    escaped(&w.part)
                 );
             }
         }

@@ -139,7 +139,8 @@ fn job(
     let title = if case.variant.is_empty() { case.name.clone() } else { format!("{}: {}", case.name, case.variant) };
     let wrong = |why: String| LabError::Request(format!("case '{title}': {why}"));
     let frames = options.frames.filter(|_| !case.own_frames).unwrap_or(case.frames);
-    let parts = parts_of(&loaded.graph).len() as u64;
+    let names: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.0).collect();
+    let parts = names.len() as u64;
     let values = u64::from(experiment.size.0) * u64::from(experiment.size.1) * frames as u64 * parts;
     if values > MAX_VALUES {
         return Err(wrong(format!(
@@ -149,6 +150,10 @@ fn job(
     }
     if parts == 0 {
         return Err(wrong(format!("graph '{}' has neither `parts` nor `hdr`", loaded.graph.name)));
+    }
+    if !names.contains(&suite.pictures) {
+        let (part, known) = (&suite.pictures, names.join(", "));
+        return Err(wrong(format!("no pictures of '{part}': the parts of graph '{}' are {known}", loaded.graph.name)));
     }
     let listed = lister.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
     case.motion.check(&listed.scene).map_err(wrong)?;
@@ -180,7 +185,7 @@ fn job(
         number(&[listed.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
     let id = number(&[
         work.clone(),
-        format!("{samples:?} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels),
+        format!("{samples:?} {} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels, suite.pictures),
         // Two names of the same thing are two rows.
         format!("{:?} {:?} {:?}", method.name, case.name, case.variant),
     ]);

@@ -69,6 +69,8 @@ pub struct PartResult {
 /// The frame that is farthest from its truth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
+    /// The part of the light.
+    pub part: String,
     /// Its number.
     pub frame: usize,
     /// What the panels of its picture show, from the left.
@@ -94,7 +96,7 @@ pub struct Measured {
     pub parts: BTreeMap<String, PartResult>,
     /// Voxels of the last frame against exact ones.
     pub voxels: Option<Score>,
-    /// The farthest frame of the total; its picture is `pictures/ID.png`.
+    /// The farthest frame of the suite's part for pictures; its picture is `pictures/ID.png`.
     pub worst: Option<Worst>,
     /// What the graph's checks said, and what could not be had.
     pub warnings: Vec<String>,

@@ -82,7 +82,8 @@ pub fn run(
     let folder = Folder(options.folder.clone());
     let samples = options.samples.unwrap_or(suite.samples);
     let tracing = Tracing { samples, bounces: suite.bounces, seed: suite.seed };
-    let mut runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), reference: options.reference };
+    let (reference, pictures) = (options.reference, suite.pictures.clone());
+    let mut runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), reference, pictures };
     let finished: Vec<Option<Record>> = jobs.iter().map(|j| folder.read(&j.id)).collect();
     let before = finished.iter().flatten().count();
     tell(Progress::Begins { todo: jobs.len() - before, before });
@@ -170,6 +171,8 @@ struct Runner {
     truths: Truths,
     lent: HashMap<String, Seed>,
     reference: bool,
+    /// The part whose worst frames are kept.
+    pictures: String,
 }
 
 /// A frame that may be the worst.
@@ -239,7 +242,7 @@ impl Runner {
                 }
                 let known = known(&part, truth.as_deref(), earlier.map(|t| &**t), changed);
                 let own = series.entry(part.clone()).or_insert_with(|| PartSeries::new(&part));
-                let shown = (part == "total").then(|| Panels::of(own.before(), &x, known));
+                let shown = (part == self.pictures).then(|| Panels::of(own.before(), &x, known));
                 let bad = own.add(x, known, number + 1 == frames);
                 if let (Some(panels), Some(bad)) = (shown, bad.or((frame == 0).then_some(0.0)))
                     && worst.as_ref().is_none_or(|w| bad > w.bad || w.frame == 0)
@@ -257,7 +260,12 @@ impl Runner {
         let memory_bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
         let parts = series.into_iter().map(|(name, s)| (name, s.finish(event, switched))).collect();
         let picture = worst.as_ref().map(|w| w.panels.png()).transpose()?;
-        let worst = worst.map(|w| Worst { frame: w.frame, full: w.panels.full(), panels: w.panels.names() });
+        let worst = worst.map(|w| Worst {
+            part: self.pictures.clone(),
+            frame: w.frame,
+            full: w.panels.full(),
+            panels: w.panels.names(),
+        });
         let frame_ms = median(times);
         Ok((Measured { frame_ms, memory_bytes, samples, event, parts, voxels, worst, warnings }, picture))
     }
