@@ -4,7 +4,7 @@ mod common;
 
 use common::{conelab, fails, root, succeeds, table};
 use conelab::metrics::{Kind, Linear};
-use conelab::stability::{Suite, change, display, flicker, step};
+use conelab::stability::{Suite, change, display, flicker, settling, step};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -96,6 +96,12 @@ fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
     path
 }
 
+/// Gives a suite a chart.
+fn chart(file: &Path, text: &str) {
+    let suite = std::fs::read_to_string(file).unwrap();
+    std::fs::write(file, suite.replacen("methods:", &format!("chart: ({text}),\nmethods:"), 1)).unwrap();
+}
+
 fn stability(home: &Path, file: &Path, folder: &str, more: &[&str]) -> Command {
     let mut command = conelab(home);
     command.arg("stability").arg(file).arg("-o").arg(home.join(folder)).args(more);
@@ -175,6 +181,54 @@ fn a_switched_light_arrives_as_late_as_the_filter_says() {
     }
 }
 
+/// After a cut an error that falls by a factor to its last value has settled when 5 % of that are left of the rest.
+#[test]
+fn settling_frames() {
+    let mut errors = vec![9.0; 3];
+    errors.extend((1..200).map(|k| 0.5 + 4.0 * 0.8f64.powi(k)));
+    // 4 f^k <= .05 * .5
+    assert_eq!(settling(&errors, 3), Some((0.05f64 * 0.5 / 4.0).log(0.8).ceil() as usize));
+    assert_eq!(settling(&[7.0, 1.0, 1.0, 1.0], 1), Some(1));
+    assert_eq!(settling(&[7.0, 1.0, 0.9, 1.0, 1.0], 1), Some(3), "below is not settled either");
+    assert_eq!(settling(&[7.0, 4.0, 3.0, 2.0], 1), None, "it has not arrived");
+    assert_eq!(settling(&[7.0, f64::NAN, 1.0, 1.0], 1), None, "nobody knows");
+    assert_eq!(settling(&[7.0, 0.0, 0.0], 1), Some(1));
+}
+
+/// The camera jumps: a volume around the whole scene does not notice; one that follows has other cells, and with a filter
+/// over time what it kept of those before fades. After the cut all frames share one reference, so two
+/// pictures are all it needs.
+#[test]
+fn a_cut_and_a_path() {
+    let home = home();
+    let path = home.path().join("turn.ron");
+    std::fs::write(&path, "(keys: [(time: 0, eye: (0, 1.5, 2.5), target: (0, 1, 0), fov_y: 60), (time: 1, eye: (1, 1.5, 2.5), target: (0, 1, 0), fov_y: 60)])").unwrap();
+    let methods = "\"uniform\": {}, \"filtered\": { \"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"volume_snap\": false, \"temporal\": true }";
+    let to = "(eye: (0.9, 1.4, 1.9), target: (0, 1, -1), fov_y: 60)";
+    let cases = format!(
+        "\"cut\": (warmup: 2, frames: 40, motion: Cut(to: {to}, at: 2)), \
+         \"path\": (warmup: 0, frames: 3, motion: Path(file: \"turn.ron\", from: 0.5, step: 0.5))"
+    );
+    let file = suite(home.path(), &methods, &cases);
+    succeeds(&mut stability(home.path(), &file, "out", &[]));
+    let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
+    // The path ends after a second, at its last key: two of its three frames are one picture.
+    assert_eq!(references, 2 + 2);
+    let results = table(&home.path().join("out/stability.csv"));
+    assert_eq!(value(&results, "cut", "uniform", "diffuse settling frames"), Some(1.0));
+    let late = value(&results, "cut", "filtered", "diffuse settling frames").unwrap();
+    assert!((5.0..14.0).contains(&late), "{late}");
+    assert_eq!(value(&results, "cut", "uniform", "diffuse convergence frames"), None, "another view is no step");
+    assert_eq!(value(&results, "path", "uniform", "diffuse settling frames"), None);
+    let frames = table(&home.path().join("out/frames.csv"));
+    let changes: Vec<f64> = frames
+        .iter()
+        .filter(|r| r["case"] == "path" && r["method"] == "uniform" && r["part"] == "total")
+        .filter_map(|r| r["reference mean luminance"].parse().ok())
+        .collect();
+    assert!(changes[0] != changes[1] && changes[1] == changes[2], "{changes:?}");
+}
+
 /// What moves makes references of its own, and what stands still shares them: 2 frames each of camera, actor and light that
 /// begin alike are 4 pictures.
 #[test]
@@ -191,6 +245,113 @@ fn references_know_what_moved() {
         std::fs::read_dir(home.path().join("out/pictures")).unwrap().map(|e| e.unwrap().file_name()).collect();
     assert_eq!(pictures.len(), 8);
     assert!(pictures.iter().all(|p| page.contains(&*p.to_string_lossy())), "every worst frame is named in the page");
+}
+
+/// A volume that moves while pixels stand still: there the truth's change is 0 to the bit and no reference is needed. One
+/// that snaps to its own cells (31 cm) stands still until it crosses half of one; one that does not pops in every frame.
+#[test]
+fn a_parameter_moves() {
+    let home = home();
+    let volume = "\"volume\": \"camera\", \"volume_size\": (10, 10, 10)";
+    let methods = format!("\"snapped\": {{ {volume} }}, \"free\": {{ {volume}, \"volume_snap\": false }}");
+    let cases = "\"volume\": (warmup: 0, frames: 12, motion: Parameter(name: \"volume_offset\", step: (0.03, 0, 0))), \
+                 \"back\": (warmup: 2, frames: 3, motion: Parameter(name: \"volume_offset\", values: [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])), \
+                 \"twice\": (frames: 3, motion: Parameter(name: \"indirect_scale\", values: [1, 2, 2]))";
+    let file = suite(home.path(), &methods, cases);
+    succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
+    let frames = table(&home.path().join("out/frames.csv"));
+    let of = |case: &str, method: &str, column: &str| -> Vec<f64> {
+        let own = frames.iter().filter(|r| r["case"] == case && r["method"] == method && r["part"] == "diffuse");
+        own.filter_map(|r| r[column].parse().ok()).collect()
+    };
+    let jumps = of("volume", "snapped", "peak jump /255");
+    assert_eq!(jumps.len(), 11, "changes are known without a reference");
+    // 33 cm on the way: past one border, or two.
+    let moved = jumps.iter().filter(|j| **j > 0.0).count();
+    assert!((1..=2).contains(&moved), "{jumps:?}");
+    assert!(of("volume", "free", "peak jump /255").iter().all(|j| *j > 0.0));
+    for method in ["snapped", "free"] {
+        let back = of("back", method, "mean luminance");
+        assert!(back[0] == back[2] && back[0] != back[1], "{method} is where it was: {back:?}");
+        let twice = of("twice", method, "mean luminance");
+        assert!((twice[1] / twice[0] - 2.0).abs() < 1e-3 && twice[1] == twice[2], "{method}: {twice:?}");
+    }
+}
+
+/// A parameter that references have too moves the truth.
+#[test]
+fn a_parameter_of_the_truth() {
+    let home = home();
+    let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"ggx_alpha\", values: [\"squared\", \"roughness\", \"roughness\"]))";
+    let file = suite(home.path(), "\"a\": { \"scene\": \"configs/stability/scenes/metal-rough.ron\" }", cases);
+    succeeds(&mut stability(home.path(), &file, "out", &[]));
+    let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
+    assert_eq!(references, 2);
+    let frames = table(&home.path().join("out/frames.csv"));
+    let own = frames.iter().filter(|r| r["part"] == "specular");
+    let truth: Vec<&str> = own.map(|r| r["reference mean luminance"].as_str()).collect();
+    assert!(truth[0] != truth[1] && truth[1] == truth[2], "{truth:?}");
+    // Without references nobody knows the truth's change.
+    succeeds(&mut stability(home.path(), &file, "none", &["--no-reference"]));
+    assert_eq!(value(&table(&home.path().join("none/stability.csv")), "lobe", "a", "total E_t"), None);
+}
+
+/// Two panels: methods as they are, and one whose voxels were made so many that it is as fast as the first. A
+/// second run measures nothing and says the same.
+#[test]
+fn equal_cost() {
+    let home = home();
+    let methods = "\"first\": {}, \"large\": { \"voxel_dim\": 64 }, \"fitted\": { \"warp\": \"spline\" }";
+    let file = suite(
+        home.path(),
+        methods,
+        "\"still\": (), \"strafe\": (motion: Camera(strafe: 0.1)), \"yaw\": (motion: Camera(yaw: 2))",
+    );
+    chart(
+        &file,
+        "error: [\"still\"], motions: [\"strafe\", \"yaw\"], \
+         groups: { \"as they are\": [\"first\", \"large\"], \"equal time\": [\"first\", \"fitted\"] }, \
+         equal_time: (parameter: \"voxel_dim\", values: [16, 48, 96], methods: [\"fitted\"])",
+    );
+    succeeds(&mut stability(home.path(), &file, "out", &[]));
+    let out = |name: &str| std::fs::read_to_string(home.path().join("out").join(name)).unwrap();
+    let costs = table(&home.path().join("out/cost.csv"));
+    let results = table(&home.path().join("out/stability.csv"));
+    let groups: Vec<&str> = costs.iter().map(|r| r["group"].as_str()).collect();
+    assert_eq!(groups, ["as they are", "as they are", "equal time", "equal time"]);
+    let cell = |method: &str, column: &str| costs.iter().find(|r| r["method"] == method).unwrap()[column].clone();
+    let number = |method: &str, column: &str| cell(method, column).parse::<f64>().unwrap();
+    // The chart's values are those of the cases.
+    assert_eq!(number("large", "diffuse relMSE"), value(&results, "still", "large", "diffuse relMSE").unwrap());
+    let moving = ["strafe", "yaw"].map(|c| value(&results, c, "large", "diffuse E_t").unwrap());
+    assert!((number("large", "diffuse E_t") - ((moving[0].powi(2) + moving[1].powi(2)) / 2.0).sqrt()).abs() < 1e-12);
+    assert!(number("large", "memory MiB") > 4.0 * number("first", "memory MiB"));
+    assert!(value(&results, "still", "large", "memory MiB").unwrap() >= number("large", "memory MiB"));
+    // All values were timed, the nearest was taken, and the cases ran with it.
+    let json: serde_json::Value = serde_json::from_str(&out("stability.json")).unwrap();
+    let fitted = json["costs"].as_array().unwrap().iter().find(|c| c["method"] == "fitted").unwrap();
+    let median = |list: &serde_json::Value, first: &serde_json::Value| {
+        let pairs = list.as_array().unwrap().iter().zip(first.as_array().unwrap());
+        let mut ratios: Vec<f64> = pairs.map(|(a, b)| a.as_f64().unwrap() / b.as_f64().unwrap()).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios[ratios.len() / 2]
+    };
+    let candidates = fitted["candidates"].as_array().unwrap();
+    let off: Vec<f64> = candidates.iter().map(|c| median(&c["ms"], &c["first_ms"]).ln().abs()).collect();
+    let chosen = fitted["chosen"].as_u64().unwrap() as usize;
+    assert!(candidates.len() == 3 && off.iter().all(|o| *o >= off[chosen]), "{off:?}, chosen {chosen}");
+    assert_eq!(cell("fitted", "setting"), format!("voxel_dim = {}", [16, 48, 96][chosen]));
+    let sizes = [16u64, 48, 96].map(|d| d.pow(3)).into_iter().collect::<Vec<_>>();
+    let memory = |i: usize| candidates[i]["memory_bytes"].as_u64().unwrap();
+    assert!(memory(2) - memory(0) > 4 * (sizes[2] - sizes[0]), "bytes grow with the voxels");
+    let svg = out("charts/cost.svg");
+    assert!(["as they are", "equal time", "first", "large", "fitted"].iter().all(|t| svg.contains(t)));
+    assert!(out("index.html").contains(&svg) && out("index.html").contains("What stability costs"));
+    // What was chosen is taken again.
+    let before = ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out);
+    let told = succeeds(&mut stability(home.path(), &file, "out", &[]));
+    assert!(told.contains("9 done, 0 failed"), "{told}");
+    assert_eq!(before, ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out));
 }
 
 /// Killed as soon as something is finished and started again: what was finished stays, and the tables are those of a run
@@ -228,13 +389,49 @@ fn killed_and_continued() {
     }
 }
 
+/// One picture with the worst case of each method: names and numbers are drawn beside it, and it is small.
+#[test]
+fn a_sheet_of_failures() {
+    let home = home();
+    let methods = "\"fine\": {}, \"coarse\": { \"voxel_dim\": 16 }";
+    let cases = "\"still\": (frames: 1, variants: { \"lit\": {}, \"dark\": { \"sky\": (0, 0, 0) } }), \"strafe\": (motion: Camera(strafe: 0.2))";
+    let file = suite(home.path(), methods, cases);
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replacen("methods:", "pictures: \"diffuse\", methods:", 1)).unwrap();
+    let picture = home.path().join("failures.jpg");
+    let told = succeeds(&mut stability(home.path(), &file, "out", &["--sheet", picture.to_str().unwrap()]));
+    let bytes = std::fs::read(&picture).unwrap();
+    assert!(bytes.len() < 200_000, "{} bytes", bytes.len());
+    let sheet = image::load_from_memory(&bytes).unwrap().to_luma8();
+    let rows: Vec<Vec<&str>> =
+        told.lines().filter(|l| l.starts_with("| ")).skip(1).map(|l| l.split(" | ").collect()).collect();
+    let names: Vec<(&str, &str)> = rows.iter().map(|r| (r[0], &r[2][..5])).collect();
+    assert_eq!(names, [("| fine", "relMS"), ("| fine", "E_t o"), ("| coarse", "relMS"), ("| coarse", "E_t o")]);
+    // The number is the largest of the method's cases of one frame.
+    let results = table(&home.path().join("out/stability.csv"));
+    let errors = results.iter().filter(|r| r["method"] == "coarse" && r["case"] == "still");
+    let worst = errors
+        .max_by(|a, b| a["diffuse relMSE"].parse::<f64>().unwrap().total_cmp(&b["diffuse relMSE"].parse().unwrap()))
+        .unwrap();
+    assert_eq!(rows[2][1], format!("still: {}", worst["variant"]));
+    // Four rows of 180 pixels below the head, with text on the left of each.
+    assert_eq!((sheet.width(), sheet.height()), (250 + 3 * 248 + 16, 22 + 8 + 4 * 188));
+    for row in 0..4 {
+        let dark = (0..70).flat_map(|y| (8..250).map(move |x| (x, 22 + 188 * row + y)));
+        let dark = dark.filter(|(x, y)| sheet.get_pixel(*x, *y).0[0] < 128).count();
+        assert!((200..4000).contains(&dark), "row {row}: {dark} dark pixels of text");
+    }
+    let wrong = fails(&mut stability(home.path(), &file, "out", &["--sheet", "failures.gif"]));
+    assert!(wrong.contains(".jpg"), "{wrong}");
+}
+
 /// The shipped suites are right, and two of the failures are as the physics says.
 #[test]
 fn shipped_suites() {
     let home = home();
-    for name in ["motion", "failures"] {
+    for name in ["motion", "failures", "cost"] {
         let path = root().join(format!("configs/stability/{name}.ron"));
-        assert!(Suite::read(&path).unwrap().cases.len() > 8);
+        assert!(Suite::read(&path).unwrap().cases.len() >= 5);
         succeeds(conelab(home.path()).arg("check").arg(path));
     }
     let file = root().join("configs/stability/failures.ron");
@@ -273,6 +470,33 @@ fn mistakes() {
         told("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
         "needs two frames more, there are 4",
     );
+    let moves = |text: &str| told("\"a\": {}", &format!("\"x\": (motion: Parameter(name: {text}))"), &[]);
+    has(moves("\"volume_ofset\", step: (1, 0, 0)"), "volume_offset");
+    has(moves("\"volume_offset\", step: 1"), "expected 3 numbers");
+    has(moves("\"volume_offset\""), "either a `step` or `values`");
+    has(moves("\"volume\", step: 1"), "no option '1'");
+    has(moves("\"bias\", step: 3"), "outside 0 to 8");
+    has(moves("\"warp\", values: [\"none\"]"), "compiled into the shaders");
+    let charts = |text: &str| {
+        let file = suite(home.path(), "\"a\": {}, \"b\": {}", "\"x\": (methods: [\"a\"]), \"y\": ()");
+        chart(&file, text);
+        fails(&mut stability(home.path(), &file, "out", &[]))
+    };
+    has(charts("error: [\"z\"], motions: [\"y\"]"), "the case 'z', which is none");
+    has(charts("error: [\"x\"], motions: [\"y\"]"), "the method 'b' in the case 'x'");
+    has(charts("error: [\"y\"], motions: []"), "at least one case for `error`");
+    has(charts("error: [\"y\"], motions: [\"y\"], groups: { \"g\": [\"c\"] }"), "the method 'c'");
+    let equal = |text: &str| charts(&format!("error: [\"y\"], motions: [\"y\"], equal_time: (parameter: {text})"));
+    has(equal("\"voxel_dim\", values: [32], methods: [\"a\"]"), "'a' is the suite's first method");
+    has(equal("\"voxel_dimm\", values: [32], methods: [\"b\"]"), "voxel_dim");
+    has(equal("\"voxel_dim\", values: [3], methods: [\"b\"]"), "outside 16 to 512");
+    has(told("\"a\": {}", "\"x\": (motion: Cut(to: \"behind\", at: 1))", &[]), "no camera 'behind'");
+    has(told("\"a\": {}", "\"x\": (motion: Cut(to: \"default\", at: 0))", &[]), "`at` of 1 or more");
+    has(told("\"a\": {}", "\"x\": (motion: Path(file: \"none.ron\", step: 1))", &[]), "none.ron");
+    let file = suite(home.path(), "\"a\": {}", "\"x\": ()");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replacen("methods:", "pictures: \"glow\", methods:", 1)).unwrap();
+    has(fails(&mut stability(home.path(), &file, "out", &[])), "no pictures of 'glow'");
     has(told("", "\"x\": ()", &[]), "at least one method");
     assert!(!home.path().join("out").exists(), "nothing was written");
 }

@@ -2,8 +2,9 @@
 
 use super::DeviceArgs;
 use super::adapt::parse_size;
+use crate::files::write_whole;
 use crate::lab::{Home, Lab, LabError};
-use crate::stability::{Options, Outcome, Progress, Suite, run as run_suite};
+use crate::stability::{Options, Outcome, Progress, Suite, failure_table, failures, run as run_suite, sheet};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -34,6 +35,9 @@ pub struct StabilityArgs {
     /// Only these cases.
     #[arg(long, value_name = "CASE", value_delimiter = ',')]
     only: Vec<String>,
+    /// Draw the worst case of each method on one picture, and print a table of them, Markdown.
+    #[arg(long, value_name = "FILE.jpg")]
+    sheet: Option<PathBuf>,
     #[command(flatten)]
     device: DeviceArgs,
 }
@@ -47,6 +51,9 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     }
     if args.spp.is_some_and(|n| n == 0 || n > 1 << 20) {
         return Err(LabError::Request("--spp must be 1 to 1048576".into()));
+    }
+    if let Some(sheet) = &args.sheet {
+        super::writable(sheet, &["jpg", "jpeg"])?;
     }
     let home = Home::find()?;
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/stability").join(&suite.name));
@@ -71,6 +78,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
             }
             bar.set_length(todo as u64);
         }
+        Progress::Times { method, done, of } => bar.set_message(format!("timing {method}, {done} of {of}")),
         Progress::Runs(job) => {
             doing = format!("{} {}: {}", job.case.name, job.case.variant, job.method);
             bar.set_message(doing.clone());
@@ -109,6 +117,12 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         );
     }
     say!("wrote {}", super::shown(&options.folder.join("index.html")).display());
+    if let Some(path) = &args.sheet {
+        let list = failures(&report);
+        let bytes = sheet(&list, &options.folder)?;
+        write_whole(path, &bytes).map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
+        say!("\n{}\nwrote {}", failure_table(&list), path.display());
+    }
     say!("{} done, {} failed", tally.done, tally.failed);
     match tally.failed {
         0 => Ok(()),

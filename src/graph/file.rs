@@ -469,7 +469,7 @@ pub struct VoxelsDecl {
 }
 
 /// A RON value kept as text, to be read by the parameter it is for.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RawText(pub String);
 
 impl<'de> Deserialize<'de> for RawText {

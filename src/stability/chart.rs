@@ -38,7 +38,8 @@ const BARS: [Bar; 4] = [
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Over the frames of each case E_t, and for a switched light its response; bars over everything.
+/// Over the frames of each case E_t, after a switch or a cut the error, for a switched light its response; bars over
+/// everything.
 pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
     let mut out = Vec::new();
     let mut add = |name: &str, case: Option<&str>, drawn: Result<Option<String>, Failure>| {
@@ -75,6 +76,11 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
             lines.extend(noise.map(|(_, points)| (NOISE.to_string(), points)));
             let title = format!("{case}: E_t of {part}");
             add(&format!("{case} E_t of {part}"), Some(case), lines_of(&title, "radiance", &lines))?;
+        }
+        if of().any(|r| r.measured().is_some_and(|m| m.event.is_some())) {
+            let title = format!("{case}: relMSE of diffuse light");
+            let lines = frames(&|f| f.relmse, "diffuse");
+            add(&format!("{case} error"), Some(case), lines_of(&title, "relMSE", &lines))?;
         }
         if of().any(|r| r.measured().is_some_and(|m| m.parts.values().any(|p| p.step.is_some()))) {
             let mut lines = frames(&|f| f.mean, "diffuse");

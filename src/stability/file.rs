@@ -1,6 +1,8 @@
 //! Suite files: methods, and what moves (docs/stability.md).
 
 use super::motion::Motion;
+use super::wish::{ChartFile, CostChart};
+use crate::camera_path::CameraPath;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
 use crate::graph::param::Params;
@@ -32,6 +34,10 @@ struct SuiteFile {
     seed: Option<u32>,
     #[serde(default)]
     set: Entries<RawText>,
+    #[serde(default)]
+    chart: Option<Loc<ChartFile>>,
+    #[serde(default = "total")]
+    pictures: String,
     methods: Entries<Entries<RawText>>,
     cases: Entries<CaseFile>,
 }
@@ -112,8 +118,16 @@ pub struct Suite {
     pub methods: Vec<Method>,
     /// The cases, in order.
     pub cases: Vec<Case>,
+    /// The part of the light whose worst frames are kept as pictures.
+    pub pictures: String,
+    /// What is charted beside the cases.
+    pub chart: Option<CostChart>,
     /// Folder of the file.
     pub folder: PathBuf,
+}
+
+fn total() -> String {
+    "total".into()
 }
 
 fn settings(list: &Entries<RawText>) -> Vec<Setting> {
@@ -188,6 +202,10 @@ impl Suite {
             let message = format!("a suite has at least one method and one case, and at most {MAX_JOBS} pairs of them");
             errors.push(sources.error(parsed.experiment.at, message));
         }
+        let chart = parsed
+            .chart
+            .as_ref()
+            .and_then(|c| c.value.wish(&methods, &cases).map_err(|why| errors.push(sources.error(c.at, why))).ok());
         let experiment = match Experiment::read(&folder.join(&parsed.experiment.value)) {
             Ok(experiment) => Some(experiment),
             Err(found) if found.iter().all(|d| d.place.line == 0) => {
@@ -211,6 +229,8 @@ impl Suite {
             set: settings(&parsed.set),
             methods,
             cases,
+            pictures: parsed.pictures,
+            chart,
             folder,
         })
     }
@@ -285,6 +305,12 @@ pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
             if !errors.contains(&diagnostic) {
                 errors.push(diagnostic);
             }
+        }
+    }
+    for case in &suite.cases {
+        if let Motion::Path { file, .. } = &case.motion {
+            let found = CameraPath::read(&suite.folder.join(file)).err().unwrap_or_default();
+            errors.extend(found.into_iter().filter(|d| !errors.contains(d)).collect::<Vec<_>>());
         }
     }
     if errors.is_empty() { Ok(()) } else { Err(errors) }

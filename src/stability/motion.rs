@@ -1,6 +1,8 @@
 //! What moves, and where it is at each frame.
 
-use crate::experiment::PlacedCamera;
+use crate::experiment::{CameraChoice, PlacedCamera};
+use crate::graph::file::RawText;
+use crate::graph::param::Value;
 use crate::scene::{Light, Scene};
 use glam::{Mat4, Quat, Vec3};
 use serde::Deserialize;
@@ -63,6 +65,34 @@ pub enum Motion {
         /// Part of the scene's colour from then on.
         to: f32,
     },
+    /// The camera jumps to another one.
+    Cut {
+        /// A camera of the scene, or one written out.
+        to: CameraChoice,
+        /// Its first frame, counted from the first measured one, at least 1.
+        at: usize,
+    },
+    /// The camera along a path, in place of the experiment's.
+    Path {
+        /// The path's file, relative to the suite.
+        file: String,
+        /// The path's time at the first measured frame, s.
+        #[serde(default)]
+        from: f64,
+        /// Time from frame to frame, s.
+        step: f64,
+    },
+    /// A parameter of the method's graph.
+    Parameter {
+        /// Its name.
+        name: String,
+        /// What a number or vector grows by, a frame.
+        #[serde(default)]
+        step: Option<RawText>,
+        /// Instead of a step: the values of the measured frames. The first holds before, the last after them.
+        #[serde(default)]
+        values: Vec<RawText>,
+    },
 }
 
 fn one() -> (f32, f32, f32) {
@@ -89,6 +119,8 @@ pub struct Moment {
     pub time: f64,
     /// The scene's lights.
     pub lights: Vec<Light>,
+    /// A moving parameter that the graph of references has too.
+    pub setting: Option<(String, Value)>,
 }
 
 impl Motion {
@@ -98,7 +130,10 @@ impl Motion {
     /// The text for the user.
     pub fn check(&self, scene: &Scene) -> Result<(), String> {
         let numbers: Vec<f64> = match self {
-            Motion::Still => vec![],
+            Motion::Cut { at: 0, .. } => return Err("a cut has a frame `at` of 1 or more".into()),
+            Motion::Path { from, step, .. } => vec![*from, *step],
+            // A parameter's values are checked with its graph, a camera with its scene.
+            Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } => vec![],
             Motion::Camera { dolly, strafe, rise, yaw, pitch, .. } => {
                 [dolly, strafe, rise, yaw, pitch].map(|v| f64::from(*v)).to_vec()
             }
@@ -151,6 +186,19 @@ impl Motion {
         matches!(self, Motion::Camera { unit: Unit::Voxels, .. })
     }
 
+    /// The first frame after something happened at once, counted from the first measured one.
+    pub fn event(&self) -> Option<usize> {
+        match self {
+            Motion::Switch { at, .. } | Motion::Cut { at, .. } => Some(*at),
+            _ => None,
+        }
+    }
+
+    /// Time from frame to frame as the method is told it, s.
+    pub fn delta(&self) -> f64 {
+        if let Motion::Actors { step, .. } = self { *step } else { 0.0 }
+    }
+
     /// Frame `number`, where 0 is the first measured one and those before are negative: what moves has moved before. `cell`
     /// is the edge of a cell, m.
     pub fn moment(&self, start: &Moment, number: i64, cell: f32) -> Moment {
@@ -161,7 +209,7 @@ impl Motion {
             return moment;
         }
         match self {
-            Motion::Still => {}
+            Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } | Motion::Path { .. } => {}
             Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {
                 let length = n * if *unit == Unit::Voxels { cell } else { 1.0 };
                 let (eye, up) = (Vec3::from(start.camera.eye), Vec3::from(start.camera.up));
@@ -211,6 +259,14 @@ impl Motion {
                 format!("light '{name}': ({x}, {y}, {z}) m and {turn} degrees a frame")
             }
             Motion::Switch { name, at, from, to } => format!("light '{name}': {from} to {to} at frame {at}"),
+            Motion::Cut { to: CameraChoice::Named(name), at } => format!("cut to camera '{name}' at frame {at}"),
+            Motion::Cut { at, .. } => format!("cut to another camera at frame {at}"),
+            Motion::Path { file, from, step } => format!("camera along {file} from {from} s, {step} s a frame"),
+            Motion::Parameter { name, step: Some(step), .. } => format!("parameter '{name}': {} a frame", step.0),
+            Motion::Parameter { name, values, .. } => {
+                let list: Vec<&str> = values.iter().map(|v| v.0.as_str()).collect();
+                format!("parameter '{name}': {}", list.join(", "))
+            }
         }
     }
 }

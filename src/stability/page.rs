@@ -1,6 +1,7 @@
 //! The page: tables, charts and the worst frames. It needs no network; pictures lie beside it.
 
 use super::chart::Chart;
+use super::plot::Plot;
 use super::record::{Measured, Outcome, PartResult, Record, Report};
 use super::table::parts;
 use crate::report::{escaped, short};
@@ -13,7 +14,7 @@ figure{margin:1em 0}figcaption{color:#555;font-size:13px}img{max-width:100%;imag
 .wide{overflow-x:auto}h2{margin-top:2em;border-top:2px solid #ccc;padding-top:.6em}";
 
 /// The page as HTML.
-pub(super) fn page(report: &Report, charts: &[Chart]) -> String {
+pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> String {
     let title = escaped(&report.suite);
     let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}: stability</title>\n\
@@ -35,6 +36,7 @@ pub(super) fn page(report: &Report, charts: &[Chart]) -> String {
          <a href=\"stability.json\">stability.json</a>.</p>",
         escaped(&devices)
     );
+    out += &plot.map_or(String::new(), Plot::html);
     let figure = |out: &mut String, chart: &Chart| {
         let _ = writeln!(out, "<figure>{}</figure>", chart.svg);
     };
@@ -67,14 +69,15 @@ pub(super) fn page(report: &Report, charts: &[Chart]) -> String {
                     if m.warnings.is_empty() { String::new() } else { format!(" {}.", m.warnings.join("; ")) };
                 let _ = writeln!(
                     out,
-                    "<figure><img src=\"pictures/{0}.png\" alt=\"\"><figcaption><b>{1}</b>, worst frame {2} \
+                    "<figure><img src=\"pictures/{0}.png\" alt=\"\"><figcaption><b>{1}</b>, worst frame {2} of {6} \
                      (pictures/{0}.png): {3}; red brighter, blue darker, full at {4} / 255.{5}</figcaption></figure>",
                     r.id,
                     escaped(&r.method),
                     w.frame,
                     escaped(&w.panels.join(" | ")),
                     short(w.full),
-                    escaped(&warnings)
+                    escaped(&warnings),
+                    escaped(&w.part)
                 );
             }
         }
@@ -85,7 +88,7 @@ pub(super) fn page(report: &Report, charts: &[Chart]) -> String {
 
 type Column = (&'static str, fn(&Measured, &PartResult) -> Option<f64>);
 
-const COLUMNS: [Column; 14] = [
+const COLUMNS: [Column; 15] = [
     ("E_t", |_, p| p.e),
     ("noise", |_, p| p.e_noise),
     ("pops", |_, p| p.pops),
@@ -95,6 +98,7 @@ const COLUMNS: [Column; 14] = [
     ("its noise", |_, p| p.flicker_noise),
     ("frames to 5 %", |_, p| p.step.and_then(|s| s.frames).map(|f| f as f64)),
     ("overshoot", |_, p| p.step.map(|s| s.overshoot)),
+    ("settling frames", |_, p| p.settling.map(|f| f as f64)),
     ("relMSE", |_, p| p.scores.as_ref().map(|s| s.relmse)),
     ("energy", |_, p| p.scores.as_ref().map(|s| s.energy_ratio)),
     ("leak", |_, p| p.scores.as_ref().map(|s| s.leak)),

@@ -1,7 +1,9 @@
 //! Every method in every case, as something to run, with the number of all that its result depends on.
 
+use super::cameras::Cameras;
 use super::file::{Case, Method, Suite};
-use super::motion::{Moment, Motion};
+use super::motion::Moment;
+use super::moved::Moved;
 use crate::capture::{hex, scene_hash};
 use crate::experiment::{Experiment, check_size};
 use crate::graph::source::{At, Diagnostic, Loc};
@@ -43,6 +45,8 @@ pub struct Job {
     /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time, motion, frames, samples and
     /// device.
     pub id: String,
+    /// The same of what is run, without names and what it is compared with.
+    pub work: String,
     /// The method.
     pub method: String,
     /// The case.
@@ -55,6 +59,12 @@ pub struct Job {
     pub scene_hash: String,
     /// Camera, time and light before anything moved.
     pub start: Moment,
+    /// Cameras that do not move on from the start.
+    pub cameras: Option<Cameras>,
+    /// The parameter that moves.
+    pub moved: Option<Moved>,
+    /// Whether the graph of references has it too, so that the truth moves with it.
+    pub truth_moves: bool,
     /// Frames measured.
     pub frames: usize,
 }
@@ -129,7 +139,8 @@ fn job(
     let title = if case.variant.is_empty() { case.name.clone() } else { format!("{}: {}", case.name, case.variant) };
     let wrong = |why: String| LabError::Request(format!("case '{title}': {why}"));
     let frames = options.frames.filter(|_| !case.own_frames).unwrap_or(case.frames);
-    let parts = parts_of(&loaded.graph).len() as u64;
+    let names: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.0).collect();
+    let parts = names.len() as u64;
     let values = u64::from(experiment.size.0) * u64::from(experiment.size.1) * frames as u64 * parts;
     if values > MAX_VALUES {
         return Err(wrong(format!(
@@ -140,13 +151,22 @@ fn job(
     if parts == 0 {
         return Err(wrong(format!("graph '{}' has neither `parts` nor `hdr`", loaded.graph.name)));
     }
+    if !names.contains(&suite.pictures) {
+        let (part, known) = (&suite.pictures, names.join(", "));
+        return Err(wrong(format!("no pictures of '{part}': the parts of graph '{}' are {known}", loaded.graph.name)));
+    }
     let listed = lister.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
     case.motion.check(&listed.scene).map_err(wrong)?;
-    if let Motion::Switch { at, .. } = case.motion
-        && frames.saturating_sub(2) < at
-    {
-        return Err(wrong(format!("a light that is switched at frame {at} needs two frames more, there are {frames}")));
+    let params = listed.experiment.params_over(&loaded.graph.params)?;
+    let moved = Moved::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
+    let truth_moves = match &moved {
+        Some(moved) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&moved.name).is_some(),
+        None => false,
+    };
+    if let Some(at) = case.motion.event().filter(|at| frames.saturating_sub(2) < *at) {
+        return Err(wrong(format!("what happens at frame {at} needs two frames more, there are {frames}")));
     }
+    let cameras = Cameras::of(&case.motion, &listed.experiment, &listed.scene, &suite.folder)?;
     let (scene, hash) = match case.motion.stage(&listed.scene) {
         Some(staged) => {
             let hash = scene_hash(&staged);
@@ -158,31 +178,51 @@ fn job(
         camera: camera_of(&listed.experiment, &scene)?,
         time: listed.experiment.time,
         lights: scene.lights.clone(),
+        setting: None,
     };
     let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
-    let mut sum = Sha256::new();
-    let facts = [
-        listed.id,
-        format!("{:?}", case.motion),
-        format!("{samples:?} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels),
-        format!("{} {} {}", device.name, device.driver, device.api),
+    let work =
+        number(&[listed.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
+    let id = number(&[
+        work.clone(),
+        format!("{samples:?} {} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels, suite.pictures),
         // Two names of the same thing are two rows.
         format!("{:?} {:?} {:?}", method.name, case.name, case.variant),
-    ];
-    for fact in &facts {
-        sum.update((fact.len() as u64).to_le_bytes());
-        sum.update(fact);
-    }
-    let mut id = hex(&sum.finalize());
-    id.truncate(32);
+    ]);
     Ok(Job {
         id,
+        work,
         method: method.name.clone(),
         case: case.clone(),
         experiment: listed.experiment,
         scene,
         scene_hash: hash,
         start,
+        cameras,
+        moved,
+        truth_moves,
         frames,
     })
+}
+
+/// 32 hexadecimal digits of SHA-256.
+fn number(facts: &[String]) -> String {
+    let mut sum = Sha256::new();
+    for fact in facts {
+        sum.update((fact.len() as u64).to_le_bytes());
+        sum.update(fact);
+    }
+    let mut id = hex(&sum.finalize());
+    id.truncate(32);
+    id
+}
+
+impl Job {
+    /// What frame `number` sees; see [`super::Motion::moment`].
+    pub fn moment(&self, number: i64, cell: f32) -> Moment {
+        let setting = self.moved.as_ref().filter(|_| self.truth_moves).map(|m| (m.name.clone(), m.at(number)));
+        let moment = self.case.motion.moment(&self.start, number, cell);
+        let camera = self.cameras.as_ref().map_or(moment.camera, |c| c.at(&self.start.camera, number));
+        Moment { camera, setting, ..moment }
+    }
 }

@@ -1,6 +1,7 @@
 //! What a suite leaves: `results/ID.json`, one finished method in one case each, and `stability.json`, all of them. Folders
 //! may come from anywhere and are not trusted.
 
+use super::cost::Cost;
 use super::score::{Change, Flicker, Step};
 use crate::files::write_lasting;
 use crate::lab::LabError;
@@ -54,6 +55,9 @@ pub struct PartResult {
     pub flicker_noise: Option<f64>,
     /// What follows a switched light.
     pub step: Option<Step>,
+    /// Frames from a switch or a cut until relMSE stays within 5 % of its last value.
+    #[serde(default)]
+    pub settling: Option<usize>,
     /// The last frame against its reference.
     pub scores: Option<Scores>,
     /// relMSE between the halves of that reference.
@@ -65,6 +69,8 @@ pub struct PartResult {
 /// The frame that is farthest from its truth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
+    /// The part of the light.
+    pub part: String,
     /// Its number.
     pub frame: usize,
     /// What the panels of its picture show, from the left.
@@ -78,13 +84,19 @@ pub struct Worst {
 pub struct Measured {
     /// Median of the frames' time on the device, ms.
     pub frame_ms: f64,
+    /// Bytes of all resources of the graph, with the parts of the light that a picture alone does not need.
+    #[serde(default)]
+    pub memory_bytes: u64,
     /// Samples a pixel of the references; 0 without.
     pub samples: u64,
+    /// The first frame after a switch or a cut.
+    #[serde(default)]
+    pub event: Option<usize>,
     /// By part.
     pub parts: BTreeMap<String, PartResult>,
     /// Voxels of the last frame against exact ones.
     pub voxels: Option<Score>,
-    /// The farthest frame of the total; its picture is `pictures/ID.png`.
+    /// The farthest frame of the suite's part for pictures; its picture is `pictures/ID.png`.
     pub worst: Option<Worst>,
     /// What the graph's checks said, and what could not be had.
     pub warnings: Vec<String>,
@@ -144,6 +156,9 @@ pub struct Report {
     pub text: String,
     /// Samples a pixel and bounces of the references; none without.
     pub reference: Option<(u64, u32)>,
+    /// What charted methods cost; empty without a chart.
+    #[serde(default)]
+    pub costs: Vec<Cost>,
     /// Every method in every case, in order.
     pub results: Vec<Record>,
 }

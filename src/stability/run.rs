@@ -4,16 +4,19 @@ use super::file::Suite;
 use super::motion::{Moment, Motion};
 use super::pictures::Panels;
 use super::plan::{Job, Options, plan};
+use super::plot::Plot;
 use super::record::{Folder, Measured, Outcome, RESULT_SCHEMA, Record, Report, SCHEMA, Worst, json, lasting};
 use super::series::{Known, PartSeries};
 use super::truth::{Tracing, Truth, Truths};
-use super::{chart, page, table};
+use super::wish::CostChart;
+use super::{chart, cost, page, table};
+use crate::graph::param::Value;
 use crate::lab::{Lab, LabError, Seed, Session, parts_of};
 use crate::measure::Warm;
 use crate::metrics::Linear;
 use crate::oracle::{self, Surfaces};
 use crate::reference::Gathered;
-use crate::scene::Scene;
+use crate::scene::{Light, Scene};
 use crate::stats::DeviceStats;
 use crate::vulkan::VulkanError;
 use glam::DVec3;
@@ -28,6 +31,15 @@ pub enum Progress<'a> {
         todo: usize,
         /// Finished before.
         before: usize,
+    },
+    /// A method is timed for the chart of costs.
+    Times {
+        /// Its name.
+        method: &'a str,
+        /// Measurements before it.
+        done: usize,
+        /// And in all.
+        of: usize,
     },
     /// A method in a case begins.
     Runs(&'a Job),
@@ -60,11 +72,18 @@ pub fn run(
 ) -> Result<(Tally, Report), LabError> {
     let mut lab = reopen()?;
     let mut warm = Warm::default();
-    let jobs = plan(&lab.home.clone(), &lab.gpu.info, open_scene, &mut warm, suite, options)?;
+    let mut jobs = plan(&lab.home, &lab.gpu.info, open_scene, &mut warm, suite, options)?;
+    let mut costs = Vec::new();
+    if let Some(chart) = &suite.chart {
+        costs = cost::costs(&lab, &mut warm, open_scene, (suite, chart), options, tell)?;
+        let chosen = cost::chosen(suite, chart, &costs);
+        jobs = plan(&lab.home, &lab.gpu.info, open_scene, &mut warm, &chosen, options)?;
+    }
     let folder = Folder(options.folder.clone());
     let samples = options.samples.unwrap_or(suite.samples);
     let tracing = Tracing { samples, bounces: suite.bounces, seed: suite.seed };
-    let mut runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), reference: options.reference };
+    let (reference, pictures) = (options.reference, suite.pictures.clone());
+    let mut runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), reference, pictures };
     let finished: Vec<Option<Record>> = jobs.iter().map(|j| folder.read(&j.id)).collect();
     let before = finished.iter().flatten().count();
     tell(Progress::Begins { todo: jobs.len() - before, before });
@@ -104,22 +123,28 @@ pub fn run(
         suite: suite.name.clone(),
         text: suite.text.clone(),
         reference: options.reference.then_some((samples, suite.bounces)),
+        costs,
         results,
     };
-    write(&report, options)?;
+    write(&report, suite.chart.as_ref(), options)?;
     Ok((tally, report))
 }
 
 /// Tables, JSON, charts and the page.
-fn write(report: &Report, options: &Options) -> Result<(), LabError> {
+fn write(report: &Report, wish: Option<&CostChart>, options: &Options) -> Result<(), LabError> {
     let charts = chart::charts(report)?;
+    let plot = wish.map(|wish| Plot::new(report, wish)).transpose()?;
     let mut files = vec![
         ("stability.json".to_string(), json(report)?),
         ("stability.csv".into(), table::rows(report)?.into_bytes()),
         ("frames.csv".into(), table::frames(report)?.into_bytes()),
     ];
     files.extend(charts.iter().map(|c| (format!("charts/{}.svg", c.name), c.svg.clone().into_bytes())));
-    files.push(("index.html".into(), page::page(report, &charts).into_bytes()));
+    if let Some(plot) = &plot {
+        files.push(("cost.csv".into(), plot.csv()?.into_bytes()));
+        files.extend(plot.svg.iter().map(|svg| ("charts/cost.svg".into(), svg.clone().into_bytes())));
+    }
+    files.push(("index.html".into(), page::page(report, &charts, plot.as_ref()).into_bytes()));
     files.iter().try_for_each(|(name, bytes)| lasting(&options.folder.join(name), bytes))
 }
 
@@ -146,6 +171,8 @@ struct Runner {
     truths: Truths,
     lent: HashMap<String, Seed>,
     reference: bool,
+    /// The part whose worst frames are kept.
+    pictures: String,
 }
 
 /// A frame that may be the worst.
@@ -171,8 +198,7 @@ impl Runner {
         }
         let seed = self.lent.get(&job.method);
         let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, seed)?;
-        let cell = if motion.in_voxels() { cell_at(&mut session, &job.start)? } else { 0.0 };
-        let step = if let Motion::Actors { step, .. } = motion { *step } else { 0.0 };
+        let cell = cell_of(&mut session, job)?;
         let (mut times, mut warnings) = (Vec::new(), Vec::new());
         let mut series: BTreeMap<String, PartSeries> = BTreeMap::new();
         let mut worst: Option<Bad> = None;
@@ -182,16 +208,8 @@ impl Runner {
         let warmup = i64::try_from(job.case.warmup).unwrap_or(0);
         let frames = i64::try_from(job.frames).unwrap_or(1);
         for number in -warmup..frames {
-            let moment = motion.moment(&job.start, number, cell);
-            session.look(&moment.camera);
-            session.set_time(moment.time);
-            if moment.lights != lights {
-                if !session.set_lights(&moment.lights, job.scene.sky) {
-                    return Err(LabError::Request("a light that moves must keep its kind and its shadow".into()));
-                }
-                lights.clone_from(&moment.lights);
-            }
-            times.extend(session.frame(step)?);
+            let moment = place(lab, &mut session, job, number, cell, &mut lights)?;
+            times.extend(session.frame(motion.delta())?);
             let Ok(frame) = usize::try_from(number) else { continue };
             times.extend(session.finish()?);
             for message in session.failed_checks()? {
@@ -224,7 +242,7 @@ impl Runner {
                 }
                 let known = known(&part, truth.as_deref(), earlier.map(|t| &**t), changed);
                 let own = series.entry(part.clone()).or_insert_with(|| PartSeries::new(&part));
-                let shown = (part == "total").then(|| Panels::of(own.before(), &x, known));
+                let shown = (part == self.pictures).then(|| Panels::of(own.before(), &x, known));
                 let bad = own.add(x, known, number + 1 == frames);
                 if let (Some(panels), Some(bad)) = (shown, bad.or((frame == 0).then_some(0.0)))
                     && worst.as_ref().is_none_or(|w| bad > w.bad || w.frame == 0)
@@ -238,11 +256,32 @@ impl Runner {
         let last = before.map_or(job.start.time, |b| b.0.time);
         let voxels = voxels(&mut session, job, last, &mut warnings)?;
         self.lent.insert(job.method.clone(), session.lend());
-        let switched = if let Motion::Switch { at, .. } = motion { Some(*at) } else { None };
-        let parts = series.into_iter().map(|(name, s)| (name, s.finish(switched))).collect();
+        let (event, switched) = (motion.event(), matches!(motion, Motion::Switch { .. }));
+        let memory_bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
+        let parts = series.into_iter().map(|(name, s)| (name, s.finish(event, switched))).collect();
         let picture = worst.as_ref().map(|w| w.panels.png()).transpose()?;
-        let worst = worst.map(|w| Worst { frame: w.frame, full: w.panels.full(), panels: w.panels.names() });
-        Ok((Measured { frame_ms: median(times), samples, parts, voxels, worst, warnings }, picture))
+        let worst = worst.map(|w| Worst {
+            part: self.pictures.clone(),
+            frame: w.frame,
+            full: w.panels.full(),
+            panels: w.panels.names(),
+        });
+        let frame_ms = median(times);
+        Ok((Measured { frame_ms, memory_bytes, samples, event, parts, voxels, worst, warnings }, picture))
+    }
+}
+
+/// Sets a parameter for the next frame.
+fn set(lab: &Lab, session: &mut Session, name: &str, value: Value) -> Result<(), LabError> {
+    let mut params = session.params.clone();
+    if let Some(index) = params.index(name) {
+        params.values[index] = value;
+    }
+    match session.set_params(lab, &params)? {
+        true => Ok(()),
+        false => Err(LabError::Request(format!(
+            "'{name}' decides about passes or sizes of textures: only what shaders read can move"
+        ))),
     }
 }
 
@@ -255,14 +294,41 @@ fn known<'a>(part: &str, truth: Option<&'a Truth>, earlier: Option<&'a Truth>, c
     }
 }
 
-/// The least edge of the method's cell at the camera, m.
-fn cell_at(session: &mut Session, start: &Moment) -> Result<f32, LabError> {
-    session.look(&start.camera);
+/// The least edge of the method's cell at the camera, m, if its motion asks for it.
+pub(super) fn cell_of(session: &mut Session, job: &Job) -> Result<f32, LabError> {
+    if !job.case.motion.in_voxels() {
+        return Ok(0.0);
+    }
+    session.look(&job.start.camera);
     session.frame(0.0)?;
     session.finish()?;
-    let (x, y, z) = start.camera.eye;
+    let (x, y, z) = job.start.camera.eye;
     let edges = oracle::grid(session)?.edges_at(DVec3::new(x.into(), y.into(), z.into()));
     Ok(edges.min_element() as f32)
+}
+
+/// Makes frame `number` of a job the session's next one. `lights` are those that the session has.
+pub(super) fn place(
+    lab: &Lab,
+    session: &mut Session,
+    job: &Job,
+    number: i64,
+    cell: f32,
+    lights: &mut Vec<Light>,
+) -> Result<Moment, LabError> {
+    let moment = job.moment(number, cell);
+    if let Some(moved) = &job.moved {
+        set(lab, session, &moved.name, moved.at(number))?;
+    }
+    session.look(&moment.camera);
+    session.set_time(moment.time);
+    if moment.lights != *lights {
+        if !session.set_lights(&moment.lights, job.scene.sky) {
+            return Err(LabError::Request("a light that moves must keep its kind and its shadow".into()));
+        }
+        lights.clone_from(&moment.lights);
+    }
+    Ok(moment)
 }
 
 /// The voxels of the last frame against exact ones, if the case asks for it and the method can.
@@ -289,7 +355,7 @@ fn voxels(
     }
 }
 
-fn median(mut list: Vec<f64>) -> f64 {
+pub(super) fn median(mut list: Vec<f64>) -> f64 {
     list.sort_by(f64::total_cmp);
     list.get(list.len() / 2).copied().unwrap_or(0.0)
 }

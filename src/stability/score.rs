@@ -150,3 +150,13 @@ pub fn step(signal: &[f64], at: usize) -> Option<Step> {
     let overshoot = after.iter().map(|v| off(*v)).fold(0.0, f64::max);
     Some(Step { frames: at_rest.then(|| late.map_or(1, |l| l + 2)), overshoot })
 }
+
+/// Frames, that of the event included, until an error stays within 5 % of its last value: 1 is at once. None without two
+/// frames after it, where an error is not known, and where it still moved by more than 1 % at the end.
+pub fn settling(errors: &[f64], at: usize) -> Option<usize> {
+    let after = errors.get(at..).filter(|a| a.len() >= 2 && a.iter().all(|e| e.is_finite()))?;
+    let last = *after.last()?;
+    let within = |e: f64, part: f64| (e - last).abs() <= part * last;
+    let late = after.iter().rposition(|e| !within(*e, SETTLED));
+    within(after[after.len() - 2], AT_REST).then(|| late.map_or(1, |l| l + 2))
+}

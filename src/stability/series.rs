@@ -1,7 +1,7 @@
 //! A part of the light, frame by frame beside its truth.
 
 use super::record::{FrameScore, PartResult};
-use super::score::{FlickerSeries, change, step};
+use super::score::{FlickerSeries, change, settling, step};
 use super::truth::TruthPart;
 use crate::metrics::colour::luminance;
 use crate::metrics::{Compared, Kind, Linear, relmse};
@@ -94,8 +94,8 @@ impl PartSeries {
         self.before.as_ref()
     }
 
-    /// What came of it; `switched` is the first frame of a light that was switched.
-    pub fn finish(mut self, switched: Option<usize>) -> PartResult {
+    /// What came of it; `event` is the first frame after a switch or a cut, `switched` says which.
+    pub fn finish(mut self, event: Option<usize>, switched: bool) -> PartResult {
         let changes: Vec<_> = self.frames.iter().filter_map(|f| f.change).collect();
         let root = |list: &[f64]| (list.iter().map(|v| v * v).sum::<f64>() / list.len() as f64).sqrt();
         if self.known && !changes.is_empty() {
@@ -110,9 +110,13 @@ impl PartSeries {
             self.result.flicker_noise = noisy.then(|| self.noise.index().mean);
             self.result.told_apart = self.result.e.zip(self.result.e_noise).map(|(e, n)| e >= NOISE_FACTOR * n);
         }
-        if let Some(at) = switched {
-            let signal: Vec<f64> = self.frames.iter().map(|f| f.mean.unwrap_or(f64::NAN)).collect();
-            self.result.step = step(&signal, at);
+        if let Some(at) = event {
+            let signal = |value: fn(&FrameScore) -> Option<f64>| -> Vec<f64> {
+                self.frames.iter().map(|f| value(f).unwrap_or(f64::NAN)).collect()
+            };
+            // Another view has another mean: that is no step of the method's.
+            self.result.step = if switched { step(&signal(|f| f.mean), at) } else { None };
+            self.result.settling = settling(&signal(|f| f.relmse), at);
         }
         self.result.frames = self.frames;
         self.result

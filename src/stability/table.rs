@@ -7,7 +7,7 @@ use crate::lab::LabError;
 type Column = (&'static str, fn(&PartResult) -> String);
 
 /// Columns of every part.
-const COLUMNS: [Column; 17] = [
+const COLUMNS: [Column; 18] = [
     ("E_t", |p| text(p.e)),
     ("E_t noise", |p| text(p.e_noise)),
     ("told apart", |p| p.told_apart.map_or("", |t| if t { "yes" } else { "no" }).into()),
@@ -18,6 +18,7 @@ const COLUMNS: [Column; 17] = [
     ("flicker noise", |p| text(p.flicker_noise)),
     ("convergence frames", |p| p.step.and_then(|s| s.frames).map_or(String::new(), |f| f.to_string())),
     ("overshoot", |p| text(p.step.map(|s| s.overshoot))),
+    ("settling frames", |p| p.settling.map_or(String::new(), |f| f.to_string())),
     ("relMSE", |p| text(p.scores.as_ref().map(|s| s.relmse))),
     ("relMSE noise", |p| text(p.noise)),
     ("energy ratio", |p| text(p.scores.as_ref().map(|s| s.energy_ratio))),
@@ -27,8 +28,13 @@ const COLUMNS: [Column; 17] = [
     ("over-occluded", |p| text(p.scores.as_ref().map(|s| s.over_occluded))),
 ];
 
-fn text(v: Option<f64>) -> String {
+pub(super) fn text(v: Option<f64>) -> String {
     v.filter(|v| v.is_finite()).map_or(String::new(), |v| v.to_string())
+}
+
+/// Bytes in MiB, to a hundredth.
+pub(super) fn mebibytes(bytes: u64) -> String {
+    format!("{:.2}", bytes as f64 / f64::from(1 << 20))
 }
 
 /// All parts that results have: the total, then the others.
@@ -60,6 +66,7 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
         "reference samples",
         "warnings",
         "frame ms",
+        "memory MiB",
         "worst frame",
         "voxel recall",
         "voxel precision",
@@ -92,6 +99,7 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
             of(&|m| m.samples.to_string()),
             of(&|m| m.warnings.join("; ")),
             of(&|m| m.frame_ms.to_string()),
+            of(&|m| mebibytes(m.memory_bytes)),
             of(&|m| m.worst.as_ref().map_or(String::new(), |w| w.frame.to_string())),
             of(&|m| text(m.voxels.as_ref().and_then(|v| v.recall))),
             of(&|m| text(m.voxels.as_ref().and_then(|v| v.precision))),
@@ -146,7 +154,7 @@ pub(super) fn frames(report: &Report) -> Result<String, LabError> {
     write(&lines)
 }
 
-fn write(lines: &[Vec<String>]) -> Result<String, LabError> {
+pub(super) fn write(lines: &[Vec<String>]) -> Result<String, LabError> {
     let failed = |e: String| LabError::Request(format!("cannot make the table: {e}"));
     let mut out = csv::Writer::from_writer(Vec::new());
     lines.iter().try_for_each(|l| out.write_record(l)).map_err(|e| failed(e.to_string()))?;

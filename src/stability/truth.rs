@@ -67,6 +67,9 @@ impl Truths {
         let mut experiment: Experiment = job.experiment.clone();
         experiment.camera = CameraChoice::Placed(moment.camera);
         experiment.time = moment.time;
+        if let Some((name, value)) = &moment.setting {
+            experiment.set(name, &value.to_string());
+        }
         // One seed for all frames: what noise they have is much the same, and goes out of their differences.
         experiment.set("seed", &self.tracing.seed.to_string());
         let scene = match moment.lights == job.scene.lights {

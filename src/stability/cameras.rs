@@ -1,0 +1,68 @@
+//! Cameras that do not move on from where they are: a cut to another one, a path from a file.
+
+use super::motion::Motion;
+use crate::camera_path::CameraPath;
+use crate::experiment::{Experiment, PlacedCamera};
+use crate::lab::{LabError, camera_of};
+use crate::scene::Scene;
+use std::path::Path;
+
+/// The cameras of a motion that has its own.
+#[derive(Clone, Debug)]
+pub enum Cameras {
+    /// Another camera from a frame on.
+    Cut {
+        /// That camera.
+        to: PlacedCamera,
+        /// Its first frame.
+        at: usize,
+    },
+    /// Along a path.
+    Path {
+        /// The path.
+        path: CameraPath,
+        /// Its time at frame 0, s.
+        from: f64,
+        /// Time from frame to frame, s.
+        step: f64,
+    },
+}
+
+impl Cameras {
+    /// Those of a motion; none of one that moves the experiment's own camera, or no camera at all.
+    ///
+    /// # Errors
+    /// No such camera in the scene; all mistakes of the path's file.
+    pub fn of(
+        motion: &Motion,
+        experiment: &Experiment,
+        scene: &Scene,
+        folder: &Path,
+    ) -> Result<Option<Cameras>, LabError> {
+        Ok(match motion {
+            Motion::Cut { to, at } => {
+                let there = Experiment { camera: to.clone(), ..experiment.clone() };
+                Some(Cameras::Cut { to: camera_of(&there, scene)?, at: *at })
+            }
+            Motion::Path { file, from, step } => {
+                let path = CameraPath::read(&folder.join(file)).map_err(LabError::Input)?;
+                Some(Cameras::Path { path, from: *from, step: *step })
+            }
+            _ => None,
+        })
+    }
+
+    /// The camera of a frame; `start` is the experiment's.
+    pub fn at(&self, start: &PlacedCamera, number: i64) -> PlacedCamera {
+        match self {
+            Cameras::Cut { to, at } => {
+                if number < *at as i64 {
+                    *start
+                } else {
+                    *to
+                }
+            }
+            Cameras::Path { path, from, step } => path.at(from + number as f64 * step),
+        }
+    }
+}

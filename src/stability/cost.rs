@@ -1,0 +1,241 @@
+//! What methods cost: GPU time and memory of the frames that make the picture and nothing else, one method after another in
+//! several rounds, so that a device whose clock drifts is as unfair to all. Of methods that are to be as fast as the first,
+//! every value of a parameter is timed, and the nearest taken.
+
+use super::file::{Method, Suite};
+use super::plan::{Job, Options, plan};
+use super::record::{json, lasting};
+use super::run::{Progress, cell_of, median, place};
+use super::wish::CostChart;
+use crate::lab::{Lab, LabError, Seed};
+use crate::measure::Warm;
+use crate::oracle;
+use crate::scene::Scene;
+use crate::vulkan::VulkanError;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// How often every candidate is timed.
+const ROUNDS: usize = 5;
+/// Frames before those that are timed, in each round.
+const WARMUP: i64 = 4;
+/// Frames that are timed, in each round.
+const FRAMES: i64 = 12;
+/// Version of `cost.json`.
+const SCHEMA: &str = "conelab-stability-cost-1";
+/// Largest `cost.json` that is read, bytes.
+const MAX_FILE: u64 = 16 << 20;
+
+/// A method at one value of the parameter.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// The value, RON; empty where nothing is varied.
+    pub value: String,
+    /// [`Job::work`].
+    pub work: String,
+    /// Sum of a frame's passes, ms: the median of each round.
+    pub ms: Vec<f64>,
+    /// The first method's in the same rounds.
+    pub first_ms: Vec<f64>,
+    /// Bytes of all resources of the graph.
+    pub memory_bytes: u64,
+    /// Why it could not be timed.
+    pub failed: Option<String>,
+}
+
+/// What a method costs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// The method.
+    pub method: String,
+    /// What is varied; empty where nothing is.
+    pub parameter: String,
+    /// [`Job::work`] of the first method.
+    pub first: String,
+    /// At every value, or the method as it is.
+    pub candidates: Vec<Candidate>,
+    /// The one that is nearest to the first method's time.
+    pub chosen: Option<usize>,
+}
+
+/// `cost.json`.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    schema: String,
+    costs: Vec<Cost>,
+}
+
+impl Candidate {
+    /// Median of the rounds, ms.
+    pub fn time(&self) -> Option<f64> {
+        (!self.ms.is_empty()).then(|| median(self.ms.clone()))
+    }
+
+    /// Its time over that of the first method: median of the rounds' ratios.
+    pub fn ratio(&self) -> Option<f64> {
+        let ratios: Vec<f64> = self.ms.iter().zip(&self.first_ms).map(|(own, first)| own / first).collect();
+        (!ratios.is_empty()).then(|| median(ratios)).filter(|r| r.is_finite() && *r > 0.0)
+    }
+}
+
+impl Cost {
+    /// The one that was taken.
+    pub fn taken(&self) -> Option<&Candidate> {
+        self.candidates.get(self.chosen?)
+    }
+
+    /// Takes the candidate whose time is nearest to the first's.
+    fn choose(&mut self) {
+        let far = |c: &Candidate| c.ratio().map(|r| r.ln().abs());
+        let timed = self.candidates.iter().enumerate().filter_map(|(i, c)| Some((i, far(c)?)));
+        self.chosen = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|c| c.0);
+    }
+}
+
+/// What all charted methods of a suite cost. What `cost.json` of the folder knows is taken from there, so that a suite that
+/// goes on goes on with the same choice.
+///
+/// # Errors
+/// What is wrong with the suite; no device; a method that can be timed at none of its values.
+pub(super) fn costs(
+    lab: &Lab,
+    warm: &mut Warm,
+    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    (suite, chart): (&Suite, &CostChart),
+    options: &Options,
+    tell: &mut dyn FnMut(Progress),
+) -> Result<Vec<Cost>, LabError> {
+    let charted = |m: &&Method| chart.groups.iter().any(|g| g.1.contains(&m.name));
+    let names: Vec<&Method> =
+        suite.methods.iter().take(1).chain(suite.methods.iter().skip(1).filter(charted)).collect();
+    // A suite of all candidates in one case: its plan checks every value, and gives each its number.
+    let variants = |method: &&Method| -> Vec<Method> {
+        let settings = chart.varied(&method.name);
+        let with = |s| Method { set: method.set.iter().chain([s]).cloned().collect(), ..Method::clone(method) };
+        if settings.is_empty() { vec![Method::clone(method)] } else { settings.iter().map(with).collect() }
+    };
+    let timed = Suite {
+        methods: names.iter().flat_map(variants).collect(),
+        cases: suite.cases.iter().find(|c| chart.motions.first() == Some(&c.name)).cloned().into_iter().collect(),
+        ..suite.clone()
+    };
+    let options = Options { only: Vec::new(), ..options.clone() };
+    let jobs = plan(&lab.home, &lab.gpu.info, open_scene, warm, &timed, &options)?;
+    let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
+    let path = options.folder.join("cost.json");
+    let kept = read(&path);
+    let mut costs: Vec<Cost> = Vec::new();
+    let mut todo: Vec<(usize, usize, &Job)> = Vec::new();
+    for method in &names {
+        let settings = chart.varied(&method.name);
+        let own = jobs.iter().filter(|j| j.method == method.name);
+        let texts = settings.iter().map(|s| s.text.clone()).chain(settings.is_empty().then(String::new));
+        let cost = Cost {
+            method: method.name.clone(),
+            parameter: settings.first().map_or(String::new(), |s| s.name.value.clone()),
+            first: first.work.clone(),
+            candidates: own
+                .clone()
+                .zip(texts)
+                .map(|(j, value)| Candidate { value, work: j.work.clone(), ..Candidate::default() })
+                .collect(),
+            chosen: None,
+        };
+        match kept.iter().find(|k| same(k, &cost)) {
+            Some(kept) => costs.push(kept.clone()),
+            None => {
+                todo.extend(own.enumerate().map(|(i, job)| (costs.len(), i, job)));
+                costs.push(cost);
+            }
+        }
+    }
+    if todo.is_empty() {
+        return Ok(costs);
+    }
+    let mut lent = HashMap::new();
+    let steps = ROUNDS * (todo.len() + 1);
+    for round in 0..ROUNDS {
+        let at = round * (todo.len() + 1);
+        tell(Progress::Times { method: &first.method, done: at, of: steps });
+        let first_cost = time(lab, warm, first, &mut lent)?;
+        let first_ms = first_cost.0;
+        for (i, (cost, candidate, job)) in todo.iter().enumerate() {
+            let candidate = &mut costs[*cost].candidates[*candidate];
+            if candidate.failed.is_some() {
+                continue;
+            }
+            tell(Progress::Times { method: &job.method, done: at + 1 + i, of: steps });
+            let cost = if job.work == first.work { Ok(first_cost) } else { time(lab, warm, job, &mut lent) };
+            match cost {
+                Ok((ms, bytes)) => {
+                    candidate.ms.push(ms);
+                    candidate.first_ms.push(first_ms);
+                    candidate.memory_bytes = bytes;
+                }
+                Err(lost @ LabError::Vulkan(VulkanError::Lost(_))) => return Err(lost),
+                Err(error) => {
+                    let why = error.to_string().lines().next().unwrap_or_default().to_string();
+                    *candidate = Candidate { failed: Some(why), ms: vec![], first_ms: vec![], ..candidate.clone() };
+                }
+            }
+        }
+    }
+    costs.iter_mut().filter(|c| c.chosen.is_none()).for_each(Cost::choose);
+    if let Some(cost) = costs.iter().find(|c| c.chosen.is_none() && !c.parameter.is_empty()) {
+        let why = cost.candidates.iter().find_map(|c| c.failed.as_deref()).unwrap_or("it takes no time at all");
+        return Err(LabError::Request(format!("'{}' could be timed at no {}: {why}", cost.method, cost.parameter)));
+    }
+    lasting(&path, &json(&Kept { schema: SCHEMA.into(), costs: costs.clone() })?)?;
+    // As the next run will read it, to the last place.
+    Ok(Some(read(&path)).filter(|k| k.len() == costs.len()).unwrap_or(costs))
+}
+
+/// Whether what was kept is of the same candidates.
+fn same(kept: &Cost, wanted: &Cost) -> bool {
+    let list = |c: &Cost| c.candidates.iter().map(|c| (c.value.clone(), c.work.clone())).collect::<Vec<_>>();
+    let head = |c: &Cost| (c.method.clone(), c.parameter.clone(), c.first.clone());
+    kept.taken().is_some_and(|c| c.ratio().is_some()) && head(kept) == head(wanted) && list(kept) == list(wanted)
+}
+
+/// What is kept; folders may come from anywhere, and what is no such file is nothing.
+fn read(path: &Path) -> Vec<Cost> {
+    let small = std::fs::metadata(path).is_ok_and(|m| m.len() <= MAX_FILE);
+    let bytes = small.then(|| std::fs::read(path).ok()).flatten().unwrap_or_default();
+    let kept = serde_json::from_slice::<Kept>(&bytes).ok().filter(|k| k.schema == SCHEMA);
+    kept.map_or(Vec::new(), |k| k.costs)
+}
+
+/// The suite with what was chosen.
+pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite {
+    let mut suite = suite.clone();
+    for method in &mut suite.methods {
+        let cost = costs.iter().find(|c| c.method == method.name);
+        let setting = cost.and_then(|c| chart.varied(&method.name).get(c.chosen?));
+        method.set.extend(setting.cloned());
+    }
+    suite
+}
+
+/// Median of a job's frames, ms, and the bytes of its resources. Every session is a new one: memory holds one at a time.
+fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>) -> Result<(f64, u64), LabError> {
+    let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
+    let mut wanted: Vec<String> = loaded.graph.output.iter().chain(&loaded.graph.hdr).take(1).cloned().collect();
+    if job.case.motion.in_voxels() {
+        wanted.extend(oracle::wanted(&loaded.graph)?);
+    }
+    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, lent.get(&job.method))?;
+    let cell = cell_of(&mut session, job)?;
+    let mut lights = job.scene.lights.clone();
+    let mut times = Vec::new();
+    for number in -WARMUP..FRAMES {
+        place(lab, &mut session, job, number, cell, &mut lights)?;
+        times.extend(session.frame(job.case.motion.delta())?);
+    }
+    times.extend(session.finish()?);
+    let frames = times.split_off(times.len().saturating_sub(FRAMES as usize));
+    let sums = frames.iter().map(|t| t.passes.iter().map(|p| p.1).sum()).collect();
+    let bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
+    lent.insert(job.method.clone(), session.lend());
+    Ok((median(sums), bytes))
+}

@@ -1,0 +1,78 @@
+//! A parameter that moves from frame to frame.
+
+use super::motion::Motion;
+use crate::graph::param::{Param, Params, Value};
+
+/// A motion's parameter with its values.
+#[derive(Clone, Debug)]
+pub struct Moved {
+    /// Its name.
+    pub name: String,
+    start: Value,
+    way: Way,
+}
+
+#[derive(Clone, Debug)]
+enum Way {
+    /// Added to the start, a frame.
+    Step(Vec<f64>),
+    /// Of the measured frames.
+    Values(Vec<Value>),
+}
+
+impl Moved {
+    /// The parameter of a motion among those of an experiment, with values for `frames` frames after `warmup` others; none
+    /// of another motion.
+    ///
+    /// # Errors
+    /// No such parameter, one that is not only read by shaders, values that it cannot have: the text for the user.
+    pub fn of(motion: &Motion, params: &Params, warmup: usize, frames: usize) -> Result<Option<Moved>, String> {
+        let Motion::Parameter { name, step, values } = motion else { return Ok(None) };
+        let mut own = params.clone();
+        // The graph's own message, with the nearest name.
+        let (Some(param), Some(start)) = (params.index(name).map(|i| &params.list[i]), params.get(name)) else {
+            return Err(own.set(name, "0").err().unwrap_or_default());
+        };
+        if param.constant {
+            return Err(format!("'{name}' is compiled into the shaders and cannot move"));
+        }
+        let way = match step {
+            Some(step) if values.is_empty() => Way::Step(numbers(param, &step.0)?),
+            None if !values.is_empty() => {
+                Way::Values(values.iter().map(|v| param.parse(&v.0)).collect::<Result<_, String>>()?)
+            }
+            _ => return Err(format!("a motion of '{name}' needs either a `step` or `values`")),
+        };
+        let moved = Moved { name: name.clone(), start: start.clone(), way };
+        for number in [-(warmup as i64), frames as i64 - 1] {
+            param.check(&moved.at(number)).map_err(|e| format!("at frame {number}: {e}"))?;
+        }
+        Ok(Some(moved))
+    }
+
+    /// The value at a frame; see [`Motion::moment`].
+    pub fn at(&self, number: i64) -> Value {
+        match (&self.way, &self.start) {
+            (Way::Values(list), _) => {
+                let last = list.len().saturating_sub(1);
+                let index = usize::try_from(number).unwrap_or(0).min(last);
+                list.get(index).unwrap_or(&self.start).clone()
+            }
+            (Way::Step(step), Value::Float(v)) => Value::Float(v + number as f64 * step.first().unwrap_or(&0.0)),
+            (Way::Step(step), Value::Vector(v)) => {
+                Value::Vector(v.iter().zip(step).map(|(v, s)| v + number as f64 * s).collect())
+            }
+            (Way::Step(_), other) => other.clone(),
+        }
+    }
+}
+
+/// A step: a value of the parameter's kind, without its range.
+fn numbers(param: &Param, text: &str) -> Result<Vec<f64>, String> {
+    let free = Param { range: None, ..param.clone() };
+    match free.parse(text)? {
+        Value::Float(v) => Ok(vec![v]),
+        Value::Vector(v) => Ok(v),
+        _ => Err(format!("'{}' has no steps: give its `values`", param.name)),
+    }
+}
