@@ -203,7 +203,7 @@ fn a_cut_and_a_path() {
     let home = home();
     let path = home.path().join("turn.ron");
     std::fs::write(&path, "(keys: [(time: 0, eye: (0, 1.5, 2.5), target: (0, 1, 0), fov_y: 60), (time: 1, eye: (1, 1.5, 2.5), target: (0, 1, 0), fov_y: 60)])").unwrap();
-    let methods = "\"uniform\": {}, \"filtered\": { \"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"volume_snap\": false, \"temporal\": true }";
+    let methods = "\"uniform\": {}, \"filtered\": { \"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"volume_snap\": \"off\", \"temporal\": true }";
     let to = "(eye: (0.9, 1.4, 1.9), target: (0, 1, -1), fov_y: 60)";
     let cases = format!(
         "\"cut\": (warmup: 2, frames: 40, motion: Cut(to: {to}, at: 2)), \
@@ -253,7 +253,7 @@ fn references_know_what_moved() {
 fn a_parameter_moves() {
     let home = home();
     let volume = "\"volume\": \"camera\", \"volume_size\": (10, 10, 10)";
-    let methods = format!("\"snapped\": {{ {volume} }}, \"free\": {{ {volume}, \"volume_snap\": false }}");
+    let methods = format!("\"snapped\": {{ {volume}, \"volume_snap\": \"voxel\" }}, \"free\": {{ {volume}, \"volume_snap\": \"off\" }}");
     let cases = "\"volume\": (warmup: 0, frames: 12, motion: Parameter(name: \"volume_offset\", step: (0.03, 0, 0))), \
                  \"back\": (warmup: 2, frames: 3, motion: Parameter(name: \"volume_offset\", values: [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])), \
                  \"twice\": (frames: 3, motion: Parameter(name: \"indirect_scale\", values: [1, 2, 2]))";
@@ -327,7 +327,7 @@ fn equal_cost() {
     assert!((number("large", "diffuse E_t") - ((moving[0].powi(2) + moving[1].powi(2)) / 2.0).sqrt()).abs() < 1e-12);
     assert!(number("large", "memory MiB") > 4.0 * number("first", "memory MiB"));
     assert!(value(&results, "still", "large", "memory MiB").unwrap() >= number("large", "memory MiB"));
-    // All values were timed, the nearest was taken, and the cases ran with it.
+    // The two values next to the first method's time were timed, the nearer was taken, and the cases ran with it.
     let json: serde_json::Value = serde_json::from_str(&out("stability.json")).unwrap();
     let fitted = json["costs"].as_array().unwrap().iter().find(|c| c["method"] == "fitted").unwrap();
     let median = |list: &serde_json::Value, first: &serde_json::Value| {
@@ -337,13 +337,16 @@ fn equal_cost() {
         ratios[ratios.len() / 2]
     };
     let candidates = fitted["candidates"].as_array().unwrap();
-    let off: Vec<f64> = candidates.iter().map(|c| median(&c["ms"], &c["first_ms"]).ln().abs()).collect();
+    let timed: Vec<usize> = (0..3).filter(|i| !candidates[*i]["ms"].as_array().unwrap().is_empty()).collect();
+    assert!(timed == [0, 1] || timed == [1, 2], "{timed:?}");
+    let off = |i: usize| median(&candidates[i]["ms"], &candidates[i]["first_ms"]).ln().abs();
     let chosen = fitted["chosen"].as_u64().unwrap() as usize;
-    assert!(candidates.len() == 3 && off.iter().all(|o| *o >= off[chosen]), "{off:?}, chosen {chosen}");
+    assert!(timed.contains(&chosen) && timed.iter().all(|i| off(*i) >= off(chosen)), "{timed:?}, chosen {chosen}");
     assert_eq!(cell("fitted", "setting"), format!("voxel_dim = {}", [16, 48, 96][chosen]));
     let sizes = [16u64, 48, 96].map(|d| d.pow(3)).into_iter().collect::<Vec<_>>();
     let memory = |i: usize| candidates[i]["memory_bytes"].as_u64().unwrap();
-    assert!(memory(2) - memory(0) > 4 * (sizes[2] - sizes[0]), "bytes grow with the voxels");
+    let (a, b) = (timed[0], timed[1]);
+    assert!(memory(b) - memory(a) > 4 * (sizes[b] - sizes[a]), "bytes grow with the voxels");
     let svg = out("charts/cost.svg");
     assert!(["as they are", "equal time", "first", "large", "fitted"].iter().all(|t| svg.contains(t)));
     assert!(out("index.html").contains(&svg) && out("index.html").contains("What stability costs"));

@@ -182,6 +182,15 @@ bool inGrid(ivec3 cell) {
     return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(params.voxel_dim)));
 }
 
+// Towards a block's border, over so many cells of a level, lookups turn into the next block's.
+const float BLEND_CELLS = 6.0;
+
+float shareOfBlock(vec3 u, float lod) {
+    vec3 inside = min(u, 1.0 - u);
+    if (WARP == WARP_SPHERICAL) inside.xy = vec2(1.0); // no borders there
+    return clamp(min(inside.x, min(inside.y, inside.z)) * float(params.voxel_dim) / (BLEND_CELLS * exp2(max(lod, 0.0))), 0.0, 1.0);
+}
+
 // Whether a place in cells is one whose content stays as it was.
 bool isKept(Grid g, vec3 at) {
     return all(greaterThan(at, vec3(g.kept_from))) && all(lessThan(at, vec3(g.kept_to)));
