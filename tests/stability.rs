@@ -253,7 +253,9 @@ fn references_know_what_moved() {
 fn a_parameter_moves() {
     let home = home();
     let volume = "\"volume\": \"camera\", \"volume_size\": (10, 10, 10)";
-    let methods = format!("\"snapped\": {{ {volume}, \"volume_snap\": \"voxel\" }}, \"free\": {{ {volume}, \"volume_snap\": \"off\" }}");
+    let methods = format!(
+        "\"snapped\": {{ {volume}, \"volume_snap\": \"voxel\" }}, \"free\": {{ {volume}, \"volume_snap\": \"off\" }}"
+    );
     let cases = "\"volume\": (warmup: 0, frames: 12, motion: Parameter(name: \"volume_offset\", step: (0.03, 0, 0))), \
                  \"back\": (warmup: 2, frames: 3, motion: Parameter(name: \"volume_offset\", values: [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])), \
                  \"twice\": (frames: 3, motion: Parameter(name: \"indirect_scale\", values: [1, 2, 2]))";

@@ -20,6 +20,8 @@ enum Shape {
     Box(fn(f64) -> f64),
     /// The view frustum, depth linear in metres.
     Frustum,
+    /// Azimuth, angle from the vertical, logarithm of the distance.
+    Sphere,
 }
 
 struct Warp {
@@ -28,7 +30,7 @@ struct Warp {
     shape: Shape,
 }
 
-const WARPS: [Warp; 8] = [
+const WARPS: [Warp; 9] = [
     Warp { title: "none", set: &[], shape: Shape::Box(|x| x) },
     Warp { title: "spline .05", set: &[SPLINE, ("warp_alpha", "0.05")], shape: Shape::Box(|x| spline(0.05, x)) },
     Warp { title: "spline .25", set: &[SPLINE, ("warp_alpha", "0.25")], shape: Shape::Box(|x| spline(0.25, x)) },
@@ -41,6 +43,7 @@ const WARPS: [Warp; 8] = [
         shape: Shape::Box(|x| logistic(20.0, x)),
     },
     Warp { title: "perspective", set: &[("warp", "perspective")], shape: Shape::Frustum },
+    Warp { title: "spherical", set: &[("warp", "spherical")], shape: Shape::Sphere },
 ];
 
 const SPLINE: (&str, &str) = ("warp", "spline");
@@ -96,8 +99,8 @@ struct End { vec4 at, image, past; };
 layout(std430) writeonly buffer Told { Row rows[100000]; Step line[3 * 4096]; End ends[27]; vec4 density[3]; } told;
 const float STEP = 0.01; // m
 
-vec3 forward(vec3 p) { return worldToVolume(volume.grid, p); }
-vec3 world(vec3 u) { return volumeToWorld(volume.grid, u); }
+vec3 forward(vec3 p) { return worldToVolume(volume.grids[0], p); }
+vec3 world(vec3 u) { return volumeToWorld(volume.grids[0], u); }
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
@@ -105,9 +108,9 @@ void main() {
     Random random = Random(uvec4(i, 7u, 0u, 1u));
     vec3 u = next4(random).xyz, r = next4(random).xyz;
     // Everywhere in the world's part, not only where cells are dense.
-    vec3 p = WARP == WARP_PERSPECTIVE ? world(r) : mix(world(vec3(0.0)), world(vec3(1.0)), r);
+    vec3 p = CURVED ? world(r) : mix(world(vec3(0.0)), world(vec3(1.0)), r);
     vec3 image = forward(p);
-    mat3 axes = cellAxes(volume.grid, p);
+    mat3 axes = cellAxes(volume.grids[0], p);
     vec3 d[3], inside = vec3(1.0);
     for (int a = 0; a < 3; a++) {
         vec3 before = p, after = p;
@@ -116,6 +119,8 @@ void main() {
         d[a] = (forward(after) - forward(before)) / (after[a] - before[a]);
         if (!inVolume(forward(before)) || !inVolume(forward(after))) inside = vec3(0.0);
     }
+    // Not where spheres have their seam and their poles.
+    if (WARP == WARP_SPHERICAL && (abs(image.x - 0.5) > 0.45 || abs(image.y - 0.5) > 0.35)) inside = vec3(0.0);
     told.rows[i] = Row(vec4(u, 0.0), vec4(forward(world(u)), 0.0), vec4(p, 0.0), vec4(image, 0.0), vec4(world(image), 0.0),
         vec4(axes[0], 0.0), vec4(axes[1], 0.0), vec4(axes[2], 0.0), vec4(d[0], 0.0), vec4(d[1], 0.0), vec4(d[2], 0.0), vec4(inside, 0.0));
     if (i < 3u * 4096u) {
@@ -131,7 +136,7 @@ void main() {
     if (i < 3u) {
         vec3 at = world(vec3(0.5));
         at.x = mix(world(vec3(0.0)).x, world(vec3(1.0)).x, params.density_at[i]);
-        told.density[i] = vec4(densityColor(volume.grid, at), 0.0);
+        told.density[i] = vec4(densityColor(volume.grids[0], at), 0.0);
     }
 }
 ";
@@ -211,6 +216,11 @@ fn place(warp: &Warp, camera: &PlacedCamera, u: DVec3) -> DVec3 {
             let across = (2.0 * u.x - 1.0) * right + (2.0 * u.y - 1.0) * ahead.cross(right);
             eye + (0.5 + (FAR - 0.5) * u.z) * (ahead + half * across)
         }
+        Shape::Sphere => {
+            let (around, down) = (2.0 * std::f64::consts::PI * (u.x - 0.5), std::f64::consts::PI * u.y);
+            let way = DVec3::new(down.sin() * around.cos(), down.cos(), down.sin() * around.sin());
+            eye + 0.5 * (FAR / 0.5).powf(u.z) * way
+        }
     }
 }
 
@@ -228,7 +238,12 @@ fn every_warp_is_a_bijection() {
 
             let mut worst = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
             for [u, back, p, image, again, a0, a1, a2, ..] in &told.rows {
-                worst.0 = worst.0.max((*back - *u).abs().max_element());
+                let mut off = (*back - *u).abs();
+                if let Shape::Sphere = warp.shape {
+                    // The first azimuth is the last, and towards the poles it is less and less of a way.
+                    off.x = off.x.min(1.0 - off.x) * (std::f64::consts::PI * u.y).sin();
+                }
+                worst.0 = worst.0.max(off.max_element());
                 let away = (*p - *again).abs().max_element() / size;
                 worst.1 = worst.1.max(away);
                 // No formula gets nearer than half a float's step in the volume, in the world (and those of the world).
@@ -251,13 +266,22 @@ fn every_warp_is_a_bijection() {
 
             for (axis, line) in told.lines.as_chunks::<LINE>().0.iter().enumerate() {
                 let whole = line[LINE - 1][0] - line[0][0];
-                let rises = |w: &[[DVec3; 2]]| (w[1][0] - w[0][0]).dot(whole) > 0.0 && w[1][1][axis] >= w[0][1][axis];
+                let circle = matches!(warp.shape, Shape::Sphere) && axis < 2;
+                let rises = |w: &[[DVec3; 2]]| {
+                    (circle || (w[1][0] - w[0][0]).dot(whole) > 0.0) && w[1][1][axis] >= w[0][1][axis]
+                };
+                // Around the whole circle back to where it begins.
+                let line = if circle { &line[1..LINE - 1] } else { &line[..] };
                 assert!(line.windows(2).all(rises), "{title}: not monotonic along axis {axis}");
             }
             for (i, [at, image, past]) in told.ends.iter().enumerate() {
                 let end = 0.5 * DVec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64);
                 let off = at.distance(place(warp, &camera, end)) / size;
                 assert!(off < 2e-6, "{title}: {end} lies at {at}, {off} of the size off");
+                if let Shape::Sphere = warp.shape {
+                    assert!((image.z - end.z).abs() <= 1e-5, "{title}: {end} comes back as {image}");
+                    continue;
+                }
                 assert!((*image - end).abs().max_element() <= 1e-5, "{title}: {end} comes back as {image}");
                 let outside = past.min_element() < 0.0 || past.max_element() > 1.0;
                 assert!(outside || end == DVec3::splat(0.5), "{title}: past {end} is {past}, inside");
