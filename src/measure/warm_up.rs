@@ -62,7 +62,9 @@ mod tests {
     }
 
     fn device(kind: &'static str, timestamp_ns: f64) -> DeviceInfo {
-        DeviceInfo { kind, timestamp_ns, ..DeviceInfo::imaginary(Features::default()) }
+        let mut device = DeviceInfo::imaginary(Features::default());
+        (device.kind, device.timestamp_ns) = (kind, timestamp_ns);
+        device
     }
 
     #[test]
