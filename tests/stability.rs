@@ -430,15 +430,33 @@ fn a_sheet_of_failures() {
     assert!(wrong.contains(".jpg"), "{wrong}");
 }
 
-/// The shipped suites are right, and two of the failures are as the physics says.
+/// The shipped suites are right and run, small: every motion with every method, the courtyard with two, and two of the
+/// failures are as the physics says.
 #[test]
 fn shipped_suites() {
     let home = home();
-    for name in ["motion", "failures", "cost"] {
+    for name in ["motion", "failures", "cost", "atrium"] {
         let path = root().join(format!("configs/stability/{name}.ron"));
-        assert!(Suite::read(&path).unwrap().cases.len() >= 5);
+        assert!(Suite::read(&path).unwrap().cases.len() >= 4);
         succeeds(conelab(home.path()).arg("check").arg(path));
     }
+    let small = ["--size", "24x18", "--frames", "2", "--spp", "32", "--set", "voxel_dim=24", "--set", "shadow_dim=256"];
+    let all = |suite: &str, more: &[&str]| {
+        let file = root().join(format!("configs/stability/{suite}.ron"));
+        succeeds(&mut stability(home.path(), &file, suite, &[&small[..], more].concat()));
+        let rows = table(&home.path().join(suite).join("stability.csv"));
+        assert!(rows.iter().all(|r| r["error"].is_empty()), "{suite}: {rows:?}");
+        rows
+    };
+    let motion = all("motion", &[]);
+    let number = |r: &BTreeMap<String, String>, column: &str| r[column].parse::<f64>().unwrap();
+    for row in motion.iter().filter(|r| r["case"] == "still") {
+        assert_eq!(number(row, "total E_t"), 0.0, "{}: nothing moves", row["method"]);
+    }
+    let yaw = |method: &str| number(motion.iter().find(|r| r["case"] == "yaw" && r["method"] == method).unwrap(), "diffuse E_t");
+    assert!(yaw("spherical warp") < yaw("perspective warp"), "cells that do not turn with the camera flicker less");
+    all("atrium", &["--only", "still", "--methods", "spherical warp,three cascades"]);
+
     let file = root().join("configs/stability/failures.ron");
     let more = ["--size", "40x30", "--spp", "32", "--set", "voxel_dim=32", "--only", "volume off the scene,thin walls"];
     succeeds(&mut stability(home.path(), &file, "out", &more));
