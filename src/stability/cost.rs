@@ -10,7 +10,7 @@ use super::wish::CostChart;
 use crate::lab::{Lab, LabError, Seed};
 use crate::measure::Warm;
 use crate::oracle;
-use crate::scene::Scene;
+use crate::sweep::Lister;
 use crate::vulkan::VulkanError;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -100,8 +100,8 @@ impl Cost {
 /// What is wrong with the suite; no device; a method that can be timed at none of its values.
 pub(super) fn costs(
     lab: &Lab,
+    lister: &mut Lister,
     warm: &mut Warm,
-    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
     (suite, chart): (&Suite, &CostChart),
     options: &Options,
     tell: &mut dyn FnMut(Progress),
@@ -110,18 +110,13 @@ pub(super) fn costs(
     let names: Vec<&Method> =
         suite.methods.iter().take(1).chain(suite.methods.iter().skip(1).filter(charted)).collect();
     // A suite of all candidates in one case: its plan checks every value, and gives each its number.
-    let variants = |method: &&Method| -> Vec<Method> {
-        let settings = chart.varied(&method.name);
-        let with = |s| Method { set: method.set.iter().chain([s]).cloned().collect(), ..Method::clone(method) };
-        if settings.is_empty() { vec![Method::clone(method)] } else { settings.iter().map(with).collect() }
-    };
     let timed = Suite {
-        methods: names.iter().flat_map(variants).collect(),
+        methods: names.iter().flat_map(|m| chart.variants(m)).collect(),
         cases: suite.cases.iter().find(|c| chart.motions.first() == Some(&c.name)).cloned().into_iter().collect(),
         ..suite.clone()
     };
     let options = Options { only: Vec::new(), ..options.clone() };
-    let jobs = plan(&lab.home, &lab.gpu.info, open_scene, warm, &timed, &options)?;
+    let jobs = plan(&lab.home, &lab.gpu.info, lister, warm, &timed, &options)?;
     let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
     let path = options.folder.join("cost.json");
     let kept = read(&path);

@@ -300,7 +300,7 @@ fn draw(wish: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
                 chart.draw_series([Circle::new(at, 5, inside), Circle::new(at, 5, color.stroke_width(2))])?;
                 // Labels stand beside their dots, below those of dots that are close.
                 let dot = chart.backend_coord(&at);
-                let near = placed.iter().filter(|p| (p.0 - dot.0).abs() < 150);
+                let near = placed.iter().filter(|p| (p.0 - dot.0).abs() < 200);
                 let line = near.map(|p| p.1 + LABEL).fold(dot.1, i32::max);
                 placed.push((dot.0, line));
                 let (left, width) = (panel.get_pixel_range().0.start, panel.dim_in_pixel().0);
