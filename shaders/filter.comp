@@ -3,6 +3,7 @@
 // One mip of the radiance from the finer one (thesis, Section 4.4). Texels are premultiplied by opacity, so
 // a plain mean is right. Odd sizes use three taps with the weights of the exact box.
 #include "params.glsl"
+#include "volume.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -30,9 +31,13 @@ vec4 box(ivec3 cell, ivec3 n, ivec3 m) {
 vec4 tent(ivec3 cell, ivec3 m, ivec3 n) {
     vec3 texel = 1.0 / vec3(n);
     vec3 at = (vec3(cell) + 0.5) / vec3(m);
+    // Blocks lie one behind the other along z.
+    float block = float(cell.z * BLOCKS / m.z), low = block / float(BLOCKS) + 0.5 * texel.z, high = (block + 1.0) / float(BLOCKS) - 0.5 * texel.z;
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < 8; i++)
-        sum += textureLod(src, at + texel * 0.75 * (vec3(i & 1, i >> 1 & 1, i >> 2) * 2.0 - 1.0), 0.0);
+    for (int i = 0; i < 8; i++) {
+        vec3 tap = at + texel * 0.75 * (vec3(i & 1, i >> 1 & 1, i >> 2) * 2.0 - 1.0);
+        sum += textureLod(src, vec3(tap.xy, clamp(tap.z, low, high)), 0.0);
+    }
     return sum / 8.0;
 }
 

@@ -49,8 +49,9 @@ void main() {
     n = dot(n, n) > 0.25 ? normalize(n) : vec3(0.0);
     float agreement = params.inject_facing == INJECT_FACING_SPREAD ? packed.a : 1.0;
 
-    vec3 center = volumeToWorld(volume.grid, (vec3(cell) + 0.5) / float(params.voxel_dim));
-    mat3 axes = cellAxes(volume.grid, center);
+    Grid g = volume.grids[blockOf(cell)];
+    vec3 center = volumeToWorld(g, cellCentre(cell));
+    mat3 axes = cellAxes(g, center);
     vec3 irradiance = vec3(0.0);
     for (uint i = 0; i < sceneInfo.light_count; i++) {
         Light light = lights.lights[i];

@@ -9,19 +9,29 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 uniform sampler3D voxelLight; // this frame's
 uniform sampler3D lastHistory;
-layout(std430) readonly buffer LastVolume { Grid grid; uint frames; } lastVolume;
+layout(std430) readonly buffer LastVolume { Grid grids[MAX_BLOCKS]; uint frames; } lastVolume;
 uniform writeonly image3D voxelHistory;
 uniform writeonly image3D voxelRadiance;
 
+// A camera that jumps has cut: what lies where it is now was not looked at before, or from farther.
+bool isCut(Grid g, Grid last) {
+    return distance(g.eye, last.eye) > params.temporal_cut;
+}
+
 void main() {
     ivec3 cell = ivec3(gl_GlobalInvocationID);
-    if (!inGrid(cell)) return;
+    int block = blockOf(cell);
+    if (any(greaterThanEqual(cell, imageSize(voxelHistory)))) return;
     vec4 value = texelFetch(voxelLight, cell, 0);
-    if (lastVolume.frames > 0) {
-        vec3 center = (vec3(cell) + 0.5) / float(params.voxel_dim);
-        vec3 u = worldToVolume(lastVolume.grid, volumeToWorld(volume.grid, center));
+    Grid g = volume.grids[block], last = lastVolume.grids[block];
+    if (lastVolume.frames > 0 && !isCut(g, last)) {
+        vec3 u = worldToVolume(last, volumeToWorld(g, cellCentre(cell)));
         // A volume that moved by whole voxels finds its cell's centre again, to rounding.
-        if (inVolume(u)) value = mix(value, textureLod(lastHistory, u, 0.0), params.temporal_factor);
+        if (inVolume(u)) {
+            float half_cell = 0.5 / float(params.voxel_dim);
+            u.z = (float(block) + clamp(u.z, half_cell, 1.0 - half_cell)) / float(BLOCKS);
+            value = mix(value, textureLod(lastHistory, u, 0.0), params.temporal_factor);
+        }
     }
     value = mix(vec4(0.0), value, greaterThan(value, vec4(1e-6))); // let the tail die: halves slow down near 0
     imageStore(voxelHistory, cell, value);

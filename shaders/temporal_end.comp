@@ -6,9 +6,9 @@
 
 layout(local_size_x = 1) in;
 
-layout(std430) buffer LastVolume { Grid grid; uint frames; } lastVolume;
+layout(std430) buffer LastVolume { Grid grids[MAX_BLOCKS]; uint frames; } lastVolume;
 
 void main() {
-    lastVolume.grid = volume.grid;
+    lastVolume.grids = volume.grids;
     lastVolume.frames = min(lastVolume.frames, 0xfffffffeu) + 1;
 }

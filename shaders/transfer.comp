@@ -3,6 +3,7 @@
 // Transfer of opacity into the radiance texture (thesis, Section 4.3), before the lit voxels are written;
 // emission comes along.
 #include "params.glsl"
+#include "volume.glsl"
 #include "voxels.glsl"
 
 layout(local_size_x = 128) in;

@@ -5,38 +5,93 @@
 #include "params.glsl"
 #include "scene.glsl"
 #include "volume.glsl"
+#include "voxels.glsl"
 
 layout(local_size_x = 1) in;
 
+// Coarsest level that halves evenly, as levels by direction and stacked blocks need it.
+float coarsestLevel(bool moves) {
+    int levels = DIRECTIONAL || BLOCKS > 1 ? findLSB(params.voxel_dim) : findMSB(params.voxel_dim);
+    // A block that moves in steps of its coarsest level must not do so in steps of half its own edge.
+    if (moves && params.volume_snap == VOLUME_SNAP_LEVEL) levels = min(levels, findMSB(params.voxel_dim) - 2);
+    return float(clamp(levels, 0, params.voxel_mips - 1));
+}
+
+// Around the camera, moved by whole cells of a level: by whole voxels, filtered levels still change.
+Grid boxAround(vec3 p, vec3 size, Grid g) {
+    g.size = size;
+    g.cell = size / float(params.voxel_dim);
+    g.last = coarsestLevel(true);
+    if (params.volume_snap != VOLUME_SNAP_OFF) {
+        vec3 unit = g.cell * (params.volume_snap == VOLUME_SNAP_LEVEL ? exp2(g.last) : 1.0);
+        p = floor(p / unit + 0.5) * unit;
+    }
+    g.minimum = p - 0.5 * size;
+    return g;
+}
+
+// The cells whose content of the last frame is still right: none unless scrolling, and none where anything else changed.
+Grid keep(Grid g, Grid last, bool still) {
+    g.shift = g.kept_from = g.kept_to = ivec3(0);
+    if (!still || g.curved != 0 || last.curved != 0 || any(notEqual(g.cell, last.cell))) return g;
+    vec3 cells = (g.minimum - last.minimum) / g.cell;
+    if (any(greaterThan(abs(cells), vec3(params.voxel_dim))) || any(greaterThan(abs(cells - round(cells)), vec3(1e-2)))) return g;
+    g.shift = ivec3(round(cells));
+    g.kept_from = max(ivec3(0), -g.shift);
+    g.kept_to = params.voxel_dim - max(ivec3(0), g.shift);
+    return g;
+}
+
+bool sceneIsStill() {
+    for (uint i = 0; i < sceneInfo.instance_count; i++)
+        if (instances.instances[i].model != instances.instances[i].previous_model) return false;
+    return true;
+}
+
 void main() {
     float dim = float(params.voxel_dim);
-    vec3 eye = camera.position + params.volume_offset;
+    vec3 position = camera.position + params.volume_offset;
+    Grid g;
+    g.curved = 0;
+    g.eye = position;
+    vec3 right = normalize(cross(camera.direction, camera.up));
+    float half_height = tan(0.5 * camera.fov_y);
+    g.axis_x = right * half_height * float(camera.size.x) / float(camera.size.y);
+    g.axis_y = cross(camera.direction, right) * half_height;
+    g.axis_z = camera.direction;
+    g.range = vec2(params.warp_near, max(params.warp_far, params.warp_near + 0.1));
+    g.last = coarsestLevel(false);
+
+    // The last block is the volume itself.
+    Grid whole = g;
+    whole.size = params.volume_size;
     vec3 center = params.volume_center;
-    vec3 size = params.volume_size;
     if (params.volume == VOLUME_SCENE) {
         // The smallest cube around the scene, 2.5 voxels wider on each side: the outermost faces then run
         // through the middle of cells instead of along their borders, where rounding would decide.
         vec3 extent = sceneInfo.bounds_max - sceneInfo.bounds_min;
         center = 0.5 * (sceneInfo.bounds_min + sceneInfo.bounds_max);
-        size = vec3(max(max(extent.x, max(extent.y, extent.z)), 1e-3) * dim / (dim - 5.0));
+        whole.size = vec3(max(max(extent.x, max(extent.y, extent.z)), 1e-3) * dim / (dim - 5.0));
     }
-    vec3 cell = size / dim;
-    if (params.volume == VOLUME_CAMERA) {
-        center = eye;
-        if (params.volume_snap) center = floor(center / cell + 0.5) * cell;
+    whole.cell = whole.size / dim;
+    whole.minimum = center - 0.5 * whole.size;
+    if (params.volume == VOLUME_CAMERA) whole = boxAround(position, whole.size, g);
+
+    bool still = VOLUME_SCROLL && voxelCounter.signature == voxelSignature() && voxelCounter.overflow == 0 && sceneIsStill();
+    for (int k = 0; k < BLOCKS; k++) {
+        Grid block = k == BLOCKS - 1 ? whole : boxAround(position, whole.size * exp2(float(k - BLOCKS + 1)), g);
+        if (CURVED && k == 0) {
+            block = g;
+            block.curved = 1;
+            block.size = whole.size;
+            block.cell = whole.cell;
+            block.minimum = whole.minimum;
+            // A sphere turns with nothing, and need not move with every step of the camera either.
+            if (WARP == WARP_SPHERICAL && params.volume_snap != VOLUME_SNAP_OFF) {
+                vec3 unit = whole.cell * exp2(1.0);
+                block.eye = floor(position / unit + 0.5) * unit;
+            }
+        }
+        volume.grids[k] = keep(block, volume.grids[k], still);
     }
-
-    vec3 right = normalize(cross(camera.direction, camera.up));
-    vec3 down = cross(camera.direction, right);
-    float half_height = tan(0.5 * camera.fov_y);
-    float half_width = half_height * float(camera.size.x) / float(camera.size.y);
-
-    volume.grid.minimum = center - 0.5 * size;
-    volume.grid.size = size;
-    volume.grid.cell = cell;
-    volume.grid.eye = eye;
-    volume.grid.axis_x = right * half_width;
-    volume.grid.axis_y = down * half_height;
-    volume.grid.axis_z = camera.direction;
-    volume.grid.range = vec2(params.warp_near, max(params.warp_far, params.warp_near + 0.1));
 }

@@ -3,6 +3,7 @@
 // Clears the voxels that last frame's list names: clearing the whole volume would cost more than voxelizing.
 #define SLOTS_ACCESS
 #include "params.glsl"
+#include "volume.glsl"
 #include "voxels.glsl"
 
 layout(local_size_x = 128) in;

@@ -15,8 +15,8 @@ vec3 cellColor(ivec3 cell, vec3 center, int face) {
     vec4 radiance = shownTexel(cell, face);
     if (params.voxel_view == VOXEL_VIEW_RADIANCE) return radiance.rgb / max(radiance.a, 1e-4);
     if (params.voxel_view == VOXEL_VIEW_ALPHA) return vec3(radiance.a);
-    if (params.voxel_view == VOXEL_VIEW_DENSITY) return densityColor(volume.grid, volumeToWorld(volume.grid, center));
-    vec4 mean = texelFetch(shown, cell, 0);
+    if (params.voxel_view == VOXEL_VIEW_DENSITY) return densityColor(volume.grids[shownBlock()], volumeToWorld(volume.grids[shownBlock()], center));
+    vec4 mean = texelFetch(shown, ivec3(cell.xy, cell.z + shownBlock() * shownCells()), 0);
     if (params.voxel_view == VOXEL_VIEW_COLOR) return mean.rgb / max(mean.a, 1e-4);
     return (dot(mean.rgb, mean.rgb) > 1e-12 ? normalize(mean.rgb) : vec3(0.0)) * 0.5 + 0.5;
 }
@@ -29,7 +29,7 @@ void main() {
     int face = gl_VertexIndex / 6, corner = corners[gl_VertexIndex % 6];
     vec3 at = vec3(float(corner & 1), float(corner >> 1), float(face & 1));
     at = face < 2 ? at.zxy : face < 4 ? at.yzx : at.xyz;
-    position = volumeToWorld(volume.grid, (vec3(cell) + at) / vec3(size));
+    position = volumeToWorld(volume.grids[shownBlock()], (vec3(cell) + at) / vec3(size));
     color = vec4(cellColor(ivec3(cell), (vec3(cell) + 0.5) / vec3(size), face), 1.0);
     gl_Position = camera.view_projection * vec4(position, 1.0);
 }

@@ -5,6 +5,7 @@
 #define COUNTER_ACCESS
 #define FRAGMENTS_ACCESS readonly
 #include "params.glsl"
+#include "volume.glsl"
 #include "voxels.glsl"
 
 layout(local_size_x = 128) in;

@@ -3,6 +3,7 @@
 // Sums to means: voxelColor (mean base colour, opacity) and voxelNormal (direction * .5 + .5; alpha is the
 // length of the mean normal, 1 where all agree and 0 where they cancel).
 #include "params.glsl"
+#include "volume.glsl"
 #include "voxels.glsl"
 
 layout(local_size_x = 128) in;

@@ -23,8 +23,7 @@ vec3 unwarped(vec3 cells) {
 
 // Whether the triangle overlaps a cell, exactly wherever cells are boxes: in the coordinates of the cell itself.
 bool overlapsCell(ivec3 cell) {
-    if (WARP == WARP_NONE) return triangleOverlapsCell(corner[0], corner[1], corner[2], cell);
-    if (WARP == WARP_PERSPECTIVE) return true;
+    if (WARP == WARP_NONE || CURVED) return triangleOverlapsCell(corner[0], corner[1], corner[2], cell);
     float dim = float(params.voxel_dim);
     vec3 low = unwarp(vec3(cell) / dim), size = unwarp(vec3(cell + 1) / dim) - low;
     vec3 a = (unwarped(corner[0]) - low) / size, b = (unwarped(corner[1]) - low) / size, c = (unwarped(corner[2]) - low) / size;
@@ -32,8 +31,10 @@ bool overlapsCell(ivec3 cell) {
 }
 
 void main() {
+    int block = rasterBlock();
+    Grid grid = volume.grids[block];
     float dim = float(params.voxel_dim);
-    vec3 at = worldToVolume(volume.grid, position) * dim;
+    vec3 at = worldToVolume(grid, position) * dim;
     vec3 across = dFdx(at), down = dFdy(at);
     // Texture footprint of a cell, not of a pixel: warps draw several pixels a cell.
     float pixels = 1.0 / clamp(max(length(across), length(down)), 1.0 / 64.0, 1.0);
@@ -50,41 +51,35 @@ void main() {
     vec3 inside = clamp(at, lo, hi);
     ivec3 cell = ivec3(floor(inside));
     if (CONSERVATIVE != CONSERVATIVE_HARDWARE && CONSERVATIVE != CONSERVATIVE_DILATE) {
-        if (inGrid(cell)) storeVoxel(cell, base.rgb, n, light);
+        if (inGrid(cell)) storeVoxel(cell, block, base.rgb, n, light);
         return;
     }
 
     int depth = int(axis & 3u);
     ivec3 axes = planeAxes(axis & 3u);
     ivec3 from = ivec3(floor(inside)), to = from;
-    if (WARP == WARP_PERSPECTIVE) {
-        float reach = 0.5 * (abs(across[depth]) + abs(down[depth])) + 1e-4;
-        from[depth] = int(floor(clamp(at[depth] - reach, lo[depth], hi[depth]) - 1e-5));
-        to[depth] = int(floor(clamp(at[depth] + reach, lo[depth], hi[depth]) + 1e-5));
-    } else {
-        // Attributes of fragments beside their triangle are extrapolated, and of thin triangles no more than noise: the
-        // columns are those that the pixel touches, the depth that of the corners' plane over the pixel.
-        vec3 c[3] = vec3[3](unwarped(corner[0]), unwarped(corner[1]), unwarped(corner[2]));
-        vec3 face = cross(c[1] - c[0], c[2] - c[0]);
-        vec2 slope = face[depth] != 0.0 ? -vec2(face[axes.x], face[axes.y]) / face[depth] : vec2(dim); // a line: any depth
-        float pixel = 1.0 / rasterSize();
-        vec2 first = floor(gl_FragCoord.xy) * pixel;
-        float middle = c[0][depth] + dot(slope, first + 0.5 * pixel - vec2(c[0][axes.x], c[0][axes.y]));
-        float reach = 0.5 * pixel * (abs(slope.x) + abs(slope.y)) + 0.01 / dim;
-        vec3 low = vec3(first, middle - reach), high = vec3(first + pixel, middle + reach);
-        low.z = clamp(low.z, min(c[0][depth], min(c[1][depth], c[2][depth])), max(c[0][depth], max(c[1][depth], c[2][depth])));
-        high.z = clamp(high.z, low.z, max(c[0][depth], max(c[1][depth], c[2][depth])));
-        low = warp(clamp(low, 0.0, 1.0)) * dim;
-        high = warp(clamp(high, 0.0, 1.0)) * dim;
-        // A corner exactly on a border belongs to both cells.
-        from[depth] = int(floor(low.z - 1e-5));
-        to[depth] = int(floor(high.z + 1e-5));
-        bool whole = WARP == WARP_NONE; // a pixel is a column
-        from[axes.x] = whole ? int(gl_FragCoord.x) : int(floor(low.x));
-        from[axes.y] = whole ? int(gl_FragCoord.y) : int(floor(low.y));
-        to[axes.x] = whole ? from[axes.x] : int(floor(high.x));
-        to[axes.y] = whole ? from[axes.y] : int(floor(high.y));
-    }
+    // Attributes of fragments beside their triangle are extrapolated, and of thin triangles no more than noise: the
+    // columns are those that the pixel touches, the depth that of the corners' plane over the pixel.
+    vec3 c[3] = vec3[3](unwarped(corner[0]), unwarped(corner[1]), unwarped(corner[2]));
+    vec3 face = cross(c[1] - c[0], c[2] - c[0]);
+    vec2 slope = face[depth] != 0.0 ? -vec2(face[axes.x], face[axes.y]) / face[depth] : vec2(dim); // a line: any depth
+    float pixel = 1.0 / float(params.raster_size);
+    vec2 first = floor(gl_FragCoord.xy) * pixel;
+    float middle = c[0][depth] + dot(slope, first + 0.5 * pixel - vec2(c[0][axes.x], c[0][axes.y]));
+    float reach = 0.5 * pixel * (abs(slope.x) + abs(slope.y)) + 0.01 / dim;
+    vec3 low = vec3(first, middle - reach), high = vec3(first + pixel, middle + reach);
+    low.z = clamp(low.z, min(c[0][depth], min(c[1][depth], c[2][depth])), max(c[0][depth], max(c[1][depth], c[2][depth])));
+    high.z = clamp(high.z, low.z, max(c[0][depth], max(c[1][depth], c[2][depth])));
+    low = warp(clamp(low, 0.0, 1.0)) * dim;
+    high = warp(clamp(high, 0.0, 1.0)) * dim;
+    // A corner exactly on a border belongs to both cells.
+    from[depth] = int(floor(low.z - 1e-5));
+    to[depth] = int(floor(high.z + 1e-5));
+    bool whole = WARP == WARP_NONE || CURVED; // a pixel is a column
+    from[axes.x] = whole ? int(gl_FragCoord.x) : int(floor(low.x));
+    from[axes.y] = whole ? int(gl_FragCoord.y) : int(floor(low.y));
+    to[axes.x] = whole ? from[axes.x] : int(floor(high.x));
+    to[axes.y] = whole ? from[axes.y] : int(floor(high.y));
     if ((axis & SLIVER) != 0) {
         from[depth] = int(floor(lo[depth] - 1e-5));
         to[depth] = int(floor(hi[depth] + 1e-5));
@@ -94,5 +89,5 @@ void main() {
     for (int z = from.z; z <= to.z; z++)
         for (int y = from.y; y <= to.y; y++)
             for (int x = from.x; x <= to.x; x++)
-                if (overlapsCell(ivec3(x, y, z))) storeVoxel(ivec3(x, y, z), base.rgb, n, light);
+                if (overlapsCell(ivec3(x, y, z))) storeVoxel(ivec3(x, y, z), block, base.rgb, n, light);
 }

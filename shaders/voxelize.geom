@@ -20,11 +20,6 @@ layout(location = 3) flat out uint material;
 layout(location = 4) flat out uint axis;
 layout(location = 5) flat out vec3 corner[3]; // in cells
 
-out gl_PerVertex {
-    vec4 gl_Position;
-    float gl_ClipDistance[2];
-};
-
 uint dominantAxis(Grid g) {
     vec3 face = cross(in_position[1] - in_position[0], in_position[2] - in_position[0]);
     vec3 middle = (in_position[0] + in_position[1] + in_position[2]) / 3.0;
@@ -40,17 +35,13 @@ void emit(vec4 clip, vec3 b, uint flags, vec3 corners[3]) {
     axis = flags;
     corner = corners;
     gl_Position = clip;
-    vec2 used = vec2(1.0);
-    if (WARP == WARP_PERSPECTIVE) used = 2.0 * float(params.voxel_dim) / rasterSize() - vec2(1.0);
-    gl_ClipDistance[0] = used.x * clip.w - clip.x;
-    gl_ClipDistance[1] = ((flags & 3u) == 2u ? used.y : 1.0) * clip.w - clip.y;
     EmitVertex();
 }
 
 // Too thin to dilate: the bounding rectangle, half a pixel wider. The fragments are tested exactly.
 void emitRectangle(Grid g, vec4 c[3], vec3 r[3], uint along, vec3 corners[3]) {
     ivec3 axes = planeAxes(along);
-    float half_pixel = 0.505 / rasterSize();
+    float half_pixel = 0.505 / float(params.raster_size);
     vec3 lo = min(r[0], min(r[1], r[2])) - half_pixel, hi = max(r[0], max(r[1], r[2])) + half_pixel;
     vec3 middle = (r[0] + r[1] + r[2]) / 3.0;
     for (int i = 0; i < 4; i++) {
@@ -63,35 +54,28 @@ void emitRectangle(Grid g, vec4 c[3], vec3 r[3], uint along, vec3 corners[3]) {
         material = in_material[0];
         axis = along | SLIVER;
         corner = corners;
-        gl_Position = project(vec4(at, 1.0), along);
-        gl_ClipDistance[0] = 1.0;
-        gl_ClipDistance[1] = 1.0;
+        gl_Position = project(at, along);
         EmitVertex();
     }
     EndPrimitive();
 }
 
 void main() {
-    Grid g = volume.grid;
+    Grid g = volume.grids[rasterBlock()];
     float dim = float(params.voxel_dim);
     uint along = dominantAxis(g);
     vec4 clip[3];
     vec3 raster[3], corners[3];
-    bool behind = false;
     for (int i = 0; i < 3; i++) {
-        vec4 r = toRasterSpace(g, in_position[i]);
-        behind = behind || r.w <= 0.5 * params.warp_near && WARP == WARP_PERSPECTIVE;
-        raster[i] = r.xyz / r.w;
-        clip[i] = project(r, along);
+        raster[i] = toRasterSpace(g, in_position[i]);
+        clip[i] = project(raster[i], along);
         corners[i] = worldToVolume(g, in_position[i]) * dim;
     }
-    if (!behind) { // wholly outside
-        vec3 lo = min(corners[0], min(corners[1], corners[2])), hi = max(corners[0], max(corners[1], corners[2]));
-        if (any(lessThan(hi, vec3(0.0))) || any(greaterThan(lo, vec3(dim)))) return;
-    }
-    if (behind) corners = vec3[3](vec3(0.0), vec3(dim), vec3(dim)); // crosses the eye's plane: no box
+    vec3 lo = min(corners[0], min(corners[1], corners[2])), hi = max(corners[0], max(corners[1], corners[2]));
+    if (any(lessThan(hi, vec3(0.0))) || any(greaterThan(lo, vec3(dim)))) return;
+    if (VOLUME_SCROLL && isKept(g, lo) && isKept(g, hi)) return;
 
-    if (CONSERVATIVE != CONSERVATIVE_DILATE || behind) {
+    if (CONSERVATIVE != CONSERVATIVE_DILATE) {
         for (int i = 0; i < 3; i++) emit(clip[i], vec3(i == 0, i == 1, i == 2), along, corners);
         EndPrimitive();
         return;
@@ -101,9 +85,9 @@ void main() {
     // corners, and barycentric coordinates put those back onto the triangle's plane.
     mat3 m = mat3(clip[0].xyw, clip[1].xyw, clip[2].xyw);
     float area = determinant(m);
-    float half_pixel = 1.01 / rasterSize();
+    float half_pixel = 1.01 / float(params.raster_size);
     float longest = max(distance(m[0], m[1]), max(distance(m[1], m[2]), distance(m[2], m[0])));
-    if (WARP != WARP_PERSPECTIVE && abs(area) < half_pixel * longest) {
+    if (abs(area) < half_pixel * longest) {
         emitRectangle(g, clip, raster, along, corners);
         return;
     }

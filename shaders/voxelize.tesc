@@ -17,6 +17,7 @@ layout(location = 2) out vec2 uv[];
 layout(location = 3) patch out uint material;
 layout(location = 4) patch out float footprint; // texture coordinates a cell
 layout(location = 5) patch out uint single; // 1: the whole triangle lies in one cell
+layout(location = 6) patch out float spacing; // of the points [m]
 
 // Cells along an edge: its length over the smallest cell on the way.
 float cellsAlong(Grid g, vec3 a, vec3 b) {
@@ -29,14 +30,18 @@ float cellsAlong(Grid g, vec3 a, vec3 b) {
     return edge / cell;
 }
 
+// Whether a block gets nothing from a triangle: it lies outside, or wholly where content stays.
 bool outside(Grid g, vec3 a, vec3 b, vec3 c) {
-    if (WARP == WARP_PERSPECTIVE) {
+    if (WARP == WARP_SPHERICAL && g.curved != 0) return false; // a sphere has no sides
+    if (WARP == WARP_PERSPECTIVE && g.curved != 0) {
         vec3 w = vec3(dot(a - g.eye, g.axis_z), dot(b - g.eye, g.axis_z), dot(c - g.eye, g.axis_z));
         if (all(lessThan(w, vec3(g.range.x))) || all(greaterThan(w, vec3(g.range.y)))) return true;
         if (any(lessThan(w, vec3(g.range.x)))) return false;
     }
     vec3 u = worldToVolume(g, a), v = worldToVolume(g, b), w = worldToVolume(g, c);
-    return any(lessThan(max(u, max(v, w)), vec3(0.0))) || any(greaterThan(min(u, min(v, w)), vec3(1.0)));
+    vec3 low = min(u, min(v, w)), high = max(u, max(v, w));
+    if (VOLUME_SCROLL && isKept(g, low * float(params.voxel_dim)) && isKept(g, high * float(params.voxel_dim))) return true;
+    return any(lessThan(high, vec3(0.0))) || any(greaterThan(low, vec3(1.0)));
 }
 
 void main() {
@@ -46,17 +51,29 @@ void main() {
     if (gl_InvocationID != 0) return;
 
     // Only inputs are read below: other invocations' outputs would need a barrier.
-    Grid g = volume.grid;
     vec3 a = in_position[0], b = in_position[1], c = in_position[2];
     material = in_material[0];
-    if (outside(g, a, b, c)) {
+    // The block that asks for most points decides; all get their voxels in the same pass.
+    int finest = -1;
+    vec3 cells = vec3(0.0);
+    for (int k = 0; k < tessellatedBlocks(); k++) {
+        Grid g = volume.grids[k];
+        if (outside(g, a, b, c)) continue;
+        vec3 along = vec3(cellsAlong(g, b, c), cellsAlong(g, c, a), cellsAlong(g, a, b)) * params.tess_rate;
+        if (finest < 0 || max(along.x, max(along.y, along.z)) > max(cells.x, max(cells.y, cells.z))) {
+            finest = k;
+            cells = along;
+        }
+    }
+    if (finest < 0) {
         gl_TessLevelOuter = float[4](0.0, 0.0, 0.0, 0.0); // discards the patch
         gl_TessLevelInner = float[2](0.0, 0.0);
         footprint = 0.0;
         single = 0;
+        spacing = 0.0;
         return;
     }
-    vec3 cells = vec3(cellsAlong(g, b, c), cellsAlong(g, c, a), cellsAlong(g, a, b)) * params.tess_rate;
+    Grid g = volume.grids[finest];
     float longest = max(cells.x, max(cells.y, cells.z));
 
     // Outer level i belongs to the edge opposite vertex i. A level of 0 would drop the patch, so small
@@ -78,6 +95,8 @@ void main() {
         gl_TessLevelOuter = float[4](1.0, 1.0, 1.0, 1.0);
         gl_TessLevelInner = float[2](1.0, 1.0);
     }
+
+    spacing = max(distance(a, b), max(distance(b, c), distance(c, a))) / clamp(gl_TessLevelInner[0], 1.0, 64.0);
 
     // Square root of the ratio of areas: texture coordinates against cells.
     vec2 s = in_uv[1] - in_uv[0], t = in_uv[2] - in_uv[0];

@@ -5,6 +5,7 @@
 #include "materials.glsl"
 #include "volume.glsl"
 #include "store_voxel.glsl"
+#include "random.glsl"
 
 layout(triangles, equal_spacing, point_mode) in;
 
@@ -14,6 +15,20 @@ layout(location = 2) in vec2 uv[];
 layout(location = 3) patch in uint material;
 layout(location = 4) patch in float footprint;
 layout(location = 5) patch in uint single;
+layout(location = 6) patch in float spacing;
+
+// Points for the densest cells of a patch are far too many for its other cells, and for coarser blocks: what is left there
+// is about this many for each cell that the surface crosses, chosen by a hash of the place (one in 3,000 gets none).
+const float POINTS_A_CELL = 8.0;
+
+bool chosen(Grid g, vec3 p) {
+    vec3 size = cellSize(g, p);
+    float cell = min(size.x, min(size.y, size.z));
+    float share = POINTS_A_CELL * spacing * spacing / (cell * cell);
+    if (share >= 1.0) return true;
+    Random random = Random(uvec4(floatBitsToUint(p), 0u));
+    return next4(random).x < share;
+}
 
 void main() {
     gl_Position = vec4(0.0);
@@ -23,13 +38,16 @@ void main() {
         b = vec3(1.0 / 3.0);
     }
     vec3 p = mat3(position[0], position[1], position[2]) * b;
-    ivec3 cell = ivec3(floor(worldToVolume(volume.grid, p) * float(params.voxel_dim)));
-    if (!inGrid(cell)) return;
     vec2 at = mat3x2(uv[0], uv[1], uv[2]) * b;
     Gradient g = Gradient(vec2(footprint, 0.0), vec2(0.0, footprint));
     Material m = materials.materials[material];
     vec4 base = baseColor(m, at, g);
     if (base.a < m.alpha_cutoff) return;
     vec3 n = mat3(normal[0], normal[1], normal[2]) * b;
-    storeVoxel(cell, base.rgb, dot(n, n) > 0.0 ? normalize(n) : n, emission(m, at, g));
+    n = dot(n, n) > 0.0 ? normalize(n) : n;
+    vec3 light = emission(m, at, g);
+    for (int k = 0; k < tessellatedBlocks(); k++) {
+        ivec3 cell = ivec3(floor(worldToVolume(volume.grids[k], p) * float(params.voxel_dim)));
+        if (inGrid(cell) && (single != 0 || chosen(volume.grids[k], p))) storeVoxel(cell, k, base.rgb, n, light);
+    }
 }

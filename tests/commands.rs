@@ -297,6 +297,9 @@ fn graph_explains_itself() {
         "{params}"
     );
     assert!(params.contains("  voxelizer = raster  (one of raster, tessellated)\n"), "{params}");
+    let set = ["passes/vct.ron", "--params", "--set", "warp=spline", "--set", "warp_alpha=0.5"];
+    let values = graph(&set);
+    assert!(values.contains("\n  warp_slope = 1.25  (select("), "{values}");
 
     let out = Out::new();
     assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "vtc.ron"]))), @r"

@@ -420,6 +420,81 @@ fn expressions() {
     "#);
 }
 
+/// Named values in the graph, one of which is used.
+#[track_caller]
+fn values(text: &str) -> String {
+    let bench =
+        bench().edit("passes/graph.ron", "    textures: {", &format!("    values: {{ {text} }},\n    textures: {{"));
+    bench.edit("passes/graph.ron", "\"cells * 16\"", "\"bytes\"").findings()
+}
+
+#[test]
+fn named_values() {
+    assert_eq!(values(r#""bytes": Int("row * 16"), "row": Float("cells / 2")"#), "");
+    // Circles: of one, of two beside one that only needs them.
+    assert_snapshot!(values(r#""bytes": Int("max(bytes, 16)")"#), @r#"
+    passes/graph.ron:9:28: error: value 'bytes' needs itself
+        |     values: { "bytes": Int("max(bytes, 16)") },
+    "#);
+    assert_snapshot!(values(r#""bytes": Int("row * 4"), "row": Int("column + 1"), "column": Int("row + cells")"#), @r#"
+    passes/graph.ron:9:51: error: value 'row' needs itself: 'row' needs 'column' needs 'row'
+        |     values: { "bytes": Int("row * 4"), "row": Int("column + 1"), "column": Int("row + cells") },
+    passes/graph.ron:9:80: error: value 'column' needs itself: 'column' needs 'row' needs 'column'
+        |     values: { "bytes": Int("row * 4"), "row": Int("column + 1"), "column": Int("row + cells") },
+    "#);
+    // Names that are taken, or none.
+    assert_snapshot!(values(r#""bytes": Int("16"), "cells": Int("2"), "fast": Int("3"), "width": Int("4")"#), @r#"
+    passes/graph.ron:9:35: error: value 'cells' has the name of a parameter
+        |     values: { "bytes": Int("16"), "cells": Int("2"), "fast": Int("3"), "width": Int("4") },
+    passes/graph.ron:9:54: error: value 'fast' has the name of an option, which expressions could not tell apart
+        |     values: { "bytes": Int("16"), "cells": Int("2"), "fast": Int("3"), "width": Int("4") },
+    passes/graph.ron:9:72: error: 'width' is a variable that every graph has
+        |     values: { "bytes": Int("16"), "cells": Int("2"), "fast": Int("3"), "width": Int("4") },
+    "#);
+    assert_snapshot!(values(r#""bytes": Int("16"), "Row": Int("2"), "bytes": Int("8")"#), @r#"
+    passes/graph.ron:9:35: error: 'Row' cannot be a value's name: letters, digits and underscores, starting with a lower-case letter
+        |     values: { "bytes": Int("16"), "Row": Int("2"), "bytes": Int("8") },
+    passes/graph.ron:9:52: error: 'bytes' stands twice
+        |     values: { "bytes": Int("16"), "Row": Int("2"), "bytes": Int("8") },
+    "#);
+    assert_snapshot!(values(r#""bytes": Int("16 * half"), "half": Float("1 / 2.0")"#), @r#"
+    passes/graph.ron:9:42: error: 'half' cannot be a value's name: GLSL refuses `float half;`
+        |     values: { "bytes": Int("16 * half"), "half": Float("1 / 2.0") },
+    "#);
+    // What they read and what comes out.
+    assert_snapshot!(values(r#""bytes": Int("cell * 16")"#), @r#"
+    passes/graph.ron:9:28: error: unknown variable 'cell' in 'cell * 16'
+        |     values: { "bytes": Int("cell * 16") },
+        = help: did you mean 'cells'?
+    "#);
+    assert_snapshot!(values(r#""bytes": Int("16 * (mip + 1)")"#), @r#"
+    passes/graph.ron:9:28: error: value 'bytes' reads 'mip', which differs within a frame
+        |     values: { "bytes": Int("16 * (mip + 1)") },
+    "#);
+    assert_snapshot!(values(r#""bytes": Int("row * 16"), "row": Float("cells / 0.0")"#), @r#"
+    passes/graph.ron:9:54: error: value 'row', 'cells / 0.0': the result is inf
+        |     values: { "bytes": Int("row * 16"), "row": Float("cells / 0.0") },
+    "#);
+    assert_snapshot!(values(r#""bytes": Int("cells * 1e9")"#), @r#"
+    passes/graph.ron:9:28: error: value 'bytes', 'cells * 1e9': 64000000000 does not fit 32 bits
+        |     values: { "bytes": Int("cells * 1e9") },
+    "#);
+    assert_snapshot!(values(r#""bytes": Int("16"), "row": Float("cells")"#), @r#"
+    passes/graph.ron:9:35: warning: value 'row' is declared and never used
+        |     values: { "bytes": Int("16"), "row": Float("cells") },
+    "#);
+    // Kinds that there are not.
+    assert_snapshot!(values(r#""bytes": Bool("bright")"#), @r#"
+    passes/graph.ron:9:24: error: unknown name 'Bool'
+        |     values: { "bytes": Bool("bright") },
+        = help: known: Float, Int
+    "#);
+    assert_snapshot!(values(r#""bytes": "cells * 8""#), @r#"
+    passes/graph.ron:9:24: error: Expected identifier
+        |     values: { "bytes": "cells * 8" },
+    "#);
+}
+
 #[test]
 fn two_things_of_one_name() {
     assert_snapshot!(graph("\"count\": (size", "\"grid\": (size"), @r#"

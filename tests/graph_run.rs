@@ -900,6 +900,60 @@ fn shaders_see_parameters_of_every_kind() {
 }
 
 #[test]
+fn named_values_reach_expressions_and_shaders() {
+    let bench = Bench::new(
+        r#"(
+            include: ["rest.ron"],
+            params: [
+                Int(name: "cells", default: 5, range: (1, 64), help: "Cells."),
+                Float(name: "level", default: 1.0, range: (0.0, 9.0), help: "Read by a value alone."),
+                Vec3(name: "place", default: (1, 2, 3), help: "Moves what comes after it in the block."),
+            ],
+            values: {
+                "bytes": Int("16 * blocks"),
+                "blocks": Int("cells * 1.5"),
+                "third": Float("level / 3"),
+            },
+            buffers: { "found": (size: "bytes") },
+            passes: [
+                (name: "tell", when: "blocks > 3", shaders: ["tell.comp"], dispatch: Groups("blocks", 1, 1)),
+                (name: "never", when: "blocks > 100", shaders: ["tell.comp"], dispatch: Groups("blocks", 1, 1)),
+            ],
+        )"#,
+        &[(
+            "tell.comp",
+            "#include \"params.glsl\"
+            layout(local_size_x = 1) in;
+            layout(std430) writeonly buffer Found { uvec4 list[]; } found;
+            void main() {
+                uint i = gl_GlobalInvocationID.x;
+                found.list[i] = uvec4(i, params.blocks, floatBitsToUint(params.third), floatBitsToUint(params.width_3));
+            }",
+        )],
+    );
+    // Another file reads the values of this one, and this one's shader those of the other.
+    bench.write("passes/rest.ron", r#"(values: { "width_3": Float("width + blocks * place_z") })"#);
+    let lab = bench.lab();
+    let mut session = bench.run(&lab, &["found"], 1);
+    let expected = |third: f32| -> Vec<u32> {
+        (0..7).flat_map(|i| [i, 7, third.to_bits(), (32.0f32 + 7.0 * 3.0).to_bits()]).collect()
+    };
+    assert_eq!(words(&mut session, "found"), expected(1.0 / 3.0), "5 * 1.5, rounded down, is 7");
+
+    // What only shaders see is a write to a buffer; a size is another session.
+    let mut params = session.params.clone();
+    params.set("level", "6.0").unwrap();
+    assert!(session.set_params(&lab, &params).unwrap(), "no session is made for a number");
+    session.frame(0.0).unwrap();
+    session.finish().unwrap();
+    assert_eq!(words(&mut session, "found"), expected(2.0));
+    params.set("cells", "6").unwrap();
+    assert!(!session.set_params(&lab, &params).unwrap(), "9 blocks need a longer buffer");
+    assert_clean(&lab);
+    assert!(params.set("blocks", "3").unwrap_err().contains("no parameter 'blocks'"), "nobody sets a value");
+}
+
+#[test]
 fn clears_and_copies_of_a_part_keep_the_rest() {
     let bench = Bench::new(
         r#"(

@@ -203,7 +203,7 @@ fn a_cut_and_a_path() {
     let home = home();
     let path = home.path().join("turn.ron");
     std::fs::write(&path, "(keys: [(time: 0, eye: (0, 1.5, 2.5), target: (0, 1, 0), fov_y: 60), (time: 1, eye: (1, 1.5, 2.5), target: (0, 1, 0), fov_y: 60)])").unwrap();
-    let methods = "\"uniform\": {}, \"filtered\": { \"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"volume_snap\": false, \"temporal\": true }";
+    let methods = "\"uniform\": {}, \"filtered\": { \"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"volume_snap\": \"off\", \"temporal\": true }";
     let to = "(eye: (0.9, 1.4, 1.9), target: (0, 1, -1), fov_y: 60)";
     let cases = format!(
         "\"cut\": (warmup: 2, frames: 40, motion: Cut(to: {to}, at: 2)), \
@@ -253,7 +253,9 @@ fn references_know_what_moved() {
 fn a_parameter_moves() {
     let home = home();
     let volume = "\"volume\": \"camera\", \"volume_size\": (10, 10, 10)";
-    let methods = format!("\"snapped\": {{ {volume} }}, \"free\": {{ {volume}, \"volume_snap\": false }}");
+    let methods = format!(
+        "\"snapped\": {{ {volume}, \"volume_snap\": \"voxel\" }}, \"free\": {{ {volume}, \"volume_snap\": \"off\" }}"
+    );
     let cases = "\"volume\": (warmup: 0, frames: 12, motion: Parameter(name: \"volume_offset\", step: (0.03, 0, 0))), \
                  \"back\": (warmup: 2, frames: 3, motion: Parameter(name: \"volume_offset\", values: [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])), \
                  \"twice\": (frames: 3, motion: Parameter(name: \"indirect_scale\", values: [1, 2, 2]))";

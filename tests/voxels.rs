@@ -421,8 +421,8 @@ fn what_cannot_be_compared_is_told() {
         let mut command = conelab(root());
         fails(command.args(["voxels", "configs/default.ron", "--scene", "cornell", "--size", "16x16"]).args(args))
     };
-    let frusta = run(&["--set", "voxel_dim=32", "--set", "warp=perspective"]);
-    assert!(frusta.contains("the cells are frusta, not boxes"), "{frusta}");
+    let frusta = run(&["--set", "voxel_dim=32", "--set", "warp=perspective", "--set", "fallback=false"]);
+    assert!(frusta.contains("the cells are curved, no boxes"), "{frusta}");
     let nothing = run(&["--set", "voxelizer=points"]);
     assert!(nothing.contains("raster") && nothing.contains("points"), "{nothing}");
 }

@@ -9,8 +9,16 @@
 
 uniform sampler3D voxelFaces; // levels 1 and up, by direction; unused unless DIRECTIONAL
 
-// The voxels around u as a cone along d (unit length, in cells) finds them at a level.
-vec4 sampleCone(vec3 u, vec3 d, float lod) {
+// Between blocks and at their borders a lookup keeps half a cell of its level's distance. `u` in a block's coordinates.
+vec3 stacked(vec3 u, int block, float lod) {
+    if (BLOCKS == 1) return u;
+    float margin = 0.5 * exp2(ceil(max(lod, 0.0))) / float(params.voxel_dim);
+    return vec3(u.xy, (float(block) + clamp(u.z, margin, 1.0 - margin)) / float(BLOCKS));
+}
+
+// The voxels around u as a cone along d (unit length, in cells) finds them at a level of a block.
+vec4 sampleBox(vec3 u, int block, vec3 d, float lod) {
+    u = stacked(u, block, lod);
     if (!DIRECTIONAL) return textureLod(voxelRadiance, u, lod);
     float cells = float(textureSize(voxelFaces, 0).y);
     vec3 w = OPACITY == OPACITY_COVERAGE ? abs(d) : d * d;
@@ -19,11 +27,40 @@ vec4 sampleCone(vec3 u, vec3 d, float lod) {
     return lod <= 0.0 ? fine : mix(fine, sampleFaces(voxelFaces, u, d, w, 0.0, cells), lod);
 }
 
+// The same, round a spherical block's seam, where the first cells follow the last.
+vec4 sampleCone(vec3 u, int block, vec3 d, float lod) {
+    if (WARP != WARP_SPHERICAL || block > 0) return sampleBox(u, block, d, lod);
+    float half_cell = 0.5 * exp2(max(lod, 0.0)) / float(params.voxel_dim);
+    vec4 texel = sampleBox(vec3(clamp(u.x, half_cell, 1.0 - half_cell), u.yz), block, d, lod);
+    float over = max(half_cell - u.x, u.x - 1.0 + half_cell) / (2.0 * half_cell);
+    return over <= 0.0 ? texel : mix(texel, sampleBox(vec3(u.x < 0.5 ? 1.0 - half_cell : half_cell, u.yz), block, d, lod), over);
+}
+
+// Where a block's lookups of a level begin to meet its border they turn into the next block's.
+float shareOfBlock(vec3 u, float lod) {
+    vec3 inside = min(u, 1.0 - u);
+    if (WARP == WARP_SPHERICAL) inside.xy = vec2(1.0); // no borders there
+    return clamp(min(inside.x, min(inside.y, inside.z)) * 0.5 * float(params.voxel_dim) / exp2(max(lod, 0.0)), 0.0, 1.0);
+}
+
+// The level whose cells are as wide as the cone. `v`: length of the block's cell along the cone, `height`: above the
+// plane of the surface that the cone leaves [m].
+float levelAt(Grid g, vec3 p, float v, float radius, float height, ConeOrigin o) {
+    float lod = log2(max(2.0 * radius / v, 1.0)) + params.lod_offset;
+    if (params.lod_clearance) {
+        // A trilinear lookup reads 1.5 cells to each side. Coarser levels than fit above the surface
+        // would read the surface itself, and an open plane would shadow itself. Whole levels, because
+        // a fraction would blend in the coarser one.
+        float reach = WARP == WARP_NONE && BLOCKS == 1 ? o.reach : cellReach(g, p, o.normal);
+        lod = min(lod, floor(log2(max(height / (3.0 * reach), 1.0)) + 1e-3));
+    }
+    return clamp(lod, 0.0, g.last);
+}
+
 // Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
-    Grid g = volume.grid;
-    // Blocks of faces are level beside level as long as their sizes halve.
-    float last = float(DIRECTIONAL ? min(params.voxel_mips - 1, findLSB(params.voxel_dim)) : textureQueryLevels(voxelRadiance) - 1);
+    int block = o.block;
+    Grid g = volume.grids[block];
     float v0 = cellAlong(g, o.position, d), v = v0;
     vec3 way = gridDirection(g, o.position, d);
     float rise = max(dot(d, o.normal), 0.0);
@@ -32,29 +69,43 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
     float alpha = 0.0;
     for (int i = 0; i < steps; i++) {
         vec3 p = o.position + s * d;
-        vec3 u = worldToVolume(g, p);
+        vec3 u;
+        int before = block;
+        if (BLOCKS > 1) {
+            block = blockAt(p, u);
+            g = volume.grids[block];
+        } else {
+            u = worldToVolume(g, p);
+        }
         // Past the border the clamped lookup gives the border cells once more: a coarse cell that holds the
         // outermost wall reaches to the border, and stopping short of it would let light out.
         bool outside = !inVolume(u);
-        if (outside && (i == 0 || WARP == WARP_PERSPECTIVE || OPACITY == OPACITY_STORED)) break;
-        if (WARP != WARP_NONE) {
+        if (outside && (i == 0 || block != before || CURVED && g.curved != 0 || OPACITY == OPACITY_STORED)) break;
+        if (WARP != WARP_NONE || BLOCKS > 1) {
             v = cellAlong(g, p, d);
             way = gridDirection(g, p, d);
         }
         float radius = s * tan_half;
-        float lod = log2(max(2.0 * radius / v, 1.0)) + params.lod_offset;
-        if (params.lod_clearance) {
-            // A trilinear lookup reads 1.5 cells to each side. Coarser levels than fit above the surface
-            // would read the surface itself, and an open plane would shadow itself. Whole levels, because
-            // a fraction would blend in the coarser one.
-            float cells = (o.height + s * rise) * v0 / (3.0 * o.reach * v);
-            lod = min(lod, floor(log2(max(cells, 1.0)) + 1e-3));
-        }
-        lod = clamp(lod, 0.0, last);
+        float height = o.height + s * rise;
+        float lod = levelAt(g, p, v, radius, height, o);
         float cell = v * exp2(lod);
         float ds = max(CONE_STEP == CONE_STEP_RADIUS ? radius : params.step_factor * cell, 0.05 * v);
 
-        vec4 texel = sampleCone(u, way, lod);
+        vec4 texel = sampleCone(u, block, way, lod);
+        if (BLOCKS > 1 && block < BLOCKS - 1) {
+            float share = shareOfBlock(u, lod);
+            if (share < 1.0) {
+                Grid coarse = volume.grids[block + 1];
+                vec3 at = worldToVolume(coarse, p);
+                float v1 = cellAlong(coarse, p, d), lod1 = levelAt(coarse, p, v1, radius, height, o);
+                if (inVolume(at)) {
+                    vec4 other = sampleBox(at, block + 1, gridDirection(coarse, p, d), lod1);
+                    // Of surfaces side by side opacity is a density: the step is told in this block's cells.
+                    if (OPACITY == OPACITY_COVERAGE) other *= cell / (v1 * exp2(lod1));
+                    texel = mix(other, texel, share);
+                }
+            }
+        }
         if (texel.a > 1e-5) {
             float remaining = 1.0 - alpha;
             float a;

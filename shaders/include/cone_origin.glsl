@@ -10,18 +10,22 @@ struct ConeOrigin {
     vec3 normal; // geometric: the plane that cones must stay above
     float height; // of position above the surface [m]
     float reach; // half the local cell's extent across the surface [m]
+    int block; // of the volume, that the surface lies in
 };
 
 // `geometric` keeps the start outside the voxels of its own surface; the thesis goes `bias` voxels along the
 // shading normal, which can point into the geometry.
 ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
-    float reach = cellReach(volume.grid, p, geometric);
+    vec3 u;
+    int block = blockAt(p, u);
+    Grid g = volume.grids[block];
+    float reach = cellReach(g, p, geometric);
     if (params.cone_origin == CONE_ORIGIN_SHADING) {
-        vec3 start = p + params.bias * cellAlong(volume.grid, p, shading) * shading;
-        return ConeOrigin(start, geometric, max(dot(start - p, geometric), 0.0), reach);
+        vec3 start = p + params.bias * cellAlong(g, p, shading) * shading;
+        return ConeOrigin(start, geometric, max(dot(start - p, geometric), 0.0), reach, block);
     }
     float height = 2.0 * params.bias * reach;
-    return ConeOrigin(p + height * geometric, geometric, height, reach);
+    return ConeOrigin(p + height * geometric, geometric, height, reach, block);
 }
 
 #endif

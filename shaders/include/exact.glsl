@@ -20,20 +20,21 @@ vec2 exactPoint(int i, vec2 shift) {
 }
 
 // Radiance and opacity along one ray. Every voxel that the ray crosses hides as much of it as its opacity says for the
-// length inside. Without a warp the crossings are exact (Amanatides and Woo 1987); with one the ray is not straight
-// in the grid and is followed in quarters of a cell.
+// length inside. Of one block without a warp the crossings are exact (Amanatides and Woo 1987); else the ray is not straight
+// in the grid, and is followed in quarters of a cell.
 vec4 traceVoxels(vec3 origin, vec3 d) {
-    Grid g = volume.grid;
+    Grid g = volume.grids[0];
     vec3 color = vec3(0.0);
     float through = 1.0;
     int dim = params.voxel_dim;
-    if (WARP != WARP_NONE) {
+    if (WARP != WARP_NONE || BLOCKS > 1) {
         float s = 0.0;
         for (int i = 0; i < 16 * dim; i++) {
-            vec3 p = origin + s * d, u = worldToVolume(g, p);
+            vec3 p = origin + s * d, u;
+            int block = blockAt(p, u);
             if (!inVolume(u)) break;
-            float cell = cellAlong(g, p, d);
-            vec4 texel = texelFetch(voxelRadiance, min(ivec3(u * float(dim)), ivec3(dim - 1)), 0);
+            float cell = cellAlong(volume.grids[block], p, d);
+            vec4 texel = texelFetch(voxelRadiance, storedCell(min(ivec3(u * float(dim)), ivec3(dim - 1)), block), 0);
             if (texel.a > 1e-5) {
                 float a = through * (1.0 - pow(1.0 - min(texel.a, 1.0), 0.25));
                 color += texel.rgb * (a / texel.a);

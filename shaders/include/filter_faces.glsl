@@ -4,9 +4,7 @@
 // +z and -z meet in it, composited front to back in pairs and averaged over the four columns. Six blocks side by side.
 #include "params.glsl"
 #include "faces.glsl"
-#ifdef FIRST_LEVEL
 #include "volume.glsl"
-#endif
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -20,16 +18,17 @@ uniform writeonly image3D dst;
 
 // What rays along `way` see of a texel of the finer level.
 vec4 child(ivec3 cell, int face, vec3 way, int dim) {
-    cell = min(cell, ivec3(dim - 1)); // a level of one cell
+    cell.xy = min(cell.xy, ivec2(dim - 1)); // a level of one cell
+    if (BLOCKS == 1) cell.z = min(cell.z, dim - 1);
 #ifdef FIRST_LEVEL
     vec4 texel = texelFetch(voxelRadiance, cell, 0);
     if (texel.a == 0.0) return texel;
     // A surface shines less to its back, the less the straighter one looks at it. Where normals disagree (thin sheets,
     // corners) both sides may be lit.
     vec4 packed = texelFetch(voxelNormal, cell, 0);
-    if (WARP == WARP_PERSPECTIVE) { // its axes are not the world's
-        vec3 centre = volumeToWorld(volume.grid, (vec3(cell) + 0.5) / float(dim));
-        way = normalize(cellAxes(volume.grid, centre) * way);
+    if (CURVED) { // its axes are not the world's
+        Grid g = volume.grids[blockOf(cell)];
+        way = normalize(cellAxes(g, volumeToWorld(g, cellCentre(cell))) * way);
     }
     float behind = clamp(dot(packed.rgb * 2.0 - 1.0, way), 0.0, 1.0) * packed.a;
     return vec4(texel.rgb * (1.0 - behind), texel.a);

@@ -5,6 +5,7 @@
 #define SLOTS_ACCESS
 #define COUNTER_ACCESS
 #define FRAGMENTS_ACCESS writeonly
+#include "volume.glsl"
 #include "voxels.glsl"
 
 layout(r32ui) coherent uniform uimage3D voxelIndex;
@@ -18,8 +19,10 @@ void occupy(ivec3 cell) {
     imageStore(voxelIndex, cell, uvec4(slot + 1));
 }
 
-// color in [0,1], normal unit, emission radiance.
-void storeVoxel(ivec3 cell, vec3 color, vec3 normal, vec3 emission) {
+// color in [0,1], normal unit, emission radiance. `block`: of the volume.
+void storeVoxel(ivec3 cell, int block, vec3 color, vec3 normal, vec3 emission) {
+    if (VOLUME_SCROLL && isKept(volume.grids[block], vec3(cell) + 0.5)) return;
+    cell = storedCell(cell, block);
     occupy(cell);
     uint i = atomicAdd(voxelCounter.fragments, 1);
     if (i < voxelFragments.list.length())

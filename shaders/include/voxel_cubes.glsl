@@ -1,6 +1,7 @@
 // The voxel view's list of cubes.
 #ifndef VOXEL_CUBES_GLSL
 #define VOXEL_CUBES_GLSL
+#include "volume.glsl"
 
 #ifndef CUBES_ACCESS
 #define CUBES_ACCESS readonly
@@ -26,8 +27,14 @@ int shownCells() {
     return showsFaces() ? textureSize(faces, 0).y : textureSize(level, 0).y;
 }
 
+// The block that is shown: where its cells begin along z.
+int shownBlock() {
+    return min(params.voxel_view_block, BLOCKS - 1);
+}
+
 // What rays that meet the cube's face 0 to 5 (-x, x, -y, y, -z, z) find in the cell.
 vec4 shownTexel(ivec3 cell, int face) {
+    cell.z += shownBlock() * shownCells();
     return showsFaces() ? texelFetch(faces, ivec3(cell.x + face * shownCells(), cell.yz), 0) : texelFetch(level, cell, 0);
 }
 

@@ -5,27 +5,15 @@
 
 const uint SLIVER = 4u; // flag beside the axis: drawn as its bounding rectangle
 
-// Pixels a cell along the warped axes: the steepest slope of the warp, or neighbouring fragments would skip
-// cells (thesis, Section 4.6.1). The viewport's expression in voxels.ron must say the same.
-float rasterScale() {
-    if (WARP == WARP_SPLINE) return 1.5 - 0.5 * params.warp_alpha;
-    if (WARP == WARP_LOGISTIC) return 0.25 * params.warp_steepness / tanh(0.25 * params.warp_steepness);
-    if (WARP == WARP_PERSPECTIVE) return params.warp_far / params.warp_near;
-    return 1.0;
+// The block that is drawn. Not a curved one: in a frustum with depth in equal steps, pixels along depth must be as small
+// as the nearest cell is against the farthest, (far / near)^2 of them near the camera; on spheres triangles are not flat.
+int rasterBlock() {
+    return int(pass.index) + BLOCKS - CASCADES;
 }
 
-float rasterSize() {
-    return min(ceil(float(params.voxel_dim) * rasterScale() - 1e-3), 16384.0);
-}
-
-// Homogeneous coordinates in [0,w]^3 in which triangles stay flat. Under the perspective warp depth is the
-// projective one here, and made linear only in the fragment.
-vec4 toRasterSpace(Grid g, vec3 p) {
-    if (WARP != WARP_PERSPECTIVE) return vec4((p - g.minimum) / g.size, 1.0);
-    vec3 d = p - g.eye;
-    float w = dot(d, g.axis_z);
-    float x = dot(d, g.axis_x) / dot(g.axis_x, g.axis_x), y = dot(d, g.axis_y) / dot(g.axis_y, g.axis_y);
-    return vec4(0.5 * (x + w), 0.5 * (y + w), (w - g.range.x) * g.range.y / (g.range.y - g.range.x), w);
+// Coordinates in [0,1]^3, before warping: triangles are flat in them.
+vec3 toRasterSpace(Grid g, vec3 p) {
+    return (p - g.minimum) / g.size;
 }
 
 // The two image axes and the depth axis of a projection along `axis`.
@@ -33,13 +21,10 @@ ivec3 planeAxes(uint axis) {
     return axis == 0 ? ivec3(1, 2, 0) : axis == 1 ? ivec3(0, 2, 1) : ivec3(0, 1, 2);
 }
 
-// Clip-space position for a projection along `axis`. Axes that need no more pixels than cells use the lower
-// part of the viewport only.
-vec4 project(vec4 r, uint axis) {
+// Clip-space position for a projection along `axis`.
+vec4 project(vec3 r, uint axis) {
     ivec3 axes = planeAxes(axis);
-    vec2 used = vec2(1.0);
-    if (WARP == WARP_PERSPECTIVE) used = vec2(float(params.voxel_dim) / rasterSize(), axis == 2 ? float(params.voxel_dim) / rasterSize() : 1.0);
-    return vec4(2.0 * used * vec2(r[axes.x], r[axes.y]) - r.w, r[axes.z], r.w);
+    return vec4(2.0 * vec2(r[axes.x], r[axes.y]) - 1.0, r[axes.z], 1.0);
 }
 
 #endif

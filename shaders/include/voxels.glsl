@@ -31,10 +31,12 @@ layout(std430) COUNTER_ACCESS buffer VoxelCounter {
     uvec3 clear_groups; // indirect dispatch that clears last frame's list
     uint clear_count;
     uint clear_all; // 1: the list does not name every set cell, clear them all
-    uint temporal; // that the list was built with
+    uint signature; // of the settings that the list was built with
     uint fragments; // fragments stored, this frame
-    uint pad;
+    uint kept; // slots that stay as they are, this frame
     uvec3 merge_groups; // indirect dispatch over the fragments
+    uint unused;
+    uvec3 kept_groups; // indirect dispatch over what is kept
 } voxelCounter;
 
 #ifdef FRAGMENTS_ACCESS
@@ -70,6 +72,15 @@ vec3 unpackNormal(uint w) {
     return normalize(n);
 }
 
+// Changes with every setting that decides what a voxel holds; never 0.
+uint voxelSignature() {
+    uint h = uint(params.voxel_dim) | 1u << 31;
+    uint more[9] = uint[9](uint(params.voxelizer), uint(CONSERVATIVE), uint(params.voxel_samples), uint(MERGE), uint(params.tess_levels),
+        floatBitsToUint(params.tess_rate), uint(params.temporal), uint(WARP), uint(BLOCKS));
+    for (int i = 0; i < 9; i++) h = (h ^ more[i]) * 16777619u;
+    return h | 1u;
+}
+
 // Nine bits a channel and a shared exponent (EXT_texture_shared_exponent); up to 65408.
 uint packRadiance(vec3 c) {
     c = clamp(c, 0.0, 65408.0);
@@ -85,12 +96,13 @@ vec3 unpackRadiance(uint w) {
     return vec3(w & 511u, w >> 9 & 511u, w >> 18 & 511u) * exp2(float(w >> 27) - 24.0);
 }
 
+// x, y: up to 512; z: as many for each block.
 uint packCell(ivec3 c) {
     return uint(c.x | c.y << 9 | c.z << 18);
 }
 
 ivec3 unpackCell(uint word) {
-    return ivec3(word & 511u, word >> 9 & 511u, word >> 18 & 511u);
+    return ivec3(word & 511u, word >> 9 & 511u, word >> 18);
 }
 
 ivec3 cellOfSlot(uint slot) {

@@ -4,6 +4,7 @@ use crate::experiment::Experiment;
 use crate::graph::plan::{PlanInput, plan};
 use crate::graph::report;
 use crate::graph::source::nearest;
+use crate::graph::value::fill;
 use crate::lab::{Home, LabError, any_device, environment, params_of};
 use clap::Args;
 
@@ -24,7 +25,7 @@ pub struct GraphArgs {
     /// Resources that are wanted beside the picture.
     #[arg(long, value_name = "NAME")]
     want: Vec<String>,
-    /// Print the parameters with their ranges and help.
+    /// Print the parameters with their ranges and help, and the named values as set.
     #[arg(long)]
     params: bool,
     /// Print a Graphviz picture.
@@ -48,7 +49,9 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     }
     if args.params {
         say_part!("{}", report::params(&graph.params));
-        return Ok(());
+        if graph.values.is_empty() {
+            return Ok(());
+        }
     }
     let mut params = match &experiment {
         Some(e) => params_of(&graph, e)?,
@@ -66,6 +69,12 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     };
     let scene_name = args.scene.clone().or(experiment.as_ref().map(|e| e.scene.clone())).unwrap_or("cornell".into());
     let scene = super::open_scene(&scene_name)?;
+    let env = environment(&scene, size);
+    if args.params {
+        let (values, errors) = fill(&graph, &params, &mut env.clone());
+        say_part!("{}", report::values(&graph, &values));
+        return if errors.is_empty() { Ok(()) } else { Err(LabError::Input(errors)) };
+    }
     let mut wanted: Vec<String> = graph.output.iter().chain(&graph.hdr).chain(&args.want).cloned().collect();
     let known = || graph.textures.iter().map(|t| t.0.as_str()).chain(graph.buffers.iter().map(|b| b.0.as_str()));
     if let Some(name) = wanted.iter().find(|w| !known().any(|k| k == w.as_str())) {
@@ -74,7 +83,6 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     }
     wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
     let device = any_device();
-    let env = environment(&scene, size);
     let input = PlanInput { params: &params, env, wanted, device: &device };
     let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
     say_part!("{}", if args.dot { report::dot(&graph, &linked, &plan) } else { report::text(&graph, &plan) });

@@ -14,6 +14,8 @@ pub struct GraphFile {
     pub include: Items<String>,
     /// Parameters.
     pub params: Items<Decl>,
+    /// Expressions by name, for other expressions and shaders.
+    pub values: Entries<ValueDecl>,
     /// Textures by name.
     pub textures: Entries<TextureDecl>,
     /// Buffers by name.
@@ -50,6 +52,15 @@ pub struct GraphFile {
 
 /// An expression with its place.
 pub type Ex = Loc<Expr>;
+
+/// What a name stands for.
+#[derive(Clone, Debug, Deserialize)]
+pub enum ValueDecl {
+    /// A number.
+    Float(Ex),
+    /// A whole number.
+    Int(Ex),
+}
 
 /// Geometry prepared for the graph.
 #[derive(Clone, Debug, Deserialize)]
@@ -448,8 +459,9 @@ pub struct VoxelsDecl {
     pub color: Loc<String>,
     /// 3D texture of the unit normal * 0.5 + 0.5.
     pub normal: Loc<String>,
-    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; then, as floats, the
-    /// world coordinates (m) of the cells' borders along x, y and z, one more than cells each.
+    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; the z of the first of
+    /// them in the textures; how many there are along x, y and z; then, as floats, the world coordinates (m) of their
+    /// borders along x, y and z, one more than cells each.
     pub borders: Loc<String>,
     /// Ways of making them that are worth comparing.
     #[serde(default)]

@@ -63,7 +63,7 @@ pub fn link(
     shaders: &Path,
     runs: &Runs,
 ) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let params = graph.params.glsl();
+    let params = graph.params.glsl(&graph.values);
     let mut files: BTreeMap<&str, Stage> = BTreeMap::new();
     for (_, pass) in graph.passes.iter().enumerate().filter(|(i, _)| runs.has(*i)) {
         for shader in &pass.value.shaders.0 {
@@ -82,8 +82,11 @@ pub fn link(
         match result {
             Ok(shader) => drop(compiled.insert(file, shader)),
             Err(list) => {
-                let list = list.into_iter().map(|d| where_declared(graph, d));
-                findings.extend(list.filter(|d| !findings.contains(d)).collect::<Vec<_>>());
+                for found in list.into_iter().map(|d| where_declared(graph, d)) {
+                    if !findings.contains(&found) {
+                        findings.push(found);
+                    }
+                }
             }
         }
     }
@@ -106,7 +109,7 @@ pub fn link(
     if findings.iter().any(|f| f.severity == Severity::Error) { Err(findings) } else { Ok((linked, findings)) }
 }
 
-/// A mistake in the generated `params.glsl` is one in the name of a parameter: told where that is declared.
+/// A mistake in the generated `params.glsl` is one in the name of a parameter or value: told where that is declared.
 fn where_declared(graph: &Graph, found: Diagnostic) -> Diagnostic {
     let line = found.source.as_deref().unwrap_or("");
     let is_name = |name: &str| {
@@ -118,7 +121,12 @@ fn where_declared(graph: &Graph, found: Diagnostic) -> Diagnostic {
             let at = graph.params_at.get(i).copied().unwrap_or_default();
             graph.sources.error(at, format!("'{name}' cannot be a parameter's name: GLSL refuses `{line}`"))
         }
-        _ => found,
+        _ => match graph.values.iter().find(|v| is_name(&v.name)) {
+            Some(v) if found.place.file.starts_with("params.glsl (generated)") => {
+                graph.sources.error(v.at, format!("'{}' cannot be a value's name: GLSL refuses `{line}`", v.name))
+            }
+            _ => found,
+        },
     }
 }
 

@@ -8,6 +8,7 @@ use super::file::{
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
 use super::table::Table;
+use super::value::{Named, ordered};
 use crate::vulkan::{Format, Stage};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -30,6 +31,8 @@ pub struct Graph {
     pub params: Params,
     /// Where each parameter is declared.
     pub params_at: Vec<At>,
+    /// Named values, each after those that it reads.
+    pub values: Vec<Named>,
     /// Textures by name.
     pub textures: Vec<(String, Loc<TextureDecl>)>,
     /// Buffers by name.
@@ -99,6 +102,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
         params: Params::default(),
         params_at: Vec::new(),
+        values: Vec::new(),
         textures: Vec::new(),
         buffers: Vec::new(),
         passes: Vec::new(),
@@ -119,12 +123,14 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     };
     let mut wanted = Vec::new();
     let mut decls = Vec::new();
+    let mut values = Vec::new();
     let mut checks = Vec::new();
     let mut pointer = None;
     let mut tables = Vec::new();
     let mut fit: Vec<(Loc<String>, Loc<RawText>)> = Vec::new();
     for file in files {
         decls.extend(file.params.0);
+        values.extend(file.values.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
         graph.buffers.extend(file.buffers.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
         graph.passes.extend(file.passes.0);
@@ -155,8 +161,10 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let list = check_params(&decls, &graph.sources, &mut errors, &mut broken);
     graph.params_at = list.iter().map(|p| declared_at(&decls, &p.name)).collect();
     graph.params = Params::new(list);
+    graph.values = ordered(values, &graph.params, &graph.sources, &mut errors, &mut broken);
     let mut check = Check { graph: &graph, folders, errors, broken, whole, variables: HashSet::new() };
     check.names();
+    check.named_values();
     check.textures();
     for pass in &graph.passes {
         check.pass(&pass.value, pass.at);
@@ -312,7 +320,7 @@ fn declared_at(decls: &[Loc<super::param::Decl>], name: &str) -> At {
 }
 
 /// Names that GLSL and expressions can use.
-fn is_identifier(name: &str) -> bool {
+pub(super) fn is_identifier(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
         && !name.contains("__")
@@ -357,11 +365,7 @@ impl Check<'_> {
         let graph = self.graph;
         self.variables = BUILTIN_VARIABLES.iter().map(|v| (*v).to_string()).collect();
         for param in &graph.params.list {
-            let components = match param.kind {
-                Kind::Vector(n) => n,
-                Kind::Colour => 3,
-                _ => 0,
-            };
+            let components = param.kind.components();
             if components == 0 {
                 self.variables.insert(param.name.clone());
             }
@@ -370,6 +374,7 @@ impl Check<'_> {
             }
         }
         self.variables.extend(graph.params.option_names().map(String::from));
+        self.variables.extend(graph.values.iter().map(|v| v.name.clone()));
         let mut seen: HashMap<&str, ()> = HashMap::new();
         let resources =
             graph.textures.iter().map(|(n, t)| (n, t.at)).chain(graph.buffers.iter().map(|(n, b)| (n, b.at)));
@@ -394,6 +399,17 @@ impl Check<'_> {
                     name.at,
                     format!("two passes are named '{}'; timings could not tell them apart", name.value),
                 );
+            }
+        }
+    }
+
+    fn named_values(&mut self) {
+        for named in &self.graph.values {
+            self.expr(&named.expr);
+            // A value is the same in all of a frame.
+            for name in named.expr.value.variables().iter().filter(|v| ["index", "mip"].contains(&v.as_str())) {
+                let message = format!("value '{}' reads '{name}', which differs within a frame", named.name);
+                self.error(named.expr.at, message);
             }
         }
     }

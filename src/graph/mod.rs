@@ -17,3 +17,4 @@ pub mod successor;
 pub mod table;
 mod unused;
 pub mod usage;
+pub mod value;

@@ -2,6 +2,7 @@
 
 use super::expr::{Env, Var};
 use super::source::{Loc, nearest, options};
+use super::value::{Named, members as members_of};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fmt::Write;
@@ -21,6 +22,17 @@ pub enum Kind {
     Colour,
     /// One of some names.
     Choice(Vec<String>),
+}
+
+impl Kind {
+    /// Numbers with names of their own in expressions; 0 where the whole has one name.
+    pub fn components(&self) -> usize {
+        match self {
+            Kind::Vector(n) => *n,
+            Kind::Colour => 3,
+            _ => 0,
+        }
+    }
 }
 
 /// A parameter's value.
@@ -347,8 +359,9 @@ impl Params {
             .map(String::as_str)
     }
 
-    /// The generated include `params.glsl`: a uniform block, specialisation constants, names of options.
-    pub fn glsl(&self) -> String {
+    /// The generated include `params.glsl`: a uniform block with these named values at its end, specialisation constants,
+    /// names of options.
+    pub fn glsl(&self, values: &[Named]) -> String {
         let mut members = String::new();
         let mut rest = String::new();
         for (id, param) in self.list.iter().enumerate() {
@@ -365,6 +378,7 @@ impl Params {
                 }
             }
         }
+        members.push_str(&members_of(values));
         if members.is_empty() {
             members.push_str("    uint no_parameters;\n");
         }
@@ -374,8 +388,8 @@ impl Params {
         )
     }
 
-    /// The content of the uniform block (std140, OpenGL 4.6 section 7.6.2.2).
-    pub fn uniform_bytes(&self) -> Vec<u8> {
+    /// The content of the uniform block (std140, OpenGL 4.6 section 7.6.2.2), with the named values of [`Params::glsl`].
+    pub fn uniform_bytes(&self, values: &[Value]) -> Vec<u8> {
         let mut bytes = Vec::new();
         for (param, value) in self.list.iter().zip(&self.values).filter(|(p, _)| !p.constant) {
             let words = words(param, value);
@@ -386,6 +400,9 @@ impl Params {
             };
             bytes.resize(bytes.len().next_multiple_of(align), 0);
             bytes.extend(words.iter().flat_map(|w| w.to_ne_bytes()));
+        }
+        for value in values {
+            bytes.extend(scalar(value).to_ne_bytes());
         }
         bytes.resize(bytes.len().next_multiple_of(16).max(16), 0);
         bytes
@@ -415,13 +432,20 @@ fn glsl_value(param: &Param) -> (&'static str, String) {
 
 fn words(param: &Param, value: &Value) -> Vec<u32> {
     match value {
-        Value::Bool(v) => vec![u32::from(*v)],
-        Value::Int(v) => vec![i32::try_from(*v).unwrap_or(0).cast_unsigned()],
-        Value::Float(v) => vec![(*v as f32).to_bits()],
         Value::Vector(v) => v.iter().map(|x| (*x as f32).to_bits()).collect(),
         Value::Choice(v) => match &param.kind {
             Kind::Choice(options) => vec![u32::try_from(options.iter().position(|o| o == v).unwrap_or(0)).unwrap_or(0)],
             _ => vec![0],
         },
+        _ => vec![scalar(value)],
+    }
+}
+
+fn scalar(value: &Value) -> u32 {
+    match value {
+        Value::Bool(v) => u32::from(*v),
+        Value::Int(v) => i32::try_from(*v).unwrap_or(0).cast_unsigned(),
+        Value::Float(v) => (*v as f32).to_bits(),
+        Value::Vector(_) | Value::Choice(_) => 0,
     }
 }

@@ -162,7 +162,12 @@ pub fn all_expressions(graph: &Graph) -> impl Iterator<Item = &Ex> {
     });
     let buffers = graph.buffers.iter().map(|(_, b)| &b.value.size);
     let scene = graph.scene.iter().flat_map(|s| std::iter::once(&s.value.max_edge).chain(&s.value.when));
-    textures.chain(buffers).chain(scene).chain(graph.passes.iter().flat_map(|p| pass_expressions(&p.value)))
+    let values = graph.values.iter().map(|v| &v.expr);
+    textures
+        .chain(buffers)
+        .chain(scene)
+        .chain(values)
+        .chain(graph.passes.iter().flat_map(|p| pass_expressions(&p.value)))
 }
 
 fn pass_expressions(pass: &PassDecl) -> Vec<&Ex> {
@@ -193,7 +198,10 @@ fn pass_expressions(pass: &PassDecl) -> Vec<&Ex> {
 /// Sizes that make no sense or that the device cannot make, features that it lacks.
 pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<Plan, Vec<Diagnostic>> {
     let mut planner = Planner { graph, input, env: input.env.clone(), errors: Vec::new(), textures: Vec::new() };
-    input.params.fill(&mut planner.env);
+    planner.errors = super::value::fill(graph, input.params, &mut planner.env).1;
+    if !planner.errors.is_empty() {
+        return Err(planner.errors);
+    }
     planner.sizes();
     if !planner.errors.is_empty() {
         return Err(planner.errors);

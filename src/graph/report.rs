@@ -2,7 +2,7 @@
 
 use super::link::Linked;
 use super::load::Graph;
-use super::param::Params;
+use super::param::{Params, Value};
 use super::plan::{Plan, Step, Work};
 use super::usage::{Barrier, Res, schedule};
 use std::fmt::Write;
@@ -165,6 +165,18 @@ pub fn params(params: &Params) -> String {
         let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
         let _ = writeln!(out, "  {} = {}{unit}  ({}{range})", p.name, p.default, p.expected());
         let _ = writeln!(out, "      {}", p.help);
+    }
+    out
+}
+
+/// Named values with what they are now.
+pub fn values(graph: &Graph, values: &[Value]) -> String {
+    let mut out = String::new();
+    if !values.is_empty() {
+        out.push_str("\nvalues, which follow from these\n");
+    }
+    for (named, value) in graph.values.iter().zip(values) {
+        let _ = writeln!(out, "  {} = {value}  ({})", named.name, named.expr.value.text);
     }
     out
 }

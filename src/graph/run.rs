@@ -4,7 +4,7 @@ use super::externals::EXTERNALS;
 use super::file::{PassDecl, Which};
 use super::link::{Linked, Target, bound_shape};
 use super::load::Graph;
-use super::param::Params;
+use super::param::{Params, Value};
 use super::pipelines::{Pipelines, clear_value, descriptor_pool, descriptor_type, make_pipelines, sampler_desc};
 use super::plan::{Plan, Step, Work};
 use super::successor::{Change, Parts};
@@ -126,7 +126,7 @@ impl Program {
         let images = make_images(gpu, graph, &plan, parts, &mut change)?;
         let buffers = make_buffers(gpu, graph, &plan, parts, &mut change)?;
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
-        let size = params.uniform_bytes().len() as u64;
+        let size = params.uniform_bytes(&vec![Value::Int(0); graph.values.len()]).len() as u64;
         let params_buffer = Arc::new(Buffer::new(gpu, "params", size, usage, MemoryLocation::GpuOnly)?);
         let made = make_pipelines(gpu, graph, linked, &plan, params, &parts.pipelines)?;
         change.built = made.built;

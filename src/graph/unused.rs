@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// The files that a shader is made of: name, text.
 pub(super) type Texts = Arc<BTreeMap<String, String>>;
 
-/// One warning for each resource that is not among those used, and for each parameter that neither the graph nor the
-/// shaders' texts name.
+/// One warning for each resource that is not among those used, and for each parameter and value that neither the graph nor
+/// the shaders' texts name.
 pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -> Vec<Diagnostic> {
     let mut wanted: HashSet<&str> = graph.outputs.iter().map(String::as_str).collect();
     wanted.extend(graph.output.as_deref());
@@ -34,6 +34,11 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
     }
     let texts: HashSet<&String> =
         shaders.iter().flat_map(|t| t.iter()).filter(|(f, _)| *f != "params.glsl").map(|(_, t)| t).collect();
+    let in_texts = |in_shader: &str| {
+        let end = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
+        let names = |text: &str| text.match_indices(in_shader).any(|(at, _)| end(&text[at + in_shader.len()..]));
+        texts.iter().any(|t| names(t))
+    };
     for (i, param) in graph.params.list.iter().enumerate() {
         let in_shader = if param.constant { param.name.to_uppercase() } else { format!("params.{}", param.name) };
         let in_graph = super::plan::all_expressions(graph).any(|e| {
@@ -43,13 +48,15 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
                 .any(|v| *v == param.name || v.strip_prefix(&param.name).is_some_and(|r| r.starts_with('_')))
         });
         let as_format = graph.textures.iter().any(|t| t.1.value.format.value == param.name);
-        let names = |text: &str| {
-            let end = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
-            text.match_indices(&in_shader).any(|(at, _)| end(&text[at + in_shader.len()..]))
-        };
-        if !in_graph && !as_format && !texts.iter().any(|t| names(t)) {
+        if !in_graph && !as_format && !in_texts(&in_shader) {
             let at = graph.params_at.get(i).copied().unwrap_or_default();
             warn(at, format!("parameter '{}' is declared and never used", param.name));
+        }
+    }
+    for value in &graph.values {
+        let in_graph = super::plan::all_expressions(graph).any(|e| e.value.variables().contains(&value.name));
+        if !in_graph && !in_texts(&format!("params.{}", value.name)) {
+            warn(value.at, format!("value '{}' is declared and never used", value.name));
         }
     }
     findings

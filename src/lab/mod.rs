@@ -5,19 +5,20 @@ mod home;
 mod materials;
 mod parts;
 mod scene;
+mod variables;
 mod view;
 
 pub use home::{Home, Loaded};
 pub use parts::parts_of;
 pub use scene::SceneGpu;
+pub use variables::{environment, values_of};
 pub use view::Viewpoint;
 
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
-use crate::graph::expr::{Env, Var};
 use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
 use crate::graph::link::{Linked, Target};
 use crate::graph::load::Graph;
-use crate::graph::param::Params;
+use crate::graph::param::{Params, Value};
 use crate::graph::plan::{Plan, PlanInput, plan};
 use crate::graph::run::{FrameTimes, Program};
 use crate::graph::runs::runs;
@@ -76,6 +77,8 @@ pub struct Session {
     wanted: Vec<String>,
     /// Present parameter values.
     pub params: Params,
+    /// The graph's named values with these.
+    values: Vec<Value>,
     /// What runs.
     pub program: Program,
     /// The scene.
@@ -159,12 +162,14 @@ impl Lab {
         };
         let none = Parts::default();
         let parts = seed.map_or(&none, |s| &s.parts);
+        let values = values_of(&graph, &params, &scene, experiment.size);
         let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources, parts)?;
         Ok(Session {
             graph,
             linked,
             wanted,
             params,
+            values,
             program,
             bounds: scene.bounds(),
             scene,
@@ -196,27 +201,6 @@ fn plan_of(
 fn traces_rays(linked: &[Linked], plan: &Plan) -> bool {
     let mut bound = plan.steps.iter().flat_map(|s| &linked[s.pass].bound);
     bound.any(|b| matches!(b.target, Target::External(e) if RAY_RESOURCES.contains(&EXTERNALS[e].name)))
-}
-
-/// Variables of expressions that come from scene and size.
-pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
-    let (low, high) = scene.bounds();
-    let extent = high - low;
-    let mut env = Env::new();
-    let mut put = |name: &str, value: f64| {
-        env.insert(name.to_string(), Var::Number(value));
-    };
-    put("width", f64::from(size.0));
-    put("height", f64::from(size.1));
-    put("shadow_views", f64::from(view::shadow_view_count(&scene.lights)));
-    put("light_count", scene.lights.len() as f64);
-    put("triangle_count", scene.triangle_count() as f64);
-    put("scene_size", f64::from(extent.max_element()));
-    for (axis, (a, b)) in ["x", "y", "z"].iter().zip(low.to_array().into_iter().zip(high.to_array())) {
-        put(&format!("scene_min_{axis}"), f64::from(a));
-        put(&format!("scene_max_{axis}"), f64::from(b));
-    }
-    env
 }
 
 /// The parameters of an experiment: defaults, then what it sets.
@@ -313,6 +297,7 @@ impl Session {
             return Ok(false);
         }
         self.params = params.clone();
+        self.values = values_of(&self.graph, params, &self.scene, size);
         self.sent_params = false;
         Ok(true)
     }
@@ -347,7 +332,7 @@ impl Session {
         let camera = self.viewpoint.uniform(self.size, self.time, self.frame, delta);
         updates.push((self.scene_gpu.camera.clone(), camera));
         if !self.sent_params {
-            updates.push((self.program.params_buffer(), self.params.uniform_bytes()));
+            updates.push((self.program.params_buffer(), self.params.uniform_bytes(&self.values)));
             self.sent_params = true;
         }
         self.frame += 1;

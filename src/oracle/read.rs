@@ -45,18 +45,16 @@ pub fn wanted(graph: &Graph) -> Result<Vec<String>, LabError> {
 pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
     let v = declared(&session.graph)?.clone();
     let occupied = session.texels(&v.occupied.value, 0, 0)?;
-    let grid = grid_in(session, &v, occupied.extent)?;
+    let (grid, first) = grid_in(session, &v, occupied.extent)?;
     let bytes = occupied.format.bytes as usize;
-    let numbers: Vec<u32> = occupied
-        .bytes
-        .chunks_exact(bytes)
-        .zip(0u32..)
-        .filter(|(texel, _)| texel.iter().any(|b| *b != 0))
-        .map(|(_, i)| i)
-        .collect();
+    let [x, y, z] = grid.size().map(|n| n as usize);
+    let before = first as usize * x * y;
+    let texels = occupied.bytes.chunks_exact(bytes).skip(before).take(x * y * z);
+    let numbers: Vec<u32> =
+        texels.zip(0u32..).filter(|(texel, _)| texel.iter().any(|b| *b != 0)).map(|(_, i)| i).collect();
     drop(occupied);
-    let color = texels_at(session, &v.color.value, &numbers)?;
-    let normal = texels_at(session, &v.normal.value, &numbers)?;
+    let color = texels_at(session, &v.color.value, before, &numbers)?;
+    let normal = texels_at(session, &v.normal.value, before, &numbers)?;
     let voxels = numbers.iter().zip(color.iter().zip(&normal)).map(|(number, (color, normal))| Voxel {
         number: *number,
         color: Vec3::new(color[0], color[1], color[2]),
@@ -75,36 +73,48 @@ pub fn grid(session: &mut Session) -> Result<Grid, LabError> {
     let v = declared(&session.graph)?.clone();
     let index = session.graph.textures.iter().position(|t| t.0 == v.occupied.value);
     let extent = index.map_or([0; 3], |i| session.program.plan.textures[i].extent);
-    grid_in(session, &v, extent)
+    Ok(grid_in(session, &v, extent)?.0)
 }
 
-fn grid_in(session: &mut Session, v: &VoxelsDecl, cells: [u32; 3]) -> Result<Grid, LabError> {
+/// The grid, and the z of its first cell in the textures.
+fn grid_in(session: &mut Session, v: &VoxelsDecl, cells: [u32; 3]) -> Result<(Grid, u32), LabError> {
     let borders = session.buffer(&v.borders.value)?;
     grid_of(&borders, cells).map_err(LabError::Request)
 }
 
-/// Texels by number. Only those are turned into floats: a whole volume of them can take gigabytes.
-fn texels_at(session: &mut Session, name: &str, numbers: &[u32]) -> Result<Vec<[f32; 4]>, LabError> {
+/// Texels by number, counted from texel `before`. Only those are turned into floats: a whole volume of them can take gigabytes.
+fn texels_at(session: &mut Session, name: &str, before: usize, numbers: &[u32]) -> Result<Vec<[f32; 4]>, LabError> {
     let all = session.texels(name, 0, 0)?;
     let size = all.format.bytes as usize;
-    let bytes = numbers.iter().filter_map(|n| all.bytes.get(*n as usize * size..(*n as usize + 1) * size)).flatten();
+    let place = |n: &u32| (before + *n as usize) * size;
+    let bytes = numbers.iter().filter_map(|n| all.bytes.get(place(n)..place(n) + size)).flatten();
     let some = Texels { extent: [numbers.len() as u32, 1, 1], format: all.format, bytes: bytes.copied().collect() };
     Ok(picture::to_floats(&some))
 }
 
 /// The grid that a buffer of borders describes; see [`VoxelsDecl::borders`].
-fn grid_of(bytes: &[u8], size: [u32; 3]) -> Result<Grid, String> {
+fn grid_of(bytes: &[u8], texture: [u32; 3]) -> Result<(Grid, u32), String> {
     let words: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|w| u32::from_ne_bytes(*w)).collect();
-    let (boxes, mut rest) = words.split_first().ok_or("the buffer of the cells' borders is empty")?;
+    let ([boxes, first, x, y, z], mut rest) =
+        words.split_first_chunk::<5>().ok_or("the buffer of the cells' borders is too short")?;
     if *boxes == 0 {
-        return Err("the cells are frusta, not boxes: the oracle knows boxes only. Choose another warp".into());
+        return Err(
+            "the cells are curved, no boxes: the oracle knows boxes only. Choose another warp, or another block \
+                    of the volume"
+                .into(),
+        );
+    }
+    if [*x, *y] != [texture[0], texture[1]] || first.checked_add(*z).is_none_or(|end| end > texture[2]) {
+        return Err(format!(
+            "the cells' borders are of {x} x {y} x {z} cells from z = {first} on, the textures have {texture:?}"
+        ));
     }
     let mut borders = [const { Vec::new() }; 3];
-    for (list, cells) in borders.iter_mut().zip(size) {
-        let count = cells as usize + 1;
+    for (list, cells) in borders.iter_mut().zip([x, y, z]) {
+        let count = *cells as usize + 1;
         let (these, others) = rest.split_at_checked(count).ok_or("the buffer of the cells' borders is too short")?;
         list.extend(these.iter().map(|w| f64::from(f32::from_bits(*w))));
         rest = others;
     }
-    Grid::new(borders)
+    Ok((Grid::new(borders)?, *first))
 }

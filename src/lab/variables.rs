@@ -1,0 +1,34 @@
+//! What expressions may read beside parameters.
+
+use super::view::shadow_view_count;
+use crate::graph::expr::{Env, Var};
+use crate::graph::load::Graph;
+use crate::graph::param::{Params, Value};
+use crate::graph::value::fill;
+use crate::scene::Scene;
+
+/// Variables of expressions that come from scene and size.
+pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
+    let (low, high) = scene.bounds();
+    let extent = high - low;
+    let mut env = Env::new();
+    let mut put = |name: &str, value: f64| {
+        env.insert(name.to_string(), Var::Number(value));
+    };
+    put("width", f64::from(size.0));
+    put("height", f64::from(size.1));
+    put("shadow_views", f64::from(shadow_view_count(&scene.lights)));
+    put("light_count", scene.lights.len() as f64);
+    put("triangle_count", scene.triangle_count() as f64);
+    put("scene_size", f64::from(extent.max_element()));
+    for (axis, (a, b)) in ["x", "y", "z"].iter().zip(low.to_array().into_iter().zip(high.to_array())) {
+        put(&format!("scene_min_{axis}"), f64::from(a));
+        put(&format!("scene_max_{axis}"), f64::from(b));
+    }
+    env
+}
+
+/// The graph's named values; a plan tells those that have none.
+pub fn values_of(graph: &Graph, params: &Params, scene: &Scene, size: (u32, u32)) -> Vec<Value> {
+    fill(graph, params, &mut environment(scene, size)).0
+}

@@ -1,0 +1,405 @@
+//! Volumes of several blocks and volumes that move: cascades, curved blocks with a uniform one behind, boxes that follow
+//! the camera, scrolling, the filter over time. Every number that a bound is put on is printed.
+
+mod common;
+
+use common::{assert_clean, experiment, floats, lab, mean, prepare, root, scene};
+use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
+use conelab::graph::param::Params;
+use conelab::lab::{Lab, Session, params_of};
+use conelab::metrics::Kind;
+use conelab::oracle;
+use conelab::stability::display;
+use glam::{DVec3, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
+
+const QUICK: (&str, &str) = ("shadow_dim", "512");
+const VOXELS: [&str; 4] = ["voxelIndex", "voxelColor", "voxelNormal", "voxelBorders"];
+
+/// One frame, or more, that drop nothing.
+#[track_caller]
+fn frames(lab: &Lab, experiment: &Experiment, wanted: &[&str], count: usize) -> Session {
+    let mut session = prepare(lab, experiment, wanted);
+    run(&mut session, count);
+    assert_clean(lab);
+    session
+}
+
+#[track_caller]
+fn run(session: &mut Session, count: usize) {
+    for _ in 0..count {
+        session.frame(0.0).unwrap();
+    }
+    session.finish().unwrap();
+    assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
+}
+
+/// In the middle of the Cornell box, towards its back wall.
+fn inside(mut e: Experiment) -> Experiment {
+    e.camera = CameraChoice::Placed(PlacedCamera::new((2.7, 2.5, 1.0), (2.9, 2.4, 5.0), 70.0));
+    e
+}
+
+/// Moves what the volume follows, under a picture that stands still.
+fn offset(lab: &Lab, session: &mut Session, e: &Experiment, by: [f64; 3]) {
+    let mut params: Params = params_of(&session.graph, e).unwrap();
+    params.set("volume_offset", &format!("({}, {}, {})", by[0], by[1], by[2])).unwrap();
+    session.set_params(lab, &params).unwrap();
+}
+
+const KINDS: [(&str, &[(&str, &str)]); 6] = [
+    ("uniform", &[]),
+    ("two cascades", &[("cascades", "2")]),
+    ("three cascades", &[("cascades", "3")]),
+    ("perspective", &[("warp", "perspective"), ("warp_near", "0.3"), ("warp_far", "6")]),
+    ("spherical", &[("warp", "spherical"), ("warp_near", "0.3"), ("warp_far", "6")]),
+    (
+        "perspective and two cascades",
+        &[("warp", "perspective"), ("warp_near", "0.3"), ("warp_far", "6"), ("cascades", "2")],
+    ),
+];
+
+/// T1 and T2: as much light as there is, through every kind of volume.
+#[test]
+fn every_volume_keeps_the_energy() {
+    let lab = lab(root());
+    let mut wrong = Vec::new();
+    for (kind, settings) in KINDS {
+        for voxelizer in ["raster", "tessellated"] {
+            let settings = [settings, &[("voxel_dim", "48"), ("voxelizer", voxelizer), QUICK]].concat();
+            let mut furnace = frames(&lab, &experiment("furnace", (48, 36), &settings), &["radiance"], 1);
+            let energy = mean(&floats(&mut furnace, "radiance", 0)) / 1.5;
+            let mut sky = frames(&lab, &experiment("white-sky", (48, 48), &settings), &["occlusion", "depth"], 1);
+            let (open, depth) = (floats(&mut sky, "occlusion", 0), floats(&mut sky, "depth", 0));
+            let ball: Vec<[f32; 4]> = open.iter().zip(&depth).filter(|(_, d)| d[0] < 1.0).map(|(o, _)| *o).collect();
+            let openness = mean(&ball);
+            println!("{kind}, {voxelizer}: furnace {energy:.4}, white sky {openness:.4}");
+            if (energy - 1.0).abs() > 0.02 || (openness - 1.0).abs() > 0.02 {
+                wrong.push(format!("{kind}, {voxelizer}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// Blocks of boxes against exact overlap. The tessellator fills all of them at once, thinned where it is too dense.
+#[test]
+fn every_block_is_filled() {
+    let lab = lab(root());
+    let scene = scene("cornell");
+    let mut wrong = Vec::new();
+    for (kind, settings) in &KINDS[1..] {
+        for (voxelizer, least) in [("raster", 0.999), ("tessellated", 0.92)] {
+            let curved = usize::from(settings[0].0 == "warp");
+            let cascades = settings.iter().find(|s| s.0 == "cascades").map_or(1, |s| s.1.parse::<usize>().unwrap());
+            for block in curved..curved + cascades {
+                let number = block.to_string();
+                let set =
+                    [*settings, &[("voxel_dim", "48"), ("voxelizer", voxelizer), ("voxel_view_block", &number), QUICK]]
+                        .concat();
+                let mut session = frames(&lab, &inside(experiment("cornell", (16, 16), &set)), &VOXELS, 1);
+                let (grid, voxels) = oracle::read(&mut session).unwrap();
+                let cells = oracle::exact(&oracle::triangles_of(&scene, 0.0), &oracle::Surfaces::new(&scene), &grid);
+                let score = oracle::compare(&grid, &cells, &voxels).score;
+                let (Some(recall), Some(precision)) = (score.recall, score.precision) else {
+                    println!("{kind}, block {block}: nothing of the scene lies in it");
+                    continue;
+                };
+                println!(
+                    "{kind}, {voxelizer}, block {block}: {} voxels, recall {recall:.4}, precision {precision:.4}",
+                    voxels.len()
+                );
+                if recall < least || precision < 0.995 {
+                    wrong.push(format!("{kind}, {voxelizer}, block {block}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// Where a curved block has a point, as a test writes it down: the thesis's frustum with depth in equal steps (Section
+/// 4.6.2), and spheres with distance in equal factors.
+fn curved(warp: &str, eye: DVec3, toward: DVec3, fov_y: f64, aspect: f64, p: DVec3) -> DVec3 {
+    let (near, far) = (0.3, 6.0);
+    let d = p - eye;
+    if warp == "spherical" {
+        let r = d.length();
+        return DVec3::new(
+            d.z.atan2(d.x) / (2.0 * PI) + 0.5,
+            (d.y / r).acos() / PI,
+            (r / near).ln() / (far / near as f64).ln(),
+        );
+    }
+    let right = toward.cross(DVec3::Y).normalize();
+    let down = toward.cross(right);
+    let (w, half) = (d.dot(toward), (0.5 * fov_y).tan());
+    let (x, y) = (d.dot(right) / (w * half * aspect), d.dot(down) / (w * half));
+    DVec3::new(0.5 * x + 0.5, 0.5 * y + 0.5, if w > 0.0 { (w - near) / (far - near) } else { -1.0 })
+}
+
+/// Curved cells against points spread densely over all triangles: every cell that some of them fall in is asked for.
+#[test]
+fn curved_blocks_are_filled() {
+    let lab = lab(root());
+    let scene = scene("cornell");
+    let (dim, mut wrong) = (48u32, Vec::new());
+    for warp in ["perspective", "spherical"] {
+        for voxelizer in ["raster", "tessellated"] {
+            let set = [
+                ("voxel_dim", "48"),
+                ("warp", warp),
+                ("warp_near", "0.3"),
+                ("warp_far", "6"),
+                ("voxelizer", voxelizer),
+                ("volume_snap", "off"),
+                QUICK,
+            ];
+            let mut e = inside(experiment("cornell", (64, 48), &set));
+            let (eye, target) = (DVec3::new(2.7, 2.5, 1.0), DVec3::new(2.9, 2.4, 5.0));
+            e.camera = CameraChoice::Placed(PlacedCamera::new((2.7, 2.5, 1.0), (2.9, 2.4, 5.0), 70.0));
+            let mut session = frames(&lab, &e, &["voxelIndex"], 1);
+            let texels = session.texels("voxelIndex", 0, 0).unwrap();
+            let set: Vec<bool> =
+                texels.bytes.chunks_exact(4).take((dim * dim * dim) as usize).map(|t| *t != [0; 4]).collect();
+            // Points a fifth of the smallest cell apart would be very many: 3,000,000 in all, by an additive recurrence.
+            let triangles = oracle::triangles_of(&scene, 0.0);
+            let area =
+                |t: &oracle::Triangle| 0.5 * (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).length();
+            let whole: f64 = triangles.iter().map(area).sum();
+            let mut hits: BTreeMap<usize, u32> = BTreeMap::new();
+            for t in &triangles {
+                for i in 0..(3e6 * area(t) / whole) as u32 {
+                    let (mut a, mut b) =
+                        ((f64::from(i) * 0.754_877_666).fract(), (f64::from(i) * 0.569_840_291).fract());
+                    if a + b > 1.0 {
+                        (a, b) = (1.0 - a, 1.0 - b);
+                    }
+                    let p = t.corners[0] + a * (t.corners[1] - t.corners[0]) + b * (t.corners[2] - t.corners[0]);
+                    let u = curved(warp, eye, (target - eye).normalize(), 70f64.to_radians(), 64.0 / 48.0, p)
+                        * f64::from(dim);
+                    if u.cmpge(DVec3::ZERO).all() && u.cmplt(DVec3::splat(f64::from(dim))).all() {
+                        let cell = u.as_uvec3();
+                        *hits.entry((cell.x + dim * (cell.y + dim * cell.z)) as usize).or_default() += 1;
+                    }
+                }
+            }
+            // A cell that a triangle only grazes holds few points, and a voxelizer by points may miss it too.
+            let found = hits.keys().filter(|c| set[**c]).count() as f64 / hits.len() as f64;
+            let all: u32 = hits.values().sum();
+            let area = hits.iter().filter(|h| set[*h.0]).map(|h| h.1).sum::<u32>() as f64 / f64::from(all);
+            let voxels = set.iter().filter(|s| **s).count();
+            let right =
+                set.iter().enumerate().filter(|(i, s)| **s && hits.contains_key(i)).count() as f64 / voxels as f64;
+            println!(
+                "{warp}, {voxelizer}: {voxels} voxels, recall {found:.4}, of the surface {area:.4}, hit by a sample {right:.4}"
+            );
+            if area < 0.98 || right < 0.97 {
+                wrong.push(format!("{warp}, {voxelizer}"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+/// The voxels of the last frame by cell, and what colour they have.
+fn voxels(session: &mut Session, blocks: usize) -> BTreeMap<usize, [f32; 4]> {
+    let texels = session.texels("voxelIndex", 0, 0).unwrap();
+    assert_eq!(texels.extent[2] as usize, blocks * texels.extent[0] as usize);
+    let set: BTreeSet<usize> =
+        texels.bytes.chunks_exact(4).enumerate().filter(|(_, t)| **t != [0; 4]).map(|(i, _)| i).collect();
+    let colour = floats(session, "voxelColor", 0);
+    set.into_iter().map(|i| (i, colour[i])).collect()
+}
+
+/// A volume that scrolls ends where one does that is voxelized anew: after steps along every axis, farther than itself,
+/// and where something in the scene moved.
+#[test]
+fn scrolling_ends_where_voxelizing_anew_does() {
+    let lab = lab(root());
+    let steps = [
+        [0.0; 3],
+        [-0.9, 0.0, 0.0],
+        [-0.9, -0.6, -0.8],
+        [0.1, 0.2, -1.5],
+        [40.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0],
+        [0.0, 0.3, 0.0],
+    ];
+    for (voxelizer, cascades) in [("raster", "1"), ("tessellated", "1"), ("raster", "2"), ("tessellated", "2")] {
+        let set = [
+            ("voxel_dim", "32"),
+            ("volume", "camera"),
+            ("volume_size", "(4, 4, 4)"),
+            ("volume_snap", "voxel"),
+            ("voxelizer", voxelizer),
+            ("cascades", cascades),
+            QUICK,
+        ];
+        let e = experiment("moving-box", (16, 12), &set);
+        let scrolling = experiment("moving-box", (16, 12), &[&set[..], &[("volume_scroll", "true")]].concat());
+        let mut kept = prepare(&lab, &scrolling, &["voxelIndex", "voxelColor", "voxelCounter"]);
+        for (i, step) in steps.iter().enumerate() {
+            // The box of the scene moves in step 5 and rests in step 6.
+            let time = if i < 5 { 0.0 } else { 0.5 };
+            kept.set_time(time);
+            offset(&lab, &mut kept, &scrolling, *step);
+            run(&mut kept, 1);
+            let mut anew = prepare(&lab, &e, &["voxelIndex", "voxelColor"]);
+            anew.set_time(time);
+            offset(&lab, &mut anew, &e, *step);
+            run(&mut anew, 1);
+            let blocks = cascades.parse().unwrap();
+            let (a, b) = (voxels(&mut kept, blocks), voxels(&mut anew, blocks));
+            let same = a
+                .iter()
+                .filter(|(cell, colour)| b.get(cell).is_some_and(|c| (0..4).all(|k| (c[k] - colour[k]).abs() < 0.02)))
+                .count();
+            let counter = kept.buffer("voxelCounter").unwrap();
+            let word = |i: usize| u32::from_ne_bytes([0, 1, 2, 3].map(|b| counter[4 * i + b]));
+            println!(
+                "{voxelizer}, {cascades} blocks, step {i}: {} voxels, {} anew, {same} alike; {} kept, {} fragments",
+                a.len(),
+                b.len(),
+                word(15),
+                word(14)
+            );
+            // Where a triangle's edge runs along a cell's border rounding decides, and it is another after a step. The
+            // tessellator's points in a coarse block depend on where the finer one lies.
+            let least = if (voxelizer, cascades) == ("tessellated", "2") { 0.99 } else { 0.998 };
+            assert!(same as f64 >= least * a.len().max(b.len()) as f64, "step {i}");
+            let kept_share = f64::from(word(15)) / a.len().max(1) as f64;
+            match i {
+                0 | 4 | 5 => assert_eq!(word(15), 0, "step {i}: nothing of the last frame is right here"),
+                1..=3 => assert!(kept_share > 0.3 && word(14) > 0, "step {i}: {kept_share}"),
+                _ => assert!(kept_share > 0.5, "step {i}: {kept_share}"),
+            }
+        }
+        run(&mut kept, 1);
+        let counter = kept.buffer("voxelCounter").unwrap();
+        assert_eq!(counter[56..60], [0; 4], "nothing moved: no fragments");
+    }
+    assert_clean(&lab);
+}
+
+/// T6. The volume follows a camera that moves by a tenth of a voxel a frame, under a picture that stands still: what
+/// changes is the volume's doing. Largest change of the shown picture, of 255.
+#[test]
+fn a_snapped_volume_stands_still() {
+    let lab = lab(root());
+    let jump = |settings: &[(&str, &str)], from: f64| {
+        let set = [settings, &[("voxel_dim", "48"), QUICK]].concat();
+        let e = inside(experiment("cornell", (48, 36), &set));
+        let mut session = prepare(&lab, &e, &["radiance"]);
+        let (mut last, mut largest, mut sum) = (None::<Vec<[f32; 4]>>, 0.0f64, 0.0);
+        for i in 0..16 {
+            offset(&lab, &mut session, &e, [from + 0.0167 * f64::from(i), 0.007 * f64::from(i), 0.011 * f64::from(i)]);
+            run(&mut session, 1);
+            let now = floats(&mut session, "radiance", 0);
+            if let Some(last) = last {
+                let changes = now.iter().flatten().zip(last.iter().flatten());
+                for (a, b) in changes {
+                    let change = 255.0 * (display(Kind::Radiance, *a) - display(Kind::Radiance, *b)).abs();
+                    largest = largest.max(change);
+                    sum += change / (15.0 * 4.0 * now.len() as f64);
+                }
+            }
+            last = Some(now);
+        }
+        (largest, sum)
+    };
+    // Holds all of the scene before and after its step.
+    let camera = [("volume", "camera"), ("volume_size", "(12, 12, 12)")];
+    let of = |snap: &'static str, more: &[(&'static str, &'static str)]| {
+        [&camera[..], &[("volume_snap", snap)], more].concat()
+    };
+    let (mut found, mut crossed) = (BTreeMap::new(), BTreeMap::new());
+    for (name, settings) in [
+        ("scene", vec![]),
+        ("camera, by levels", of("level", &[])),
+        ("camera, by voxels", of("voxel", &[])),
+        ("camera, not snapped", of("off", &[])),
+        ("two cascades, by levels", vec![("cascades", "2")]),
+        ("two cascades, by voxels", vec![("cascades", "2"), ("volume_snap", "voxel")]),
+        ("spherical, snapped", vec![("warp", "spherical"), ("warp_near", "0.3"), ("warp_far", "6")]),
+        (
+            "spherical, not snapped",
+            vec![("warp", "spherical"), ("warp_near", "0.3"), ("warp_far", "6"), ("volume_snap", "off")],
+        ),
+        ("perspective", vec![("warp", "perspective"), ("warp_near", "0.3"), ("warp_far", "6")]),
+    ] {
+        // The box moves by 2 m, its coarsest cell, where the camera has gone .3 m.
+        let (peak, mean) = jump(&settings, 0.0);
+        let (crossing, mean_crossing) = jump(&settings, 0.2);
+        println!("{name}: peak jump {peak:.2} / 255, mean {mean:.4}; across a step {crossing:.2}, {mean_crossing:.4}");
+        found.insert(name, peak);
+        crossed.insert(name, crossing);
+    }
+    assert_clean(&lab);
+    assert_eq!(found["scene"], 0.0);
+    assert!(found["camera, by levels"] < 0.01 && crossed["camera, by levels"] < 2.0, "a snapped volume jumps");
+    assert!(found["camera, not snapped"] > 4.0, "without snapping nothing is worse");
+}
+
+/// T8. The filter over time adds no light, however long it runs, at rest or on the move.
+#[test]
+fn the_temporal_filter_gains_nothing() {
+    let lab = lab(root());
+    let set = [
+        ("voxel_dim", "32"),
+        ("volume", "camera"),
+        ("volume_size", "(8, 8, 8)"),
+        ("volume_snap", "voxel"),
+        ("shade_stage", "compute"),
+        QUICK,
+    ];
+    let e = inside(experiment("cornell", (24, 18), &set));
+    let filtered = inside(experiment(
+        "cornell",
+        (24, 18),
+        &[&set[..], &[("temporal", "true"), ("temporal_factor", "0.95"), ("temporal_cut", "100")]].concat(),
+    ));
+    let mut plain = frames(&lab, &e, &["voxelRadiance"], 1);
+    let truth = mean(&floats(&mut plain, "voxelRadiance", 0));
+    let mut session = prepare(&lab, &filtered, &["voxelRadiance"]);
+    run(&mut session, 200);
+    let still = mean(&floats(&mut session, "voxelRadiance", 0)) / truth;
+    for i in 0..200 {
+        let angle = f64::from(i) * 0.37;
+        offset(&lab, &mut session, &filtered, [0.6 * angle.sin(), 0.0, 0.6 * angle.cos() - 0.6]);
+        run(&mut session, 1);
+    }
+    offset(&lab, &mut session, &filtered, [0.0; 3]);
+    run(&mut session, 1);
+    let moved = mean(&floats(&mut session, "voxelRadiance", 0)) / truth;
+    println!("radiance against no filter: after 200 frames {still:.4}, after 200 more on the move {moved:.4}");
+    assert!((still - 1.0).abs() < 0.002 && moved < 1.002 && moved > 0.9, "the filter gains or loses light");
+    assert_clean(&lab);
+}
+
+/// A camera that jumps leaves nothing of the past behind; one that walks keeps it.
+#[test]
+fn a_cut_resets_the_temporal_filter() {
+    let lab = lab(root());
+    let set = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), ("temporal", "true"), QUICK];
+    let e = inside(experiment("cornell", (24, 18), &set));
+    let plain = inside(experiment("cornell", (24, 18), &[&set[..], &[("temporal", "false")]].concat()));
+    let mut dark = scene("cornell").lights.clone();
+    dark.iter_mut().for_each(|l| l.color *= 0.1);
+    // Light falls to a tenth in the frame in which the camera goes: what is brighter is the past.
+    let after = |e: &Experiment, by: [f64; 3]| {
+        let mut session = prepare(&lab, e, &["voxelRadiance"]);
+        run(&mut session, 3);
+        assert!(session.set_lights(&dark, Vec3::ZERO));
+        offset(&lab, &mut session, e, by);
+        run(&mut session, 1);
+        mean(&floats(&mut session, "voxelRadiance", 0))
+    };
+    let (step, jump) = ([0.3, 0.0, 0.0], [0.0, 0.0, 1.5]);
+    let (walk, cut) = (after(&e, step) / after(&plain, step), after(&e, jump) / after(&plain, jump));
+    println!("radiance against no filter: after a step {walk:.3}, after a cut {cut:.3}");
+    assert!(walk > 2.0, "a step forgets");
+    assert!((cut - 1.0).abs() < 1e-3, "a cut remembers");
+    assert_clean(&lab);
+}
