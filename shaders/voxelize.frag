@@ -21,13 +21,15 @@ vec3 unwarped(vec3 cells) {
     return mix(u, unwarp(in_volume), equal(in_volume, u));
 }
 
-// Whether the triangle overlaps a cell, exactly wherever cells are boxes: in the coordinates of the cell itself.
-bool overlapsCell(ivec3 cell) {
-    if (WARP == WARP_NONE || CURVED) return triangleOverlapsCell(corner[0], corner[1], corner[2], cell);
+// Whether the triangle overlaps a cell, exactly wherever cells are boxes. Under a warp its corners come unwarped, and the
+// test is made in the coordinates of the cell itself, whose middle comes back, unwarped too.
+bool overlapsCell(ivec3 cell, vec3 c[3], out vec3 middle) {
+    middle = vec3(0.0);
+    if (EVEN) return triangleOverlapsCell(corner[0], corner[1], corner[2], cell);
     float dim = float(params.voxel_dim);
     vec3 low = unwarp(vec3(cell) / dim), size = unwarp(vec3(cell + 1) / dim) - low;
-    vec3 a = (unwarped(corner[0]) - low) / size, b = (unwarped(corner[1]) - low) / size, c = (unwarped(corner[2]) - low) / size;
-    return triangleOverlapsCell(a, b, c, ivec3(0));
+    middle = low + 0.5 * size;
+    return triangleOverlapsCell((c[0] - low) / size, (c[1] - low) / size, (c[2] - low) / size, ivec3(0));
 }
 
 void main() {
@@ -36,13 +38,22 @@ void main() {
     float dim = float(params.voxel_dim);
     vec3 at = worldToVolume(grid, position) * dim;
     vec3 across = dFdx(at), down = dFdy(at);
-    // Texture footprint of a cell, not of a pixel: warps draw several pixels a cell.
-    float pixels = 1.0 / clamp(max(length(across), length(down)), 1.0 / 64.0, 1.0);
-    Gradient g = Gradient(dFdx(uv) * pixels, dFdy(uv) * pixels);
+    int depth = int(axis & 3u);
+    ivec3 axes = planeAxes(axis & 3u);
+    bool whole = EVEN; // a pixel is a column
+    // Texture footprint of a cell, not of a pixel: under a warp a pixel may be a part of a cell, or have several.
+    float pixels = 1.0;
+    if (!whole) pixels = 1.0 / clamp(max(across[axes.x], down[axes.y]), 1.0 / 64.0, 64.0);
+    vec2 uv_across = dFdx(uv), uv_down = dFdy(uv);
+    vec3 normal_across = dFdx(normal), normal_down = dFdy(normal);
+    Gradient g = Gradient(uv_across * pixels, uv_down * pixels);
 
     Material m = materials.materials[material];
     vec4 base = baseColor(m, uv, g);
-    if (base.a < m.alpha_cutoff) return;
+    // A pixel with several cells looks at the surface in each.
+    bool tested = CONSERVATIVE == CONSERVATIVE_HARDWARE || CONSERVATIVE == CONSERVATIVE_DILATE;
+    bool each = tested && !whole;
+    if (base.a < m.alpha_cutoff && !each) return;
     vec3 n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
     vec3 light = emission(m, uv, g);
 
@@ -50,17 +61,15 @@ void main() {
     vec3 lo = min(corner[0], min(corner[1], corner[2])), hi = max(corner[0], max(corner[1], corner[2]));
     vec3 inside = clamp(at, lo, hi);
     ivec3 cell = ivec3(floor(inside));
-    if (CONSERVATIVE != CONSERVATIVE_HARDWARE && CONSERVATIVE != CONSERVATIVE_DILATE) {
+    if (!tested) {
         if (inGrid(cell)) storeVoxel(cell, block, base.rgb, n, light);
         return;
     }
 
-    int depth = int(axis & 3u);
-    ivec3 axes = planeAxes(axis & 3u);
     ivec3 from = ivec3(floor(inside)), to = from;
+    vec3 c[3] = vec3[3](unwarped(corner[0]), unwarped(corner[1]), unwarped(corner[2]));
     // Attributes of fragments beside their triangle are extrapolated, and of thin triangles no more than noise: the
     // columns are those that the pixel touches, the depth that of the corners' plane over the pixel.
-    vec3 c[3] = vec3[3](unwarped(corner[0]), unwarped(corner[1]), unwarped(corner[2]));
     vec3 face = cross(c[1] - c[0], c[2] - c[0]);
     vec2 slope = face[depth] != 0.0 ? -vec2(face[axes.x], face[axes.y]) / face[depth] : vec2(dim); // a line: any depth
     float pixel = 1.0 / float(params.raster_size);
@@ -75,11 +84,14 @@ void main() {
     // A corner exactly on a border belongs to both cells.
     from[depth] = int(floor(low.z - 1e-5));
     to[depth] = int(floor(high.z + 1e-5));
-    bool whole = WARP == WARP_NONE || CURVED; // a pixel is a column
     from[axes.x] = whole ? int(gl_FragCoord.x) : int(floor(low.x));
     from[axes.y] = whole ? int(gl_FragCoord.y) : int(floor(low.y));
     to[axes.x] = whole ? from[axes.x] : int(floor(high.x));
     to[axes.y] = whole ? from[axes.y] : int(floor(high.y));
+    if (!whole) { // small triangles touch few of a pixel's cells
+        from = max(from, ivec3(floor(lo - 1e-3)));
+        to = min(to, ivec3(floor(hi + 1e-3)));
+    }
     if ((axis & SLIVER) != 0) {
         from[depth] = int(floor(lo[depth] - 1e-5));
         to[depth] = int(floor(hi[depth] + 1e-5));
@@ -88,6 +100,19 @@ void main() {
     to = min(to, ivec3(params.voxel_dim - 1));
     for (int z = from.z; z <= to.z; z++)
         for (int y = from.y; y <= to.y; y++)
-            for (int x = from.x; x <= to.x; x++)
-                if (overlapsCell(ivec3(x, y, z))) storeVoxel(ivec3(x, y, z), block, base.rgb, n, light);
+            for (int x = from.x; x <= to.x; x++) {
+                ivec3 here = ivec3(x, y, z);
+                vec3 middle;
+                if (!overlapsCell(here, c, middle)) continue;
+                if (each) {
+                    vec2 shift = clamp(vec2(middle[axes.x], middle[axes.y]) * float(params.raster_size) - gl_FragCoord.xy, -0.5, 0.5);
+                    vec2 there = uv + uv_across * shift.x + uv_down * shift.y;
+                    base = baseColor(m, there, g);
+                    if (base.a < m.alpha_cutoff) continue;
+                    light = emission(m, there, g);
+                    n = normal + normal_across * shift.x + normal_down * shift.y;
+                    n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0);
+                }
+                storeVoxel(here, block, base.rgb, n, light);
+            }
 }

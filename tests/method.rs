@@ -141,11 +141,11 @@ fn every_merge_rule_keeps_the_colours() {
 #[test]
 fn every_warp_runs_with_both_voxelizers() {
     let lab = lab(root());
-    for warp in ["none", "spline", "logistic", "perspective"] {
+    for warp in ["none", "spline", "logistic", "perspective", "spherical"] {
         for voxelizer in ["raster", "tessellated"] {
             let what = format!("{warp}, {voxelizer}");
             let mut settings = vec![("voxel_dim", "32"), ("warp", warp), ("voxelizer", voxelizer), QUICK];
-            if warp == "perspective" {
+            if warp == "perspective" || warp == "spherical" {
                 // From before the box to its back wall.
                 settings.extend([("warp_near", "6.0"), ("warp_far", "16.0")]);
             }

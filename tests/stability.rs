@@ -329,7 +329,7 @@ fn equal_cost() {
     assert!((number("large", "diffuse E_t") - ((moving[0].powi(2) + moving[1].powi(2)) / 2.0).sqrt()).abs() < 1e-12);
     assert!(number("large", "memory MiB") > 4.0 * number("first", "memory MiB"));
     assert!(value(&results, "still", "large", "memory MiB").unwrap() >= number("large", "memory MiB"));
-    // All values were timed, the nearest was taken, and the cases ran with it.
+    // The two values next to the first method's time were timed, the nearer was taken, and the cases ran with it.
     let json: serde_json::Value = serde_json::from_str(&out("stability.json")).unwrap();
     let fitted = json["costs"].as_array().unwrap().iter().find(|c| c["method"] == "fitted").unwrap();
     let median = |list: &serde_json::Value, first: &serde_json::Value| {
@@ -339,13 +339,16 @@ fn equal_cost() {
         ratios[ratios.len() / 2]
     };
     let candidates = fitted["candidates"].as_array().unwrap();
-    let off: Vec<f64> = candidates.iter().map(|c| median(&c["ms"], &c["first_ms"]).ln().abs()).collect();
+    let timed: Vec<usize> = (0..3).filter(|i| !candidates[*i]["ms"].as_array().unwrap().is_empty()).collect();
+    assert!(timed == [0, 1] || timed == [1, 2], "{timed:?}");
+    let off = |i: usize| median(&candidates[i]["ms"], &candidates[i]["first_ms"]).ln().abs();
     let chosen = fitted["chosen"].as_u64().unwrap() as usize;
-    assert!(candidates.len() == 3 && off.iter().all(|o| *o >= off[chosen]), "{off:?}, chosen {chosen}");
+    assert!(timed.contains(&chosen) && timed.iter().all(|i| off(*i) >= off(chosen)), "{timed:?}, chosen {chosen}");
     assert_eq!(cell("fitted", "setting"), format!("voxel_dim = {}", [16, 48, 96][chosen]));
     let sizes = [16u64, 48, 96].map(|d| d.pow(3)).into_iter().collect::<Vec<_>>();
     let memory = |i: usize| candidates[i]["memory_bytes"].as_u64().unwrap();
-    assert!(memory(2) - memory(0) > 4 * (sizes[2] - sizes[0]), "bytes grow with the voxels");
+    let (a, b) = (timed[0], timed[1]);
+    assert!(memory(b) - memory(a) > 4 * (sizes[b] - sizes[a]), "bytes grow with the voxels");
     let svg = out("charts/cost.svg");
     assert!(["as they are", "equal time", "first", "large", "fitted"].iter().all(|t| svg.contains(t)));
     assert!(out("index.html").contains(&svg) && out("index.html").contains("What stability costs"));

@@ -169,7 +169,11 @@ fn resolution() {
     let finer: &[&str] = if device() == "llvmpipe" { &[] } else { &["256", "512"] };
     let mut rows = Vec::new();
     for dim in ["32", "64", "128"].iter().chain(finer) {
-        let (parts, truth) = run(&lab, &experiment("cornell", (100, 75), &[("voxel_dim", dim), QUICK]), 256);
+        let mut set = vec![("voxel_dim", *dim), QUICK];
+        if finer.contains(dim) {
+            set.extend([("voxel_capacity", "2700000"), ("fragment_capacity", "64000000")]);
+        }
+        let (parts, truth) = run(&lab, &experiment("cornell", (100, 75), &set), 256);
         let truth = &truth.parts["diffuse"].mean;
         let most = truth.rgb.iter().map(|t| t.iter().sum::<f32>()).fold(0.0, f32::max);
         let share = f64::from(most) / (3.0 * truth.mean() * truth.rgb.len() as f64);

@@ -403,3 +403,67 @@ fn a_cut_resets_the_temporal_filter() {
     assert!((cut - 1.0).abs() < 1e-3, "a cut remembers");
     assert_clean(&lab);
 }
+
+/// T9. No seam where one cascade ends: steps of the diffuse light between neighbouring pixels, against those of a uniform
+/// volume as fine as the inner cascade, for pairs on both sides of its border and for all others.
+#[test]
+fn cascades_meet_without_a_seam() {
+    let lab = lab(root());
+    let size = (160u32, 120u32);
+    let picture = |settings: &[(&str, &str)]| {
+        let e = inside(experiment("cornell", size, &[settings, &[QUICK]].concat()));
+        let mut session = frames(&lab, &e, &["diffuseIndirect", "surfaceDistance", "surfaceNormal", "volume"], 1);
+        let light: Vec<f64> =
+            floats(&mut session, "diffuseIndirect", 0).iter().map(|t| f64::from(t[0] + t[1] + t[2])).collect();
+        (light, session)
+    };
+    let (fine, _) = picture(&[("voxel_dim", "96")]);
+    let (coarse, _) = picture(&[("voxel_dim", "48")]);
+    let (cascades, mut session) = picture(&[("voxel_dim", "48"), ("cascades", "2")]);
+    let words = session.buffer("volume").unwrap();
+    let vector = |at: usize| {
+        DVec3::from_array(
+            [0, 1, 2].map(|i| f64::from(f32::from_ne_bytes([0, 1, 2, 3].map(|b| words[4 * (at + i) + b])))),
+        )
+    };
+    let (low, edge) = (vector(0), vector(4));
+    let (distance, normal) = (floats(&mut session, "surfaceDistance", 0), floats(&mut session, "surfaceNormal", 0));
+    let (eye, target) = (DVec3::new(2.7, 2.5, 1.0), DVec3::new(2.9, 2.4, 5.0));
+    let toward = (target - eye).normalize();
+    let right = toward.cross(DVec3::Y).normalize();
+    let down = toward.cross(right);
+    let half = 35f64.to_radians().tan();
+    let place = |i: usize| {
+        let (x, y) = ((i as u32 % size.0) as f64 + 0.5, (i as u32 / size.0) as f64 + 0.5);
+        let (x, y) = (2.0 * x / f64::from(size.0) - 1.0, 2.0 * y / f64::from(size.1) - 1.0);
+        let ray = toward + right * (x * half * f64::from(size.0) / f64::from(size.1)) + down * (y * half);
+        eye + ray.normalize() * f64::from(distance[i][0])
+    };
+    let within = |p: DVec3| p.cmpgt(low).all() && p.cmplt(low + edge).all();
+    let steps = |light: &[f64], across: bool| {
+        let (mut sum, mut count) = (0.0, 0);
+        for i in (0..light.len() - 1).filter(|i| *i as u32 % size.0 + 1 < size.0) {
+            let one_surface = (0..3).all(|k| (normal[i][k] - normal[i + 1][k]).abs() < 0.01)
+                && (distance[i][0] - distance[i + 1][0]).abs() < 0.05;
+            let lit = [i, i + 1].iter().all(|j| light[*j] > 0.0 && fine[*j] > 0.0);
+            if !one_surface || !lit || distance[i][0] <= 0.0 || (within(place(i)) != within(place(i + 1))) != across {
+                continue;
+            }
+            let ratio = |j: usize| (light[j] / fine[j]).ln();
+            sum += (ratio(i) - ratio(i + 1)).abs();
+            count += 1;
+        }
+        (sum / f64::from(count), count)
+    };
+    let ((seam, pairs), (rest, _)) = (steps(&cascades, true), steps(&cascades, false));
+    let ((seam_coarse, _), (rest_coarse, _)) = (steps(&coarse, true), steps(&coarse, false));
+    println!(
+        "cascades: steps of {:.3} % across the border ({pairs} pairs), {:.3} % elsewhere",
+        100.0 * seam,
+        100.0 * rest
+    );
+    println!("coarse volume: {:.3} % there, {:.3} % elsewhere", 100.0 * seam_coarse, 100.0 * rest_coarse);
+    assert!(pairs > 50, "the border is not in the picture");
+    assert!(seam < 0.03, "a seam of {seam}");
+    assert_clean(&lab);
+}

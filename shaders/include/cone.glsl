@@ -36,13 +36,6 @@ vec4 sampleCone(vec3 u, int block, vec3 d, float lod) {
     return over <= 0.0 ? texel : mix(texel, sampleBox(vec3(u.x < 0.5 ? 1.0 - half_cell : half_cell, u.yz), block, d, lod), over);
 }
 
-// Where a block's lookups of a level begin to meet its border they turn into the next block's.
-float shareOfBlock(vec3 u, float lod) {
-    vec3 inside = min(u, 1.0 - u);
-    if (WARP == WARP_SPHERICAL) inside.xy = vec2(1.0); // no borders there
-    return clamp(min(inside.x, min(inside.y, inside.z)) * 0.5 * float(params.voxel_dim) / exp2(max(lod, 0.0)), 0.0, 1.0);
-}
-
 // The level whose cells are as wide as the cone. `v`: length of the block's cell along the cone, `height`: above the
 // plane of the surface that the cone leaves [m].
 float levelAt(Grid g, vec3 p, float v, float radius, float height, ConeOrigin o) {
@@ -61,7 +54,8 @@ float levelAt(Grid g, vec3 p, float v, float radius, float height, ConeOrigin o)
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
     int block = o.block;
     Grid g = volume.grids[block];
-    float v0 = cellAlong(g, o.position, d), v = v0;
+    float v = cellAlong(g, o.position, d), v0 = v;
+    if (BLOCKS > 1 && o.share < 1.0) v0 = mix(cellAlong(volume.grids[block + 1], o.position, d), v, o.share);
     vec3 way = gridDirection(g, o.position, d);
     float rise = max(dot(d, o.normal), 0.0);
     float s = params.cone_height * v0;

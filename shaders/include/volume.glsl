@@ -43,8 +43,11 @@ vec3 warp(vec3 x) {
         return x * (a + x * (3.0 - 3.0 * a + x * (2.0 * a - 2.0)));
     }
     if (WARP == WARP_LOGISTIC) {
+        // .5 + .5 tanh(s/2 (x - 1/2)) / tanh(s/4), whose difference of tanh would cancel at the borders.
         float s = params.warp_steepness;
-        return 0.5 + 0.5 * tanh(0.5 * s * (x - 0.5)) / tanh(0.25 * s);
+        vec3 folded = 0.5 - abs(x - 0.5);
+        vec3 y = sinh(0.5 * s * folded) / (2.0 * sinh(0.25 * s) * cosh(0.5 * s * (0.5 - folded)));
+        return mix(y, 1.0 - y, greaterThan(x, vec3(0.5)));
     }
     return x;
 }
@@ -72,8 +75,10 @@ vec3 unwarp(vec3 y) {
         return mix(x, 1.0 - x, greaterThan(y, vec3(0.5)));
     }
     if (WARP == WARP_LOGISTIC) {
-        float s = params.warp_steepness;
-        return 0.5 + 2.0 / s * atanh(clamp((2.0 * y - 1.0) * tanh(0.25 * s), -0.9999999, 0.9999999));
+        float s = params.warp_steepness, e = exp(0.5 * s);
+        vec3 folded = 0.5 - abs(y - 0.5);
+        vec3 x = log((1.0 + folded * (e - 1.0)) / (1.0 - folded * (1.0 - 1.0 / e))) / s;
+        return mix(x, 1.0 - x, greaterThan(y, vec3(0.5)));
     }
     return y;
 }
@@ -180,6 +185,15 @@ bool inVolume(vec3 u) {
 
 bool inGrid(ivec3 cell) {
     return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(params.voxel_dim)));
+}
+
+// Towards a block's border, over so many cells of a level, lookups turn into the next block's.
+const float BLEND_CELLS = 6.0;
+
+float shareOfBlock(vec3 u, float lod) {
+    vec3 inside = min(u, 1.0 - u);
+    if (WARP == WARP_SPHERICAL) inside.xy = vec2(1.0); // no borders there
+    return clamp(min(inside.x, min(inside.y, inside.z)) * float(params.voxel_dim) / (BLEND_CELLS * exp2(max(lod, 0.0))), 0.0, 1.0);
 }
 
 // Whether a place in cells is one whose content stays as it was.

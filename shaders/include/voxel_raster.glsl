@@ -3,6 +3,8 @@
 #define VOXEL_RASTER_GLSL
 #include "volume.glsl"
 
+#define EVEN (WARP == WARP_NONE || CURVED) // but for warp functions, whose cells are drawn before warping
+
 const uint SLIVER = 4u; // flag beside the axis: drawn as its bounding rectangle
 
 // The block that is drawn. Not a curved one: in a frustum with depth in equal steps, pixels along depth must be as small

@@ -9,7 +9,7 @@ pub use tables::{csv, text};
 
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, Seed, Session};
-use crate::measure::{Frames, Warm, timed};
+use crate::measure::{Frames, Timed, Warm, timed};
 use crate::stats::{self, DeviceStats, Spread, Stats, spread};
 use crate::sweep::Listed;
 use indexmap::IndexMap;
@@ -27,7 +27,7 @@ pub struct Bench {
     pub device: DeviceStats,
     /// How often every configuration had its turn.
     pub rounds: usize,
-    /// Frames of every turn.
+    /// Frames of every turn; those of its warm-up at least.
     pub frames: Frames,
     /// Names of what differs, in order.
     pub names: Vec<String>,
@@ -53,7 +53,7 @@ pub struct Configuration {
 /// Times over all rounds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Times {
-    /// Of every pass, with settings and memory.
+    /// Of every pass, with settings and memory; the warm-up is that of the round with the shortest.
     pub stats: Stats,
     /// Of every stage (passes that the graph counts together, added up frame by frame), ms.
     pub stages: IndexMap<String, Spread>,
@@ -70,6 +70,8 @@ struct Gathered {
     seed: Option<Seed>,
     times: Vec<FrameTimes>,
     rounds: Vec<f64>,
+    /// Frames before those measured, in the round with the fewest.
+    warmup: Option<usize>,
     result: Option<Result<Summary, String>>,
 }
 
@@ -96,13 +98,15 @@ pub fn bench(
                 let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
                 let seed = gathered.seed.as_ref().or(last.as_ref());
                 match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], seed) {
-                    Ok((mut session, times)) => {
+                    Ok(Timed { mut session, times, warmup }) => {
+                        gathered.warmup = gathered.warmup.map_or(Some(warmup), |least| Some(least.min(warmup)));
                         gathered.rounds.push(spread(times.iter().map(|t| t.gpu_ms).collect()).median);
                         gathered.times.extend(times);
                         if round + 1 == rounds {
                             let warnings = session.failed_checks()?;
                             let (times, name) = (&gathered.times, &point.experiment.name);
-                            let stats = stats::collect(&lab.gpu.info, name, &session, times, frames.warmup, warnings);
+                            let warmup = gathered.warmup.unwrap_or(warmup);
+                            let stats = stats::collect(&lab.gpu.info, name, &session, times, warmup, warnings);
                             gathered.result = Some(Ok((stats, stages(&session, times))));
                         }
                         // The next configuration's first turn starts from this one's pipelines and scene.

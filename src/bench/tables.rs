@@ -64,7 +64,7 @@ pub fn text(bench: &Bench) -> String {
     let (column, values) = columns(bench);
     let rows = rows(bench);
     let mut out = format!(
-        "{} ({}), {} rounds of {} frames after {} of warm-up; GPU ms, median (95 %)\n",
+        "{} ({}), {} rounds of {} frames after at least {} of warm-up; GPU ms, median (95 %)\n",
         bench.device.name, bench.device.driver, bench.rounds, bench.frames.count, bench.frames.warmup
     );
     let titles = rows.iter().map(|r| r.title.chars().count() + "1920x1080 ".len());

@@ -34,7 +34,7 @@ pub struct BenchArgs {
     /// Frames of every turn.
     #[arg(long, default_value_t = 40)]
     frames: usize,
-    /// Frames before those of every turn.
+    /// Frames before those of every turn; on a GPU more, until it has worked for 100 ms.
     #[arg(long, default_value_t = 10)]
     warmup: usize,
     /// Where bench.json, bench.csv and the charts go; captures/bench/NAME when absent.

@@ -40,7 +40,7 @@ pub struct FitArgs {
     /// Frames that are timed for each setting.
     #[arg(long, default_value_t = 9)]
     frames: usize,
-    /// Frames before them.
+    /// Frames before them; on a GPU more, until it has worked for 100 ms.
     #[arg(long, default_value_t = 3)]
     warmup: usize,
     /// Samples of every pixel of the reference, if more are needed than are there.

@@ -35,6 +35,9 @@ pub struct StabilityArgs {
     /// Only these cases.
     #[arg(long, value_name = "CASE", value_delimiter = ',')]
     only: Vec<String>,
+    /// Only these methods, and the suite's first one.
+    #[arg(long, value_name = "METHOD", value_delimiter = ',')]
+    methods: Vec<String>,
     /// Draw the worst case of each method on one picture, and print a table of them, Markdown.
     #[arg(long, value_name = "FILE.jpg")]
     sheet: Option<PathBuf>,
@@ -44,7 +47,10 @@ pub struct StabilityArgs {
 
 /// Runs a suite; an error if a method failed in a case.
 pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
-    let suite = Suite::read(&args.suite).map_err(LabError::Input)?;
+    let mut suite = Suite::read(&args.suite).map_err(LabError::Input)?;
+    if !args.methods.is_empty() {
+        suite.keep(&args.methods).map_err(LabError::Request)?;
+    }
     let size = args.size.as_deref().map(parse_size).transpose()?;
     if let Some(frames) = args.frames {
         super::adapt::check_frames(frames, 0, 0.0)?;

@@ -22,7 +22,7 @@ pub struct SweepArgs {
     /// Frames of every point, instead of the file's.
     #[arg(long)]
     frames: Option<usize>,
-    /// Frames before those of every point, instead of the file's.
+    /// Frames before those of every point, instead of the file's; on a GPU more, until it has worked for 100 ms.
     #[arg(long)]
     warmup: Option<usize>,
     /// Gather the references of the points to this many samples a pixel first; those that are cached are used as they

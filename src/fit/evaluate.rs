@@ -4,7 +4,7 @@ use super::search::Trial;
 use super::{Axis, at};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, Seed};
-use crate::measure::{Frames, timed};
+use crate::measure::{Frames, Timed, timed};
 use crate::metrics::{Compared, Kind, Linear, relmse};
 use crate::reference::Reference;
 use crate::scene::Scene;
@@ -124,7 +124,8 @@ impl<'a> Evaluator<'a> {
         // The linear picture is made for the display anyway; other parts cost time to write, and get frames of their own.
         let together = s.loaded.graph.hdr.as_ref() == Some(&self.texture);
         let beside = if together { std::slice::from_ref(&self.texture) } else { &[] };
-        let (mut session, times) = timed(s.lab, s.loaded, experiment, &s.scene, s.frames, beside, self.seed.as_ref())?;
+        let Timed { mut session, times, .. } =
+            timed(s.lab, s.loaded, experiment, &s.scene, s.frames, beside, self.seed.as_ref())?;
         let ms = spread(times.iter().map(|t| t.gpu_ms).collect()).median;
         if let Some(message) = session.failed_checks()?.into_iter().next() {
             self.refused = Some(message);

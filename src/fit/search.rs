@@ -4,7 +4,8 @@
 //! met, single steps that cost less and stay within it; then exchanges of two steps, one that saves and one that mends,
 //! of which only those are tried that a model promises: that the ratio by which a step changes a quantity is the same
 //! wherever it is taken. From where no step helps any more, a model of all that was tried proposes settings farther away
-//! ([`propose`]); several in a row that are no better end the search.
+//! ([`propose`]); several in a row that are no better end the search. Whatever a setting was tried for, the walk goes on
+//! from it if it is the best, and the best of all is what comes back.
 
 use super::model::propose;
 use std::collections::HashMap;
@@ -129,6 +130,18 @@ impl<E> Search<'_, E> {
         (0..place.len()).flat_map(|axis| ways(axis).into_iter().flatten().map(move |to| (axis, to))).collect()
     }
 
+    /// The best of everything tried, gains of any size counted: the first of equals.
+    fn best(&self) -> Option<(Vec<usize>, Trial)> {
+        let within = |t: &Trial| t.bounded <= self.limits.bound;
+        let merit = |t: &Trial| (!within(t), if within(t) { t.cost } else { t.bounded });
+        let order = |a: &Trial, b: &Trial| {
+            let ((beyond, value), (other_beyond, other)) = (merit(a), merit(b));
+            beyond.cmp(&other_beyond).then(value.total_cmp(&other))
+        };
+        let tried = self.tried.iter().filter_map(|step| Some((&step.place, step.trial?)));
+        tried.min_by(|a, b| order(&a.1, &b.1)).map(|(place, trial)| (place.clone(), trial))
+    }
+
     /// How far a setting is from what is wanted: first within the bound, then cheap.
     fn better(&self, new: Trial, old: Trial) -> bool {
         let within = |t: Trial| t.bounded <= self.limits.bound;
@@ -165,8 +178,8 @@ pub fn search<E>(
     evaluate: &mut Evaluate<'_, E>,
 ) -> Result<Option<Found>, E> {
     let mut s = Search { evaluate, sizes, limits, known: HashMap::new(), tried: Vec::new(), ratios: HashMap::new() };
-    let Some((mut place, mut trial)) = descend(&mut s, start)? else { return Ok(None) };
-    if let Some(found) = descend(&mut s, &vec![0; sizes.len()])?.filter(|f| s.better(f.1, trial)) {
+    let Some((mut place, mut trial)) = descend(&mut s, start, None)? else { return Ok(None) };
+    if let Some(found) = descend(&mut s, &vec![0; sizes.len()], Some(trial))?.filter(|f| s.better(f.1, trial)) {
         (place, trial) = found;
     }
     // Every value of every axis once, so that the model knows of all of them.
@@ -176,18 +189,26 @@ pub fn search<E>(
         }
     }
     let mut in_vain = 0;
-    while in_vain < PROPOSALS && !s.spent() {
+    loop {
+        // Whatever it was tried for: the walk goes on from the best.
+        if let Some(best) = s.best().filter(|best| s.better(best.1, trial)) {
+            (place, trial) = descend(&mut s, &best.0, None)?.unwrap_or(best);
+            in_vain = 0;
+            continue;
+        }
+        if in_vain == PROPOSALS || s.spent() {
+            break;
+        }
         // What should miss the bound by a little may turn out to be within.
         let bound = limits.bound * (1.0 + 0.02 * (in_vain % 3) as f64);
         let tried: Vec<(&[usize], Trial)> = s.tried.iter().filter_map(|t| Some((&t.place[..], t.trial?))).collect();
         let Some(from) = propose(sizes, &s.known, &tried, bound) else { break };
-        match s.trial(&from)? {
-            Some(found) if s.better(found, trial) => {
-                (place, trial) = descend(&mut s, &from)?.unwrap_or((from, found));
-                in_vain = 0;
-            }
-            _ => in_vain += 1,
-        }
+        s.trial(&from)?;
+        in_vain += 1;
+    }
+    // Smaller gains than those worth a walk are gains too.
+    if let Some(best) = s.best() {
+        (place, trial) = best;
     }
     let stop = match trial.bounded <= limits.bound {
         _ if s.spent() => Stop::Evaluations,
@@ -197,11 +218,17 @@ pub fn search<E>(
     Ok(Some(Found { place, trial, tried: s.tried, stop }))
 }
 
-/// Walks from a setting to one that no step betters.
-fn descend<E>(s: &mut Search<'_, E>, start: &[usize]) -> Result<Option<(Vec<usize>, Trial)>, E> {
+/// Walks from a setting to one that no step betters, or that is dearer than `known`, which is within the bound, and
+/// itself is not: until it is within, a walk gets ever dearer.
+fn descend<E>(s: &mut Search<'_, E>, start: &[usize], known: Option<Trial>) -> Result<Option<(Vec<usize>, Trial)>, E> {
     let mut place = start.to_vec();
     let Some(mut trial) = s.trial(&place)? else { return Ok(None) };
+    let bound = s.limits.bound;
+    let known = known.filter(|known| known.bounded <= bound);
     loop {
+        if known.is_some_and(|known| trial.bounded > bound && trial.cost > known.cost) {
+            return Ok(Some((place, trial)));
+        }
         // Those that helped before, or have not been tried, come first; all of them before the walk ends.
         let (hopeful, others): (Vec<Move>, Vec<Move>) =
             s.moves(&place).into_iter().partition(|m| s.is_hopeful(&place, trial, *m));
@@ -405,6 +432,55 @@ mod tests {
                     found.trial.bounded <= bound && found.trial.cost <= 1.05 * best,
                     "{bound} {start:?}: {found:?}"
                 );
+            }
+        }
+    }
+
+    /// Two dear values of the first axis stand between its ends and its middle, and there the second axis does the
+    /// opposite of what it does everywhere else.
+    fn wall(place: &[usize]) -> Trial {
+        let n = place[1] as f64;
+        match place[0] {
+            2 => Trial { cost: 9.0 - n, bounded: 0.19 - 0.01 * n },
+            1 | 3 => Trial { cost: 50.0 + n, bounded: 0.05 + 0.04 * n },
+            _ => Trial { cost: 10.0 + n, bounded: 0.05 + 0.04 * n },
+        }
+    }
+
+    #[test]
+    fn walks_on_from_what_was_tried_behind_a_wall() {
+        let limits = Limits { bound: 0.2, evaluations: 100, least_gain: 0.01 };
+        for start in [[4, 3], [0, 0], [3, 8]] {
+            let found = search::<()>(&[5, 9], &start, limits, &mut |p| Ok(Some(wall(p)))).unwrap().unwrap();
+            assert_eq!((&found.place[..], found.trial), (&[2, 8][..], wall(&[2, 8])), "{start:?}");
+        }
+    }
+
+    /// Costs and errors without any order.
+    fn noise(place: &[usize], seed: u64) -> Trial {
+        let hash = |n: u64| {
+            let bits =
+                place.iter().fold(seed + n, |h, i| (h ^ *i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29));
+            (bits >> 40) as f64 / (1u64 << 24) as f64
+        };
+        Trial { cost: 1.0 + hash(0), bounded: hash(1) }
+    }
+
+    #[test]
+    fn returns_the_best_of_what_it_tried() {
+        for seed in 0..40 {
+            for bound in [0.0, 0.3, 0.9] {
+                let limits = Limits { bound, evaluations: 100, least_gain: 0.2 };
+                let found = search::<()>(&SIZES, &[2, 3, 2, 1], limits, &mut |p| Ok(Some(noise(p, seed))));
+                let found = found.unwrap().unwrap();
+                let tried = || found.tried.iter().filter_map(|t| t.trial);
+                let within = tried().filter(|t| t.bounded <= bound).map(|t| t.cost).min_by(f64::total_cmp);
+                match within {
+                    Some(least) => assert_eq!((found.trial.cost, found.trial.bounded <= bound), (least, true)),
+                    None => {
+                        assert_eq!(Some(found.trial.bounded), tried().map(|t| t.bounded).min_by(f64::total_cmp));
+                    }
+                }
             }
         }
     }

@@ -1,6 +1,9 @@
 //! One experiment, measured: times of its passes, memory, failed checks, and how far its light is from a reference.
 
 mod pictures;
+mod warm_up;
+
+pub use warm_up::WarmUp;
 
 use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
@@ -16,7 +19,7 @@ use std::sync::Arc;
 /// How long to measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Frames {
-    /// Frames that run first: caches fill, clocks rise, and what gathers over time settles.
+    /// Frames that run first, at least ([`WarmUp`]): caches fill, clocks rise, and what gathers over time settles.
     pub warmup: usize,
     /// Frames measured, at least 1.
     pub count: usize,
@@ -89,9 +92,10 @@ pub fn measure(
     references: &[(u32, Arc<Reference>)],
 ) -> Result<Measured, LabError> {
     let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
-    let (mut session, times) = timed(lab, &loaded, experiment, scene, frames, &[], warm.timed.as_ref())?;
+    let Timed { mut session, times, warmup } =
+        timed(lab, &loaded, experiment, scene, frames, &[], warm.timed.as_ref())?;
     let warnings = session.failed_checks()?;
-    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, frames.warmup, warnings);
+    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, warmup, warnings);
     let picture = loaded.graph.output.as_ref().map(|name| session.texels(name, 0, 0)).transpose()?;
     let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
     warm.timed = Some(session.lend());
@@ -121,6 +125,16 @@ pub fn measure(
     Ok(Measured { point, picture, error_map })
 }
 
+/// An experiment that has run.
+pub struct Timed {
+    /// After its last frame.
+    pub session: Session,
+    /// Of the frames measured.
+    pub times: Vec<FrameTimes>,
+    /// Frames that ran before them.
+    pub warmup: usize,
+}
+
 /// Runs an experiment and keeps the times of its last frames; only what the picture needs, and `beside` it these
 /// textures, is computed.
 ///
@@ -134,18 +148,21 @@ pub fn timed(
     frames: Frames,
     beside: &[String],
     seed: Option<&Seed>,
-) -> Result<(Session, Vec<FrameTimes>), LabError> {
+) -> Result<Timed, LabError> {
     let graph = &loaded.graph;
     let shown = graph.output.clone().or_else(|| graph.hdr.clone());
     let wanted = shown.into_iter().chain(beside.iter().cloned()).collect();
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, seed)?;
+    let warmup = WarmUp::of(&lab.gpu.info, frames.warmup)
+        .run(&mut || Ok::<_, LabError>(session.frame(0.0)?.map_or(0.0, |times| times.gpu_ms)))?;
     let mut times = Vec::new();
-    for _ in 0..frames.warmup + frames.count {
+    for _ in 0..frames.count {
         times.extend(session.frame(0.0)?);
     }
     times.extend(session.finish()?);
+    // The first of them come from the warm-up: frames are in flight.
     let times = times.split_off(times.len().saturating_sub(frames.count));
-    Ok((session, times))
+    Ok(Timed { session, times, warmup })
 }
 
 /// The parts of an experiment's light, by the graph's names for them.

@@ -138,9 +138,17 @@ impl Data {
                 let beside = |b: &&u32| point.scores.contains_key(&format!("total, {b} bounces"));
                 data.bounces.push(point.references.keys().find(|b| !beside(b)).copied());
                 let frames = point.stats.passes.first().map_or(0, |p| p.frames);
+                let alike = collected.points.iter().filter_map(|(_, r)| r.as_ref());
+                let alike = alike.filter(|r| (&r.subject, &r.device.name) == key);
+                let warmups = alike.filter_map(|r| match &r.outcome {
+                    Outcome::Done(point) => Some(point.stats.warmup),
+                    Outcome::Failed(_) => None,
+                });
+                let (least, most) = warmups.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
+                let warmup = if least < most { format!("{least} to {most}") } else { most.to_string() };
                 data.settings.push(format!(
-                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {frames} frames after {} of warm-up; every pass in every frame; {samples}",
-                    s.camera, s.time, device.driver, device.api, point.stats.version, point.stats.warmup
+                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {frames} frames after {warmup} of warm-up; every pass in every frame; {samples}",
+                    s.camera, s.time, device.driver, device.api, point.stats.version
                 ));
                 keys.len() - 1
             });

@@ -1,6 +1,7 @@
 //! What methods cost: GPU time and memory of the frames that make the picture and nothing else, one method after another in
-//! several rounds, so that a device whose clock drifts is as unfair to all. Of methods that are to be as fast as the first,
-//! every value of a parameter is timed, and the nearest taken.
+//! several rounds, so that a device whose clock drifts is as unfair to all. For methods that are to be as fast as the first,
+//! the values of a parameter are taken to be in the order of their costs: halving finds the two between which the first's
+//! time lies, and the nearer is taken.
 
 use super::file::{Method, Suite};
 use super::plan::{Job, Options, plan};
@@ -8,7 +9,7 @@ use super::record::{json, lasting};
 use super::run::{Progress, cell_of, median, place};
 use super::wish::CostChart;
 use crate::lab::{Lab, LabError, Seed};
-use crate::measure::Warm;
+use crate::measure::{Warm, WarmUp};
 use crate::oracle;
 use crate::sweep::Lister;
 use crate::vulkan::VulkanError;
@@ -16,10 +17,10 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// How often every candidate is timed.
+/// How often every candidate is timed that is not passed over.
 const ROUNDS: usize = 5;
-/// Frames before those that are timed, in each round.
-const WARMUP: i64 = 4;
+/// Frames before those that are timed, in each round, at least.
+const WARMUP: usize = 4;
 /// Frames that are timed, in each round.
 const FRAMES: i64 = 12;
 /// Version of `cost.json`.
@@ -121,7 +122,7 @@ pub(super) fn costs(
     let path = options.folder.join("cost.json");
     let kept = read(&path);
     let mut costs: Vec<Cost> = Vec::new();
-    let mut todo: Vec<(usize, usize, &Job)> = Vec::new();
+    let mut todo: Vec<Open> = Vec::new();
     for method in &names {
         let settings = chart.varied(&method.name);
         let own = jobs.iter().filter(|j| j.method == method.name);
@@ -149,6 +150,10 @@ pub(super) fn costs(
         return Ok(costs);
     }
     let mut lent = HashMap::new();
+    let todo = between(&todo, &mut |job| {
+        tell(Progress::Times { method: &job.method, done: 0, of: ROUNDS * todo.len() });
+        Ok((time(lab, warm, job, &mut lent), time(lab, warm, first, &mut lent)?.0))
+    })?;
     let steps = ROUNDS * todo.len();
     for round in 0..ROUNDS {
         // The first is timed again before each method: what is compared lies close together.
@@ -189,6 +194,31 @@ pub(super) fn costs(
     Ok(Some(read(&path)).filter(|k| k.len() == costs.len()).unwrap_or(costs))
 }
 
+/// A candidate that is not timed yet: its method's place, its own among its method's, and what is run.
+type Open<'j> = (usize, usize, &'j Job);
+
+/// Of every method the two neighbouring candidates between which the first method's time lies, or all of no more than two.
+/// `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too slow.
+fn between<'j>(
+    todo: &[Open<'j>],
+    times: &mut dyn FnMut(&Job) -> Result<(Result<(f64, u64), LabError>, f64), LabError>,
+) -> Result<Vec<Open<'j>>, LabError> {
+    let mut left = Vec::new();
+    for own in todo.chunk_by(|a, b| a.0 == b.0) {
+        let (mut low, mut high) = (0, own.len() - 1);
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            match times(own[middle].2)? {
+                (Err(lost @ LabError::Vulkan(VulkanError::Lost(_))), _) => return Err(lost),
+                (Ok((ms, _)), first) if ms < first => low = middle,
+                _ => high = middle,
+            }
+        }
+        left.extend(&own[low..=high]);
+    }
+    Ok(left)
+}
+
 /// Whether what was kept is of the same candidates.
 fn same(kept: &Cost, wanted: &Cost) -> bool {
     let list = |c: &Cost| c.candidates.iter().map(|c| (c.value.clone(), c.work.clone())).collect::<Vec<_>>();
@@ -225,8 +255,12 @@ fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>)
     let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, lent.get(&job.method))?;
     let cell = cell_of(&mut session, job)?;
     let mut lights = job.scene.lights.clone();
+    // Sessions are built between the frames of one and the next: a GPU that waits for them falls to a low clock.
+    place(lab, &mut session, job, -1, cell, &mut lights)?;
+    let warm_up = WarmUp::of(&lab.gpu.info, WARMUP);
+    warm_up.run(&mut || Ok::<_, LabError>(session.frame(0.0)?.map_or(0.0, |t| t.gpu_ms)))?;
     let mut times = Vec::new();
-    for number in -WARMUP..FRAMES {
+    for number in 0..FRAMES {
         place(lab, &mut session, job, number, cell, &mut lights)?;
         times.extend(session.frame(job.case.motion.delta())?);
     }

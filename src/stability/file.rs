@@ -135,6 +135,30 @@ fn settings(list: &Entries<RawText>) -> Vec<Setting> {
 }
 
 impl Suite {
+    /// Leaves out all methods but these and the first.
+    ///
+    /// # Errors
+    /// A name that is none of the suite's methods; the text for the user.
+    pub fn keep(&mut self, names: &[String]) -> Result<(), String> {
+        let known: Vec<&str> = self.methods.iter().map(|m| m.name.as_str()).collect();
+        if let Some(name) = names.iter().find(|n| !known.contains(&n.as_str())) {
+            return Err(format!("--methods {name}: the suite's methods are {}", known.join(", ")));
+        }
+        let first = self.methods.first().map(|m| m.name.clone());
+        let stays = |name: &String| names.contains(name) || first.as_ref() == Some(name);
+        self.methods.retain(|m| stays(&m.name));
+        self.cases.retain(|c| c.methods.is_empty() || c.methods.iter().any(stays));
+        for case in &mut self.cases {
+            case.methods.retain(stays);
+        }
+        if let Some(chart) = &mut self.chart {
+            chart.groups.iter_mut().for_each(|g| g.1.retain(stays));
+            chart.groups.retain(|g| !g.1.is_empty());
+            chart.equal_time.iter_mut().for_each(|e| e.methods.retain(stays));
+        }
+        Ok(())
+    }
+
     /// Reads a suite and its experiment.
     ///
     /// # Errors

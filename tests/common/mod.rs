@@ -1,6 +1,8 @@
 //! What several tests share: the program itself, a device with validation, pictures as numbers.
 #![allow(dead_code, reason = "each test uses a part")]
 
+pub mod bodies;
+
 use conelab::experiment::Experiment;
 use conelab::lab::{Home, Lab, Session};
 use conelab::scene::Scene;
