@@ -209,7 +209,7 @@ fn a_cut_and_a_path() {
         "\"cut\": (warmup: 2, frames: 40, motion: Cut(to: {to}, at: 2)), \
          \"path\": (warmup: 0, frames: 3, motion: Path(file: \"turn.ron\", from: 0.5, step: 0.5))"
     );
-    let file = suite(home.path(), &methods, &cases);
+    let file = suite(home.path(), methods, &cases);
     succeeds(&mut stability(home.path(), &file, "out", &[]));
     let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
     // The path ends after a second, at its last key: two of its three frames are one picture.

@@ -9,9 +9,9 @@ use super::record::{json, lasting};
 use super::run::{Progress, cell_of, median, place};
 use super::wish::CostChart;
 use crate::lab::{Lab, LabError, Seed};
-use crate::measure::Warm;
+use crate::measure::{Warm, WarmUp};
 use crate::oracle;
-use crate::scene::Scene;
+use crate::sweep::Lister;
 use crate::vulkan::VulkanError;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -19,8 +19,8 @@ use std::path::Path;
 
 /// How often every candidate is timed that is not passed over.
 const ROUNDS: usize = 5;
-/// Frames before those that are timed, in each round.
-const WARMUP: i64 = 4;
+/// Frames before those that are timed, in each round, at least.
+const WARMUP: usize = 4;
 /// Frames that are timed, in each round.
 const FRAMES: i64 = 12;
 /// Version of `cost.json`.
@@ -101,8 +101,8 @@ impl Cost {
 /// What is wrong with the suite; no device; a method that can be timed at none of its values.
 pub(super) fn costs(
     lab: &Lab,
+    lister: &mut Lister,
     warm: &mut Warm,
-    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
     (suite, chart): (&Suite, &CostChart),
     options: &Options,
     tell: &mut dyn FnMut(Progress),
@@ -111,18 +111,13 @@ pub(super) fn costs(
     let names: Vec<&Method> =
         suite.methods.iter().take(1).chain(suite.methods.iter().skip(1).filter(charted)).collect();
     // A suite of all candidates in one case: its plan checks every value, and gives each its number.
-    let variants = |method: &&Method| -> Vec<Method> {
-        let settings = chart.varied(&method.name);
-        let with = |s| Method { set: method.set.iter().chain([s]).cloned().collect(), ..Method::clone(method) };
-        if settings.is_empty() { vec![Method::clone(method)] } else { settings.iter().map(with).collect() }
-    };
     let timed = Suite {
-        methods: names.iter().flat_map(variants).collect(),
+        methods: names.iter().flat_map(|m| chart.variants(m)).collect(),
         cases: suite.cases.iter().find(|c| chart.motions.first() == Some(&c.name)).cloned().into_iter().collect(),
         ..suite.clone()
     };
     let options = Options { only: Vec::new(), ..options.clone() };
-    let jobs = plan(&lab.home, &lab.gpu.info, open_scene, warm, &timed, &options)?;
+    let jobs = plan(&lab.home, &lab.gpu.info, lister, warm, &timed, &options)?;
     let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
     let path = options.folder.join("cost.json");
     let kept = read(&path);
@@ -156,26 +151,29 @@ pub(super) fn costs(
     }
     let mut lent = HashMap::new();
     let todo = between(&todo, &mut |job| {
-        tell(Progress::Times { method: &job.method, done: 0, of: ROUNDS * (todo.len() + 1) });
+        tell(Progress::Times { method: &job.method, done: 0, of: ROUNDS * todo.len() });
         Ok((time(lab, warm, job, &mut lent), time(lab, warm, first, &mut lent)?.0))
     })?;
-    let steps = ROUNDS * (todo.len() + 1);
+    let steps = ROUNDS * todo.len();
     for round in 0..ROUNDS {
-        let at = round * (todo.len() + 1);
-        tell(Progress::Times { method: &first.method, done: at, of: steps });
-        let first_cost = time(lab, warm, first, &mut lent)?;
-        let first_ms = first_cost.0;
+        // The first is timed again before each method: what is compared lies close together.
+        let mut before = None;
+        let mut first_cost = (0.0, 0);
         for (i, (cost, candidate, job)) in todo.iter().enumerate() {
+            if before != Some(*cost) {
+                before = Some(*cost);
+                first_cost = time(lab, warm, first, &mut lent)?;
+            }
             let candidate = &mut costs[*cost].candidates[*candidate];
             if candidate.failed.is_some() {
                 continue;
             }
-            tell(Progress::Times { method: &job.method, done: at + 1 + i, of: steps });
+            tell(Progress::Times { method: &job.method, done: round * todo.len() + i, of: steps });
             let cost = if job.work == first.work { Ok(first_cost) } else { time(lab, warm, job, &mut lent) };
             match cost {
                 Ok((ms, bytes)) => {
                     candidate.ms.push(ms);
-                    candidate.first_ms.push(first_ms);
+                    candidate.first_ms.push(first_cost.0);
                     candidate.memory_bytes = bytes;
                 }
                 Err(lost @ LabError::Vulkan(VulkanError::Lost(_))) => return Err(lost),
@@ -257,8 +255,12 @@ fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>)
     let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, lent.get(&job.method))?;
     let cell = cell_of(&mut session, job)?;
     let mut lights = job.scene.lights.clone();
+    // Sessions are built between the frames of one and the next: a GPU that waits for them falls to a low clock.
+    place(lab, &mut session, job, -1, cell, &mut lights)?;
+    let warm_up = WarmUp::of(&lab.gpu.info, WARMUP);
+    warm_up.run(&mut || Ok::<_, LabError>(session.frame(0.0)?.map_or(0.0, |t| t.gpu_ms)))?;
     let mut times = Vec::new();
-    for number in -WARMUP..FRAMES {
+    for number in 0..FRAMES {
         place(lab, &mut session, job, number, cell, &mut lights)?;
         times.extend(session.frame(job.case.motion.delta())?);
     }

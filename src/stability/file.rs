@@ -313,7 +313,10 @@ pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
     let suite = Suite::read(path)?;
     let mut graphs: HashMap<String, Result<Params, Vec<Diagnostic>>> = HashMap::new();
     let mut errors: Vec<Diagnostic> = Vec::new();
-    for (method, case) in suite.methods.iter().flat_map(|m| suite.cases.iter().map(move |c| (m, c))) {
+    let chart = suite.chart.as_ref();
+    let methods: Vec<Method> =
+        suite.methods.iter().flat_map(|m| chart.map_or_else(|| vec![m.clone()], |c| c.variants(m))).collect();
+    for (method, case) in methods.iter().flat_map(|m| suite.cases.iter().map(move |c| (m, c))) {
         let mut params = |name: &str| {
             let found = graphs.entry(name.into()).or_insert_with(|| home.graph(name).map(|g| g.0.params));
             found.clone()

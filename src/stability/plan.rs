@@ -76,7 +76,7 @@ pub struct Job {
 pub fn plan(
     home: &Home,
     device: &DeviceInfo,
-    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    lister: &mut Lister,
     warm: &mut Warm,
     suite: &Suite,
     options: &Options,
@@ -88,13 +88,12 @@ pub fn plan(
     }
     // What the frames are compared with is part of a result.
     let truth = if options.reference { reference::shaders(home)? } else { String::new() };
-    let mut lister = Lister::new(home, open_scene);
     let mut jobs: Vec<Job> = Vec::new();
     let mut errors: Vec<Diagnostic> = Vec::new();
     let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
     for case in suite.cases.iter().filter(wanted) {
         for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
-            match job(home, device, &mut lister, warm, suite, options, (method, case, &truth)) {
+            match job(home, device, lister, warm, suite, options, (method, case, &truth)) {
                 Ok(job) => jobs.push(job),
                 Err(LabError::Input(list)) => {
                     for diagnostic in list {

@@ -245,20 +245,19 @@ impl Ranged for Axis {
 
 type Failure = Box<dyn std::error::Error>;
 
-/// A panel a group, on equal axes; a colour a method.
+/// A panel a group, on equal axes; a colour for each place in a group.
 fn draw(wish: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String>, Failure> {
-    let dots = |rows: &[Row]| -> Vec<(String, Score, Score)> {
-        rows.iter().filter_map(|r| Some((r.method.clone(), r.error?, r.change?))).collect()
-    };
-    let all: Vec<(String, Score, Score)> = groups.iter().flat_map(|g| dots(&g.1)).collect();
+    type Dot<'a> = (&'a str, Score, Score, RGBColor);
+    fn dots(rows: &[Row]) -> Vec<Dot<'_>> {
+        let colors = COLORS.iter().cycle();
+        rows.iter()
+            .zip(colors)
+            .filter_map(|(r, color)| Some((r.method.as_str(), r.error?, r.change?, *color)))
+            .collect()
+    }
+    let all: Vec<Dot> = groups.iter().flat_map(|g| dots(&g.1)).collect();
     if all.is_empty() {
         return Ok(None);
-    }
-    let mut methods: Vec<&str> = Vec::new();
-    for (name, ..) in &all {
-        if !methods.contains(&name.as_str()) {
-            methods.push(name);
-        }
     }
     let (x, y) = (
         Axis::of(&all.iter().map(|d| d.1.value).collect::<Vec<_>>()),
@@ -290,23 +289,22 @@ fn draw(wish: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
             let mut placed: Vec<(i32, i32)> = Vec::new();
             let mut dots = dots(rows);
             dots.sort_by(|a, b| b.2.value.total_cmp(&a.2.value));
-            for (name, error, change) in &dots {
-                let color = COLORS[methods.iter().position(|m| m == name).unwrap_or(0) % COLORS.len()];
+            for (name, error, change, color) in &dots {
                 let at = (error.value, change.value);
                 let bars = [vec![(error.without, at.1), at], vec![(at.0, change.without), at]];
                 chart.draw_series(bars.map(|bar| PathElement::new(bar, color.stroke_width(1))))?;
                 let hollow = error.untold() || change.untold();
                 let inside = if hollow { WHITE.filled() } else { color.filled() };
                 chart.draw_series([Circle::new(at, 5, inside), Circle::new(at, 5, color.stroke_width(2))])?;
-                // Labels stand beside their dots, below those of dots that are close.
+                // Labels stand beside their dots, on the left above the bar, and below those of dots that are close.
                 let dot = chart.backend_coord(&at);
-                let near = placed.iter().filter(|p| (p.0 - dot.0).abs() < 150);
-                let line = near.map(|p| p.1 + LABEL).fold(dot.1, i32::max);
-                placed.push((dot.0, line));
                 let (left, width) = (panel.get_pixel_range().0.start, panel.dim_in_pixel().0);
                 let right = dot.0 - left < i32::try_from(width)? * 2 / 3;
+                let near = placed.iter().filter(|p| (p.0 - dot.0).abs() < 200);
+                let line = near.map(|p| p.1 + LABEL).fold(dot.1 - if right { 0 } else { 10 }, i32::max);
+                placed.push((dot.0, line));
                 let (side, anchor) = if right { (9, HPos::Left) } else { (-9, HPos::Right) };
-                let style = (FONT, 13).into_text_style(&area).color(&color).pos(Pos::new(anchor, VPos::Center));
+                let style = (FONT, 13).into_text_style(&area).pos(Pos::new(anchor, VPos::Center));
                 area.draw(&Text::new(name.chars().take(34).collect::<String>(), (dot.0 + side, line), style))?;
             }
         }

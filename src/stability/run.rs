@@ -18,6 +18,7 @@ use crate::oracle::{self, Surfaces};
 use crate::reference::Gathered;
 use crate::scene::{Light, Scene};
 use crate::stats::DeviceStats;
+use crate::sweep::Lister;
 use crate::vulkan::VulkanError;
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -72,12 +73,15 @@ pub fn run(
 ) -> Result<(Tally, Report), LabError> {
     let mut lab = reopen()?;
     let mut warm = Warm::default();
-    let mut jobs = plan(&lab.home, &lab.gpu.info, open_scene, &mut warm, suite, options)?;
+    let home = lab.home.clone();
+    // Opens each scene once for all plans.
+    let mut lister = Lister::new(&home, open_scene);
+    let mut jobs = plan(&home, &lab.gpu.info, &mut lister, &mut warm, suite, options)?;
     let mut costs = Vec::new();
     if let Some(chart) = &suite.chart {
-        costs = cost::costs(&lab, &mut warm, open_scene, (suite, chart), options, tell)?;
+        costs = cost::costs(&lab, &mut lister, &mut warm, (suite, chart), options, tell)?;
         let chosen = cost::chosen(suite, chart, &costs);
-        jobs = plan(&lab.home, &lab.gpu.info, open_scene, &mut warm, &chosen, options)?;
+        jobs = plan(&home, &lab.gpu.info, &mut lister, &mut warm, &chosen, options)?;
     }
     let folder = Folder(options.folder.clone());
     let samples = options.samples.unwrap_or(suite.samples);

@@ -133,4 +133,11 @@ impl CostChart {
         let own = self.equal_time.as_ref().filter(|e| e.methods.iter().any(|m| m == method));
         own.map_or(&[], |e| &e.settings)
     }
+
+    /// A method at each of its values, or as it is.
+    pub fn variants(&self, method: &Method) -> Vec<Method> {
+        let settings = self.varied(&method.name);
+        let with = |s| Method { set: method.set.iter().chain([s]).cloned().collect(), ..method.clone() };
+        if settings.is_empty() { vec![method.clone()] } else { settings.iter().map(with).collect() }
+    }
 }
