@@ -21,15 +21,17 @@ vec3 unwarped(vec3 cells) {
     return mix(u, unwarp(in_volume), equal(in_volume, u));
 }
 
-// Whether the triangle overlaps a cell, exactly wherever cells are boxes. Under a warp its corners come unwarped, and the
-// test is made in the coordinates of the cell itself, whose middle comes back, unwarped too.
-bool overlapsCell(ivec3 cell, vec3 c[3], out vec3 middle) {
-    middle = vec3(0.0);
+// Where a border of cells lies before warping.
+float border(int i) {
+    return unwarp(vec3(float(i) / float(params.voxel_dim))).x;
+}
+
+// Whether the triangle overlaps a cell, exactly wherever cells are boxes. Under a warp its corners and the cell's come
+// unwarped, and the test is made in the coordinates of the cell itself.
+bool overlapsCell(ivec3 cell, vec3 c[3], vec3 low, vec3 high) {
     if (WARP == WARP_NONE) return triangleOverlapsCell(corner[0], corner[1], corner[2], cell);
     if (WARP == WARP_PERSPECTIVE) return true;
-    float dim = float(params.voxel_dim);
-    vec3 low = unwarp(vec3(cell) / dim), size = unwarp(vec3(cell + 1) / dim) - low;
-    middle = low + 0.5 * size;
+    vec3 size = high - low;
     return triangleOverlapsCell((c[0] - low) / size, (c[1] - low) / size, (c[2] - low) / size, ivec3(0));
 }
 
@@ -47,14 +49,18 @@ void main() {
     vec3 normal_across = dFdx(normal), normal_down = dFdy(normal);
     Gradient g = Gradient(uv_across * pixels, uv_down * pixels);
 
-    Material m = materials.materials[material];
-    vec4 base = baseColor(m, uv, g);
-    // A pixel with several cells looks at the surface in each.
     const bool tested = CONSERVATIVE == CONSERVATIVE_HARDWARE || CONSERVATIVE == CONSERVATIVE_DILATE;
+    // A pixel that may have several cells looks at the surface in each.
     const bool each = tested && WARP != WARP_NONE && WARP != WARP_PERSPECTIVE;
-    if (base.a < m.alpha_cutoff && !each) return;
-    vec3 n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
-    vec3 light = emission(m, uv, g);
+    Material m = materials.materials[material];
+    vec4 base;
+    vec3 n, light;
+    if (!each) {
+        base = baseColor(m, uv, g);
+        if (base.a < m.alpha_cutoff) return;
+        n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
+        light = emission(m, uv, g);
+    }
 
     // With several samples the centre may lie outside the triangle: back into its box.
     vec3 lo = min(corner[0], min(corner[1], corner[2])), hi = max(corner[0], max(corner[1], corner[2]));
@@ -104,13 +110,22 @@ void main() {
     }
     from = max(from, ivec3(0));
     to = min(to, ivec3(params.voxel_dim - 1));
-    for (int z = from.z; z <= to.z; z++)
-        for (int y = from.y; y <= to.y; y++)
+    vec3 low, high; // of a cell, before warping
+    high.z = border(from.z);
+    for (int z = from.z; z <= to.z; z++) {
+        low.z = high.z;
+        high.z = border(z + 1);
+        high.y = border(from.y);
+        for (int y = from.y; y <= to.y; y++) {
+            low.y = high.y;
+            high.y = border(y + 1);
+            high.x = border(from.x);
             for (int x = from.x; x <= to.x; x++) {
-                ivec3 here = ivec3(x, y, z);
-                vec3 middle;
-                if (!overlapsCell(here, c, middle)) continue;
+                low.x = high.x;
+                high.x = border(x + 1);
+                if (!overlapsCell(ivec3(x, y, z), c, low, high)) continue;
                 if (each) {
+                    vec3 middle = 0.5 * (low + high);
                     vec2 shift = clamp(vec2(middle[axes.x], middle[axes.y]) * float(params.raster_size) - gl_FragCoord.xy, -0.5, 0.5);
                     vec2 there = uv + uv_across * shift.x + uv_down * shift.y;
                     base = baseColor(m, there, g);
@@ -119,6 +134,8 @@ void main() {
                     n = normal + normal_across * shift.x + normal_down * shift.y;
                     n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0);
                 }
-                storeVoxel(here, base.rgb, n, light);
+                storeVoxel(ivec3(x, y, z), base.rgb, n, light);
             }
+        }
+    }
 }
