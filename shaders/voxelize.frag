@@ -21,14 +21,16 @@ vec3 unwarped(vec3 cells) {
     return mix(u, unwarp(in_volume), equal(in_volume, u));
 }
 
-// Whether the triangle overlaps a cell, exactly wherever cells are boxes. Under a warp its corners come unwarped, and the
-// test is made in the coordinates of the cell itself, whose middle comes back, unwarped too.
-bool overlapsCell(ivec3 cell, vec3 c[3], out vec3 middle) {
-    middle = vec3(0.0);
+// Where a border of cells lies before warping.
+float border(int i) {
+    return unwarp(vec3(float(i) / float(params.voxel_dim))).x;
+}
+
+// Whether the triangle overlaps a cell, exactly wherever cells are boxes. Under a warp its corners and the cell's come
+// unwarped, and the test is made in the coordinates of the cell itself.
+bool overlapsCell(ivec3 cell, vec3 c[3], vec3 low, vec3 high) {
     if (EVEN) return triangleOverlapsCell(corner[0], corner[1], corner[2], cell);
-    float dim = float(params.voxel_dim);
-    vec3 low = unwarp(vec3(cell) / dim), size = unwarp(vec3(cell + 1) / dim) - low;
-    middle = low + 0.5 * size;
+    vec3 size = high - low;
     return triangleOverlapsCell((c[0] - low) / size, (c[1] - low) / size, (c[2] - low) / size, ivec3(0));
 }
 
@@ -48,14 +50,18 @@ void main() {
     vec3 normal_across = dFdx(normal), normal_down = dFdy(normal);
     Gradient g = Gradient(uv_across * pixels, uv_down * pixels);
 
-    Material m = materials.materials[material];
-    vec4 base = baseColor(m, uv, g);
-    // A pixel with several cells looks at the surface in each.
     bool tested = CONSERVATIVE == CONSERVATIVE_HARDWARE || CONSERVATIVE == CONSERVATIVE_DILATE;
+    // A pixel that may have several cells looks at the surface in each.
     bool each = tested && !whole;
-    if (base.a < m.alpha_cutoff && !each) return;
-    vec3 n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
-    vec3 light = emission(m, uv, g);
+    Material m = materials.materials[material];
+    vec4 base;
+    vec3 n, light;
+    if (!each) {
+        base = baseColor(m, uv, g);
+        if (base.a < m.alpha_cutoff) return;
+        n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
+        light = emission(m, uv, g);
+    }
 
     // With several samples the centre may lie outside the triangle: back into its box.
     vec3 lo = min(corner[0], min(corner[1], corner[2])), hi = max(corner[0], max(corner[1], corner[2]));
@@ -76,18 +82,18 @@ void main() {
     vec2 first = floor(gl_FragCoord.xy) * pixel;
     float middle = c[0][depth] + dot(slope, first + 0.5 * pixel - vec2(c[0][axes.x], c[0][axes.y]));
     float reach = 0.5 * pixel * (abs(slope.x) + abs(slope.y)) + 0.01 / dim;
-    vec3 low = vec3(first, middle - reach), high = vec3(first + pixel, middle + reach);
-    low.z = clamp(low.z, min(c[0][depth], min(c[1][depth], c[2][depth])), max(c[0][depth], max(c[1][depth], c[2][depth])));
-    high.z = clamp(high.z, low.z, max(c[0][depth], max(c[1][depth], c[2][depth])));
-    low = warp(clamp(low, 0.0, 1.0)) * dim;
-    high = warp(clamp(high, 0.0, 1.0)) * dim;
+    vec3 least = vec3(first, middle - reach), most = vec3(first + pixel, middle + reach);
+    least.z = clamp(least.z, min(c[0][depth], min(c[1][depth], c[2][depth])), max(c[0][depth], max(c[1][depth], c[2][depth])));
+    most.z = clamp(most.z, least.z, max(c[0][depth], max(c[1][depth], c[2][depth])));
+    least = warp(clamp(least, 0.0, 1.0)) * dim;
+    most = warp(clamp(most, 0.0, 1.0)) * dim;
     // A corner exactly on a border belongs to both cells.
-    from[depth] = int(floor(low.z - 1e-5));
-    to[depth] = int(floor(high.z + 1e-5));
-    from[axes.x] = whole ? int(gl_FragCoord.x) : int(floor(low.x));
-    from[axes.y] = whole ? int(gl_FragCoord.y) : int(floor(low.y));
-    to[axes.x] = whole ? from[axes.x] : int(floor(high.x));
-    to[axes.y] = whole ? from[axes.y] : int(floor(high.y));
+    from[depth] = int(floor(least.z - 1e-5));
+    to[depth] = int(floor(most.z + 1e-5));
+    from[axes.x] = whole ? int(gl_FragCoord.x) : int(floor(least.x));
+    from[axes.y] = whole ? int(gl_FragCoord.y) : int(floor(least.y));
+    to[axes.x] = whole ? from[axes.x] : int(floor(most.x));
+    to[axes.y] = whole ? from[axes.y] : int(floor(most.y));
     if (!whole) { // small triangles touch few of a pixel's cells
         from = max(from, ivec3(floor(lo - 1e-3)));
         to = min(to, ivec3(floor(hi + 1e-3)));
@@ -98,13 +104,22 @@ void main() {
     }
     from = max(from, ivec3(0));
     to = min(to, ivec3(params.voxel_dim - 1));
-    for (int z = from.z; z <= to.z; z++)
-        for (int y = from.y; y <= to.y; y++)
+    vec3 low, high; // of a cell, before warping
+    high.z = border(from.z);
+    for (int z = from.z; z <= to.z; z++) {
+        low.z = high.z;
+        high.z = border(z + 1);
+        high.y = border(from.y);
+        for (int y = from.y; y <= to.y; y++) {
+            low.y = high.y;
+            high.y = border(y + 1);
+            high.x = border(from.x);
             for (int x = from.x; x <= to.x; x++) {
-                ivec3 here = ivec3(x, y, z);
-                vec3 middle;
-                if (!overlapsCell(here, c, middle)) continue;
+                low.x = high.x;
+                high.x = border(x + 1);
+                if (!overlapsCell(ivec3(x, y, z), c, low, high)) continue;
                 if (each) {
+                    vec3 middle = 0.5 * (low + high);
                     vec2 shift = clamp(vec2(middle[axes.x], middle[axes.y]) * float(params.raster_size) - gl_FragCoord.xy, -0.5, 0.5);
                     vec2 there = uv + uv_across * shift.x + uv_down * shift.y;
                     base = baseColor(m, there, g);
@@ -113,6 +128,8 @@ void main() {
                     n = normal + normal_across * shift.x + normal_down * shift.y;
                     n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0);
                 }
-                storeVoxel(here, block, base.rgb, n, light);
+                storeVoxel(ivec3(x, y, z), block, base.rgb, n, light);
             }
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, device, fails, root, succeeds};
+use common::{conelab, copy, device, fails, root, succeeds};
 use exr::prelude::read_first_rgba_layer_from_file;
 use insta::assert_snapshot;
 use std::path::{Path, PathBuf};
@@ -308,16 +308,6 @@ fn graph_explains_itself() {
     ");
     assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/vct.ron", "--set", "bais=1"]))), @"error: no parameter 'bais' (did you mean 'bias'?)");
     assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/vct.ron", "--want", "depht"]))), @"error: no resource 'depht' (did you mean 'depth'?)");
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap().flatten() {
-        match entry.file_type().unwrap().is_dir() {
-            true => copy(&entry.path(), &to.join(entry.file_name())),
-            false => drop(std::fs::copy(entry.path(), to.join(entry.file_name())).unwrap()),
-        }
-    }
 }
 
 #[test]

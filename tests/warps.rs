@@ -3,14 +3,13 @@
 mod common;
 
 use common::bodies::{placed, torus};
-use common::{assert_clean, experiment, floats, lab, prepare, root, scene};
+use common::{assert_clean, copy, experiment, floats, lab, prepare, root, scene};
 use conelab::experiment::PlacedCamera;
 use conelab::graph::table::{Cell, decode};
 use conelab::lab::{Lab, Session};
 use conelab::oracle::{Score, Surfaces, compare, exact, read, triangles_of};
 use conelab::scene::{Material, Scene};
 use glam::{DMat3, DVec3, Quat, Vec3};
-use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
 
@@ -142,15 +141,6 @@ void main() {
 ";
 
 fn home() -> TempDir {
-    fn copy(from: &Path, to: &Path) {
-        std::fs::create_dir_all(to).unwrap();
-        for entry in std::fs::read_dir(from).unwrap().flatten() {
-            match entry.file_type().unwrap().is_dir() {
-                true => copy(&entry.path(), &to.join(entry.file_name())),
-                false => drop(std::fs::copy(entry.path(), to.join(entry.file_name())).unwrap()),
-            }
-        }
-    }
     let home = tempfile::tempdir().unwrap();
     for folder in ["passes", "shaders"] {
         copy(&root().join(folder), &home.path().join(folder));

@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 /// How often every candidate is timed that is not passed over.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 /// Frames before those that are timed, in each round, at least.
 const WARMUP: usize = 4;
 /// Frames that are timed, in each round.
