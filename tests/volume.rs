@@ -129,7 +129,7 @@ fn curved(warp: &str, eye: DVec3, toward: DVec3, fov_y: f64, aspect: f64, p: DVe
         return DVec3::new(
             d.z.atan2(d.x) / (2.0 * PI) + 0.5,
             (d.y / r).acos() / PI,
-            (r / near).ln() / (far / near as f64).ln(),
+            (r / near).ln() / (far / near).ln(),
         );
     }
     let right = toward.cross(DVec3::Y).normalize();

@@ -197,12 +197,15 @@ pub(super) fn costs(
 /// A candidate that is not timed yet: its method's place, its own among its method's, and what is run.
 type Open<'j> = (usize, usize, &'j Job);
 
+/// Median of a job's frames, ms, and the bytes of its resources.
+type Timed = Result<(f64, u64), LabError>;
+
+/// The same of a candidate, and the first method's ms right after it.
+type Beside = Result<(Timed, f64), LabError>;
+
 /// Of every method the two neighbouring candidates between which the first method's time lies, or all of no more than two.
 /// `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too slow.
-fn between<'j>(
-    todo: &[Open<'j>],
-    times: &mut dyn FnMut(&Job) -> Result<(Result<(f64, u64), LabError>, f64), LabError>,
-) -> Result<Vec<Open<'j>>, LabError> {
+fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> Beside) -> Result<Vec<Open<'j>>, LabError> {
     let mut left = Vec::new();
     for own in todo.chunk_by(|a, b| a.0 == b.0) {
         let (mut low, mut high) = (0, own.len() - 1);
@@ -245,8 +248,8 @@ pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite 
     suite
 }
 
-/// Median of a job's frames, ms, and the bytes of its resources. Every session is a new one: memory holds one at a time.
-fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>) -> Result<(f64, u64), LabError> {
+/// Times a job. Every session is a new one: memory holds one at a time.
+fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>) -> Timed {
     let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
     let mut wanted: Vec<String> = loaded.graph.output.iter().chain(&loaded.graph.hdr).take(1).cloned().collect();
     if job.case.motion.in_voxels() {
