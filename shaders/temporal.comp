@@ -4,18 +4,19 @@
 // frame, so that a moving volume does not smear. The history is rgba16f: in 8 bits the decay would stick.
 #include "params.glsl"
 #include "volume.glsl"
+#include "voxels.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 uniform sampler3D voxelLight; // this frame's
 uniform sampler3D lastHistory;
-layout(std430) readonly buffer LastVolume { Grid grids[MAX_BLOCKS]; uint frames; } lastVolume;
+layout(std430) readonly buffer LastVolume { Grid grids[MAX_BLOCKS]; uint frames; uint signature; } lastVolume;
 uniform writeonly image3D voxelHistory;
 uniform writeonly image3D voxelRadiance;
 
 // A camera that jumps has cut: what lies where it is now was not looked at before, or from farther.
 bool isCut(Grid g, Grid last) {
-    return distance(g.eye, last.eye) > params.temporal_cut;
+    return distance(g.seen_from, last.seen_from) > params.temporal_cut;
 }
 
 void main() {
@@ -24,7 +25,7 @@ void main() {
     if (any(greaterThanEqual(cell, imageSize(voxelHistory)))) return;
     vec4 value = texelFetch(voxelLight, cell, 0);
     Grid g = volume.grids[block], last = lastVolume.grids[block];
-    if (lastVolume.frames > 0 && !isCut(g, last)) {
+    if (lastVolume.frames > 0 && lastVolume.signature == voxelSignature() && !isCut(g, last)) {
         vec3 u = worldToVolume(last, volumeToWorld(g, cellCentre(cell)));
         // A volume that moved by whole voxels finds its cell's centre again, to rounding.
         if (inVolume(u)) {

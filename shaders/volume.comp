@@ -35,8 +35,11 @@ Grid keep(Grid g, Grid last, bool still) {
     g.shift = g.kept_from = g.kept_to = ivec3(0);
     if (!still || g.curved != 0 || last.curved != 0 || any(notEqual(g.cell, last.cell))) return g;
     vec3 cells = (g.minimum - last.minimum) / g.cell;
-    if (any(greaterThan(abs(cells), vec3(params.voxel_dim))) || any(greaterThan(abs(cells - round(cells)), vec3(1e-2)))) return g;
+    // Warped cells do not become each other; and what moves by less than cells does so under its voxels.
+    if (WARP != WARP_NONE && !CURVED && cells != vec3(0.0)) return g;
+    if (any(greaterThan(abs(cells), vec3(params.voxel_dim))) || any(greaterThan(abs(cells - round(cells)), vec3(1e-3)))) return g;
     g.shift = ivec3(round(cells));
+    g.minimum = last.minimum + vec3(g.shift) * g.cell; // so that what was neglected adds up, and is seen in the end
     g.kept_from = max(ivec3(0), -g.shift);
     g.kept_to = params.voxel_dim - max(ivec3(0), g.shift);
     return g;
@@ -53,7 +56,7 @@ void main() {
     vec3 position = camera.position + params.volume_offset;
     Grid g;
     g.curved = 0;
-    g.eye = position;
+    g.eye = g.seen_from = position;
     vec3 right = normalize(cross(camera.direction, camera.up));
     float half_height = tan(0.5 * camera.fov_y);
     g.axis_x = right * half_height * float(camera.size.x) / float(camera.size.y);
@@ -88,7 +91,7 @@ void main() {
             block.minimum = whole.minimum;
             // A sphere turns with nothing, and need not move with every step of the camera either.
             if (WARP == WARP_SPHERICAL && params.volume_snap != VOLUME_SNAP_OFF) {
-                vec3 unit = whole.cell * exp2(1.0);
+                vec3 unit = min(2.0 * whole.cell, vec3(0.5 * params.warp_near));
                 block.eye = floor(position / unit + 0.5) * unit;
             }
         }

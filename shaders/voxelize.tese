@@ -22,6 +22,7 @@ layout(location = 6) patch in float spacing;
 const float POINTS_A_CELL = 8.0;
 
 bool chosen(Grid g, vec3 p) {
+    if (BLOCKS == 1 && !CURVED) return true;
     vec3 size = cellSize(g, p);
     float cell = min(size.x, min(size.y, size.z));
     float share = POINTS_A_CELL * spacing * spacing / (cell * cell);

@@ -453,7 +453,9 @@ fn shipped_suites() {
     for row in motion.iter().filter(|r| r["case"] == "still") {
         assert_eq!(number(row, "total E_t"), 0.0, "{}: nothing moves", row["method"]);
     }
-    let yaw = |method: &str| number(motion.iter().find(|r| r["case"] == "yaw" && r["method"] == method).unwrap(), "diffuse E_t");
+    let yaw = |method: &str| {
+        number(motion.iter().find(|r| r["case"] == "yaw" && r["method"] == method).unwrap(), "diffuse E_t")
+    };
     assert!(yaw("spherical warp") < yaw("perspective warp"), "cells that do not turn with the camera flicker less");
     all("atrium", &["--only", "still", "--methods", "spherical warp,three cascades"]);
 

@@ -440,7 +440,7 @@ fn the_list_of_fragments_is_long_enough_for_every_slope() {
             [session.graph.buffers.iter().position(|b| b.0 == "voxelFragments").unwrap()]
         .size
             / 16;
-        println!("{warp}, {mode}: {} fragments in a list of {list}", words[14]);
+        println!("{warp}, {mode}: {} fragments in a list of {list}", words[3]);
         full.extend(session.failed_checks().unwrap().iter().map(|f| format!("{warp}, {mode}: {f}")));
     }
     assert_eq!(full, Vec::<String>::new());

@@ -95,7 +95,8 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
                 if (inVolume(at)) {
                     vec4 other = sampleBox(at, block + 1, gridDirection(coarse, p, d), lod1);
                     // Of surfaces side by side opacity is a density: the step is told in this block's cells.
-                    if (OPACITY == OPACITY_COVERAGE) other *= cell / (v1 * exp2(lod1));
+                    if (OPACITY == OPACITY_COVERAGE) other *= DIRECTIONAL ? cell / (v1 * exp2(lod1)) : v / v1;
+                    else if (OPACITY == OPACITY_LAYERS && other.a > 0.0) other *= (1.0 - pow(1.0 - min(other.a, 1.0), v / v1)) / other.a;
                     texel = mix(other, texel, share);
                 }
             }

@@ -17,6 +17,7 @@ struct Grid {
     vec3 axis_y; // half its height, downwards
     vec3 axis_z; // view direction
     vec2 range; // near, far [m]
+    vec3 seen_from; // the camera, which `eye` follows in steps
     ivec3 kept_from; // cells from here ...
     ivec3 kept_to; // ... to before here hold what they held last frame, wherever they were then
     ivec3 shift; // in cells, since last frame

@@ -25,17 +25,14 @@ layout(std430) COUNTER_ACCESS buffer VoxelCounter {
     uint allocated; // slots asked for, this frame: as many as occupied cells
     uint overflow; // fragments that were lost: the list of voxels or of fragments was full
     uint count; // slots in the list: min(allocated, voxel_capacity)
-    uint capacity; // that the list was built with
+    uint fragments; // stored, this frame
     uvec3 list_groups; // indirect dispatch over the list, 128 threads a group
-    uint dim; // that the list was built with
-    uvec3 clear_groups; // indirect dispatch that clears last frame's list
     uint clear_count;
+    uvec3 clear_groups; // indirect dispatch that clears last frame's list
     uint clear_all; // 1: the list does not name every set cell, clear them all
     uint signature; // of the settings that the list was built with
-    uint fragments; // fragments stored, this frame
     uint kept; // slots that stay as they are, this frame
     uvec3 merge_groups; // indirect dispatch over the fragments
-    uint unused;
     uvec3 kept_groups; // indirect dispatch over what is kept
 } voxelCounter;
 
@@ -72,12 +69,13 @@ vec3 unpackNormal(uint w) {
     return normalize(n);
 }
 
-// Changes with every setting that decides what a voxel holds; never 0.
+// Changes with every setting that decides which cells a list and its voxels are of, but the volume's place; never 0.
 uint voxelSignature() {
     uint h = uint(params.voxel_dim) | 1u << 31;
-    uint more[9] = uint[9](uint(params.voxelizer), uint(CONSERVATIVE), uint(params.voxel_samples), uint(MERGE), uint(params.tess_levels),
-        floatBitsToUint(params.tess_rate), uint(params.temporal), uint(WARP), uint(BLOCKS));
-    for (int i = 0; i < 9; i++) h = (h ^ more[i]) * 16777619u;
+    uint more[14] = uint[14](uint(params.voxel_capacity), uint(params.voxelizer), uint(CONSERVATIVE), uint(params.voxel_samples), uint(MERGE),
+        uint(params.tess_levels), floatBitsToUint(params.tess_rate), uint(params.temporal), uint(WARP), uint(BLOCKS), uint(params.raster_size),
+        floatBitsToUint(params.warp_alpha), floatBitsToUint(params.warp_steepness), floatBitsToUint(params.warp_near / params.warp_far));
+    for (int i = 0; i < 14; i++) h = (h ^ more[i]) * 16777619u;
     return h | 1u;
 }
 

@@ -28,6 +28,11 @@ pub struct Change {
 }
 
 impl Parts {
+    /// The same without textures and buffers.
+    pub fn pipelines_only(&self) -> Parts {
+        Parts { pipelines: self.pipelines.clone(), ..Parts::default() }
+    }
+
     /// The image of that name and copy, if it is just as described.
     pub(super) fn image(&self, name: &str, copy: usize, desc: &ImageDesc) -> Option<Arc<Image>> {
         self.images.get(name)?[copy].clone().filter(|i| i.desc == *desc)

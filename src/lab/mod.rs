@@ -160,10 +160,14 @@ impl Lab {
                 SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene), rays)?
             }
         };
-        let none = Parts::default();
-        let parts = seed.map_or(&none, |s| &s.parts);
+        // What textures and buffers hold is of their scene: of another one only the pipelines are taken.
+        let parts = match seed {
+            Some(seed) if Arc::ptr_eq(&seed.scene, &scene) => seed.parts.clone(),
+            Some(seed) => seed.parts.pipelines_only(),
+            None => Parts::default(),
+        };
         let values = values_of(&graph, &params, &scene, experiment.size);
-        let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources, parts)?;
+        let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources, &parts)?;
         Ok(Session {
             graph,
             linked,
