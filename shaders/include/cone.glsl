@@ -38,13 +38,15 @@ vec4 sampleCone(vec3 u, int block, vec3 d, float lod) {
 
 // The level whose cells are as wide as the cone. `v`: length of the block's cell along the cone, `height`: above the
 // plane of the surface that the cone leaves [m].
-float levelAt(Grid g, vec3 p, float v, float radius, float height, ConeOrigin o) {
+float levelAt(Grid g, int block, vec3 p, float v, float radius, float height, ConeOrigin o) {
     float lod = log2(max(2.0 * radius / v, 1.0)) + params.lod_offset;
     if (params.lod_clearance) {
         // A trilinear lookup reads 1.5 cells to each side. Coarser levels than fit above the surface
         // would read the surface itself, and an open plane would shadow itself. Whole levels, because
         // a fraction would blend in the coarser one.
         float reach = WARP == WARP_NONE && BLOCKS == 1 ? o.reach : cellReach(g, p, o.normal);
+        // Cells of a warp that grow towards the surface reach it sooner than those around the sample say.
+        if (WARP != WARP_NONE && block == o.block) reach = max(reach, o.reach);
         lod = min(lod, floor(log2(max(height / (3.0 * reach), 1.0)) + 1e-3));
     }
     return clamp(lod, 0.0, g.last);
@@ -81,7 +83,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
         }
         float radius = s * tan_half;
         float height = o.height + s * rise;
-        float lod = levelAt(g, p, v, radius, height, o);
+        float lod = levelAt(g, block, p, v, radius, height, o);
         float cell = v * exp2(lod);
         float ds = max(CONE_STEP == CONE_STEP_RADIUS ? radius : params.step_factor * cell, 0.05 * v);
 
@@ -91,7 +93,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
             if (share < 1.0) {
                 Grid coarse = volume.grids[block + 1];
                 vec3 at = worldToVolume(coarse, p);
-                float v1 = cellAlong(coarse, p, d), lod1 = levelAt(coarse, p, v1, radius, height, o);
+                float v1 = cellAlong(coarse, p, d), lod1 = levelAt(coarse, block + 1, p, v1, radius, height, o);
                 if (inVolume(at)) {
                     vec4 other = sampleBox(at, block + 1, gridDirection(coarse, p, d), lod1);
                     // Of surfaces side by side opacity is a density: the step is told in this block's cells.
