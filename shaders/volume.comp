@@ -24,7 +24,9 @@ Grid boxAround(vec3 p, vec3 size, Grid g) {
     g.last = coarsestLevel(true);
     if (params.volume_snap != VOLUME_SNAP_OFF) {
         vec3 unit = g.cell * (params.volume_snap == VOLUME_SNAP_LEVEL ? exp2(g.last) : 1.0);
-        p = floor(p / unit + 0.5) * unit;
+        // Half a cell aside: what lies at round coordinates runs through the middle of cells, not along their borders,
+        // where rounding would decide anew after each step.
+        p = floor(p / unit + 0.5) * unit + 0.5 * g.cell;
     }
     g.minimum = p - 0.5 * size;
     return g;
@@ -57,11 +59,14 @@ void main() {
     Grid g;
     g.curved = 0;
     g.eye = g.seen_from = position;
-    vec3 right = normalize(cross(camera.direction, camera.up));
+    float turn = radians(params.volume_turn);
+    vec3 ahead = camera.direction;
+    ahead.xz = mat2(cos(turn), -sin(turn), sin(turn), cos(turn)) * ahead.xz;
+    vec3 right = normalize(cross(ahead, camera.up));
     float half_height = tan(0.5 * camera.fov_y);
     g.axis_x = right * half_height * float(camera.size.x) / float(camera.size.y);
-    g.axis_y = cross(camera.direction, right) * half_height;
-    g.axis_z = camera.direction;
+    g.axis_y = cross(ahead, right) * half_height;
+    g.axis_z = ahead;
     g.range = vec2(params.warp_near, max(params.warp_far, params.warp_near + 0.1));
     g.last = coarsestLevel(false);
 
