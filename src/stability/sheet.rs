@@ -77,7 +77,7 @@ fn worst(report: &Report, method: &str, moving: bool) -> Option<Failure> {
 impl Failure {
     /// Whether it is told apart from the noise of its reference.
     pub fn told(&self) -> bool {
-        self.noise.is_none_or(|n| self.value >= 4.0 * n)
+        self.value > 0.0 && self.noise.is_none_or(|n| self.value >= 4.0 * n)
     }
 
     fn lines(&self) -> String {
