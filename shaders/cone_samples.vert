@@ -51,8 +51,7 @@ void main() {
         vec3 at = vec3(-0.5);
         at[(axis + 1) % 3] += float(line & 1);
         at[(axis + 2) % 3] += float(line >> 1 & 1);
-        vec3 u;
-        mat3 cell = cellAxes(volume.grids[blockAt(s.position, u)], s.position) * exp2(s.level);
+        mat3 cell = cellAxes(volume.grids[blockAt(s.position)], s.position) * exp2(s.level);
         a = s.position + cell * at;
         b = a + cell[axis];
         half_width = 0.75;

@@ -18,7 +18,7 @@ void main() {
     vec3 p = h.xyz / h.w;
     vec3 n = texelFetch(surfaceNormal, pixel, 0).rgb * 2.0 - 1.0;
     float light = 0.35 + 0.65 * abs(dot(n, normalize(camera.position - p)));
-    vec3 u;
-    int block = blockAt(p, u);
+    int block = blockAt(p);
+    vec3 u = worldToVolume(volume.grids[block], p);
     inspected = vec4(z < 1.0 && inVolume(u) ? densityColor(volume.grids[block], p) * light : vec3(0.0), 1.0);
 }

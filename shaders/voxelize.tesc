@@ -24,8 +24,8 @@ float cellsAlong(Grid g, vec3 a, vec3 b) {
     float edge = distance(a, b);
     if (edge == 0.0) return 0.0;
     vec3 d = (b - a) / edge;
-    float cell = cellAlong(g, 0.5 * (a + b), d);
-    if (WARP != WARP_NONE) cell = min(cell, min(cellAlong(g, a, d), cellAlong(g, b, d)));
+    float cell = cellLength(g, 0.5 * (a + b), d);
+    if (WARP != WARP_NONE) cell = min(cell, min(cellLength(g, a, d), cellLength(g, b, d)));
     if (params.tess_levels == TESS_LEVELS_THESIS) cell = dot(abs(d), cellSize(g, 0.5 * (a + b)));
     return edge / cell;
 }

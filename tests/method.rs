@@ -198,7 +198,8 @@ fn the_volume_that_follows_the_camera_moves_by_whole_voxels() {
     let mut sets = Vec::new();
     // The camera moves by less than a voxel (0.25 m), then by one.
     for x in [2.76, 2.80, 3.05] {
-        let settings = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), QUICK];
+        let settings =
+            [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), ("volume_snap", "voxel"), QUICK];
         let mut experiment = experiment("cornell", (48, 32), &settings);
         experiment.camera = CameraChoice::Placed(PlacedCamera::new((x, 2.73, 1.0), (2.78, 2.73, 5.0), 60.0));
         let mut session = frames(&lab, &experiment, &["voxelIndex", "radiance"], 2);

@@ -17,23 +17,15 @@ vec3 stacked(vec3 u, int block, float lod) {
 }
 
 // The voxels around u as a cone along d (unit length, in cells) finds them at a level of a block.
-vec4 sampleBox(vec3 u, int block, vec3 d, float lod) {
+vec4 sampleCone(vec3 u, int block, vec3 d, float lod) {
     u = stacked(u, block, lod);
     if (!DIRECTIONAL) return textureLod(voxelRadiance, u, lod);
-    float cells = float(textureSize(voxelFaces, 0).y);
+    vec4 fine = vec4(0.0);
+    if (lod < 1.0) fine = textureLod(voxelRadiance, u, 0.0);
+    if (lod <= 0.0) return fine;
     vec3 w = OPACITY == OPACITY_COVERAGE ? abs(d) : d * d;
-    if (lod >= 1.0) return sampleFaces(voxelFaces, u, d, w, lod - 1.0, cells);
-    vec4 fine = textureLod(voxelRadiance, u, 0.0);
-    return lod <= 0.0 ? fine : mix(fine, sampleFaces(voxelFaces, u, d, w, 0.0, cells), lod);
-}
-
-// The same, round a spherical block's seam, where the first cells follow the last.
-vec4 sampleCone(vec3 u, int block, vec3 d, float lod) {
-    if (WARP != WARP_SPHERICAL || block > 0) return sampleBox(u, block, d, lod);
-    float half_cell = 0.5 * exp2(max(lod, 0.0)) / float(params.voxel_dim);
-    vec4 texel = sampleBox(vec3(clamp(u.x, half_cell, 1.0 - half_cell), u.yz), block, d, lod);
-    float over = max(half_cell - u.x, u.x - 1.0 + half_cell) / (2.0 * half_cell);
-    return over <= 0.0 ? texel : mix(texel, sampleBox(vec3(u.x < 0.5 ? 1.0 - half_cell : half_cell, u.yz), block, d, lod), over);
+    vec4 faces = sampleFaces(voxelFaces, u, d, w, max(lod - 1.0, 0.0), float(textureSize(voxelFaces, 0).y));
+    return lod < 1.0 ? mix(fine, faces, lod) : faces;
 }
 
 // The level whose cells are as wide as the cone. `v`: length of the block's cell along the cone, `height`: above the
@@ -52,55 +44,70 @@ float levelAt(Grid g, int block, vec3 p, float v, float radius, float height, Co
     return clamp(lod, 0.0, g.last);
 }
 
+// Lookups of a sample: its block; round a spherical block's seam, where the first cells follow the last, the other side;
+// towards a block's border the next block. One place for all of them: the compiler copies it for every kind of cone.
+const int OWN = 0, SEAM = 1, NEXT = 2;
+
 // Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
     int block = o.block;
-    Grid g = volume.grids[block];
-    float v = cellAlong(g, o.position, d), v0 = v;
-    if (BLOCKS > 1 && o.share < 1.0) v0 = mix(cellAlong(volume.grids[block + 1], o.position, d), v, o.share);
-    vec3 way = gridDirection(g, o.position, d);
+    float v0, v;
+    vec3 way;
+    cellAlong(volume.grids[block], o.position, d, v, way);
+    v0 = BLOCKS > 1 && o.share < 1.0 ? mix(cellLength(volume.grids[block + 1], o.position, d), v, o.share) : v;
     float rise = max(dot(d, o.normal), 0.0);
     float s = params.cone_height * v0;
     vec3 color = vec3(0.0);
     float alpha = 0.0;
     for (int i = 0; i < steps; i++) {
         vec3 p = o.position + s * d;
-        vec3 u;
         int before = block;
-        if (BLOCKS > 1) {
-            block = blockAt(p, u);
-            g = volume.grids[block];
-        } else {
-            u = worldToVolume(g, p);
-        }
-        // Past the border the clamped lookup gives the border cells once more: a coarse cell that holds the
-        // outermost wall reaches to the border, and stopping short of it would let light out.
-        bool outside = !inVolume(u);
-        if (outside && (i == 0 || block != before || CURVED && g.curved != 0 || OPACITY == OPACITY_STORED)) break;
-        if (WARP != WARP_NONE || BLOCKS > 1) {
-            v = cellAlong(g, p, d);
-            way = gridDirection(g, p, d);
-        }
-        float radius = s * tan_half;
-        float height = o.height + s * rise;
-        float lod = levelAt(g, block, p, v, radius, height, o);
-        float cell = v * exp2(lod);
-        float ds = max(CONE_STEP == CONE_STEP_RADIUS ? radius : params.step_factor * cell, 0.05 * v);
-
-        vec4 texel = sampleCone(u, block, way, lod);
-        if (BLOCKS > 1 && block < BLOCKS - 1) {
-            float share = shareOfBlock(u, lod);
-            if (share < 1.0) {
-                Grid coarse = volume.grids[block + 1];
-                vec3 at = worldToVolume(coarse, p);
-                float v1 = cellAlong(coarse, p, d), lod1 = levelAt(coarse, block + 1, p, v1, radius, height, o);
-                if (inVolume(at)) {
-                    vec4 other = sampleBox(at, block + 1, gridDirection(coarse, p, d), lod1);
-                    // Of surfaces side by side opacity is a density: the step is told in this block's cells.
-                    if (OPACITY == OPACITY_COVERAGE) other *= DIRECTIONAL ? cell / (v1 * exp2(lod1)) : v / v1;
-                    else if (OPACITY == OPACITY_LAYERS && other.a > 0.0) other *= (1.0 - pow(1.0 - min(other.a, 1.0), v / v1)) / other.a;
-                    texel = mix(other, texel, share);
-                }
+        if (BLOCKS > 1) block = blockAt(p);
+        float radius = s * tan_half, height = o.height + s * rise;
+        float lod, cell, ds, share = 1.0, seam = 0.0;
+        bool outside = false;
+        vec4 texel = vec4(0.0);
+        for (int lookup = OWN; lookup <= NEXT; lookup++) {
+            if (lookup == SEAM && seam <= 0.0) continue;
+            if (lookup == NEXT && share >= 1.0) break;
+            int k = lookup == NEXT ? block + 1 : block;
+            Grid g = volume.grids[k];
+            vec3 u = worldToVolume(g, p);
+            if (lookup == OWN) {
+                // Past the border the clamped lookup gives the border cells once more: a coarse cell that holds the
+                // outermost wall reaches to the border, and stopping short of it would let light out.
+                outside = !inVolume(u);
+                if (outside && (i == 0 || block != before || CURVED && g.curved != 0 || OPACITY == OPACITY_STORED)) return vec4(color, min(alpha, 1.0));
+            } else if (lookup == NEXT && !inVolume(u)) {
+                break;
+            }
+            float own = v;
+            if (WARP != WARP_NONE || BLOCKS > 1) cellAlong(g, p, d, own, way);
+            float level = levelAt(g, k, p, own, radius, height, o);
+            float size = own * exp2(level);
+            if (lookup == OWN) {
+                v = own;
+                lod = level;
+                cell = size;
+                ds = max(CONE_STEP == CONE_STEP_RADIUS ? radius : params.step_factor * cell, 0.05 * v);
+                if (BLOCKS > 1 && block < BLOCKS - 1) share = shareOfBlock(u, lod);
+            }
+            if (WARP == WARP_SPHERICAL && k == 0) {
+                float half_cell = 0.5 * exp2(level) / float(params.voxel_dim);
+                seam = max(half_cell - u.x, u.x - 1.0 + half_cell) / (2.0 * half_cell);
+                u.x = lookup == OWN ? clamp(u.x, half_cell, 1.0 - half_cell) : u.x < 0.5 ? 1.0 - half_cell : half_cell;
+            }
+            vec4 found = sampleCone(u, k, way, level);
+            if (lookup == OWN) {
+                texel = found;
+            } else if (lookup == SEAM) {
+                texel = mix(texel, found, seam);
+            } else {
+                // Of surfaces side by side opacity is a density, of layers one for each voxel: the step is told in the
+                // first block's cells.
+                if (OPACITY == OPACITY_COVERAGE) found *= DIRECTIONAL ? cell / size : v / own;
+                else if (OPACITY == OPACITY_LAYERS && found.a > 0.0) found *= (1.0 - pow(1.0 - min(found.a, 1.0), v / own)) / found.a;
+                texel = mix(found, texel, share);
             }
         }
         if (texel.a > 1e-5) {

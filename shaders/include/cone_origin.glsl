@@ -17,16 +17,15 @@ struct ConeOrigin {
 // `geometric` keeps the start outside the voxels of its own surface; the thesis goes `bias` voxels along the
 // shading normal, which can point into the geometry.
 ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
-    vec3 u;
-    int block = blockAt(p, u);
+    int block = blockAt(p);
     Grid g = volume.grids[block];
     float reach = cellReach(g, p, geometric), share = 1.0;
     if (BLOCKS > 1 && block < BLOCKS - 1) {
-        share = shareOfBlock(u, 0.0);
+        share = shareOfBlock(worldToVolume(g, p), 0.0);
         reach = mix(cellReach(volume.grids[block + 1], p, geometric), reach, share);
     }
     if (params.cone_origin == CONE_ORIGIN_SHADING) {
-        vec3 start = p + params.bias * cellAlong(g, p, shading) * shading;
+        vec3 start = p + params.bias * cellLength(g, p, shading) * shading;
         return ConeOrigin(start, geometric, max(dot(start - p, geometric), 0.0), reach, block, share);
     }
     float height = 2.0 * params.bias * reach;

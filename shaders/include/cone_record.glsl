@@ -27,8 +27,7 @@ vec2 pixelCentre() {
 
 void recordCones(Surface s, vec3 p, vec3 face, vec3 v) {
     ConeOrigin o = coneOrigin(p, face, s.normal);
-    diffuseCone(o, s, face);
-    if (params.specular_cone) specularCone(o, s, face, v);
+    gather(o, s, face, v);
     coneSamples.surface = p;
     coneSamples.origin = o.position;
     coneSamples.draw = uvec4(SAMPLE_VERTICES, rows, 0, 0);

@@ -30,10 +30,11 @@ vec4 traceVoxels(vec3 origin, vec3 d) {
     if (WARP != WARP_NONE || BLOCKS > 1) {
         float s = 0.0;
         for (int i = 0; i < 16 * dim; i++) {
-            vec3 p = origin + s * d, u;
-            int block = blockAt(p, u);
+            vec3 p = origin + s * d;
+            int block = blockAt(p);
+            vec3 u = worldToVolume(volume.grids[block], p);
             if (!inVolume(u)) break;
-            float cell = cellAlong(volume.grids[block], p, d);
+            float cell = cellLength(volume.grids[block], p, d);
             vec4 texel = texelFetch(voxelRadiance, storedCell(min(ivec3(u * float(dim)), ivec3(dim - 1)), block), 0);
             if (texel.a > 1e-5) {
                 float a = through * (1.0 - pow(1.0 - min(texel.a, 1.0), 0.25));

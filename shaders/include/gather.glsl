@@ -62,36 +62,14 @@ vec3 specularRays(ConeOrigin o, Surface s, vec3 face, vec3 v) {
 
 #endif
 
-// rgb: mean radiance over the hemisphere, cosine-weighted; a: how open it is.
-vec4 diffuseCone(ConeOrigin o, Surface s, vec3 face) {
-    vec3 n = params.cone_normal == CONE_NORMAL_MAPPED ? s.normal : face;
-#ifdef VOXEL_RAYS
-    if (TRACE == TRACE_LOBE_RAYS) return diffuseRays(o, n, face);
-#endif
-    ConeSet set = diffuseCones();
-    mat3 frame = frameOf(n);
-    float turn = 0.0;
-    if (params.cone_rotate) // interleaved gradient noise (Jimenez 2014): trades banding for noise
-        turn = fract(52.9829189 * fract(dot(pixelCentre(), vec2(0.06711056, 0.00583715))));
-    vec4 sum = vec4(0.0);
-    for (int i = 0; i < set.count; i++) {
-        float angle = 2.0 * PI * (float(i) + turn) / float(set.count - 1);
-        vec3 d = i == 0 ? n : frame * vec3(set.sin_tilt * cos(angle), set.sin_tilt * sin(angle), set.cos_tilt);
-        float weight = i == 0 ? set.axial_weight : (1.0 - set.axial_weight) / float(set.count - 1);
-#ifdef CONE_RECORD
-        recordCone(uint(i) + 1u);
-#endif
-        vec4 cone = traceAny(o, d, set.tan_half, params.diffuse_steps, uint(i) + 1u);
-        sum += weight * vec4(coneRadiance(cone), 1.0 - cone.a);
-    }
-    return sum;
-}
+// What a surface's cones gather.
+struct Gathered {
+    vec4 hemisphere; // rgb: mean radiance over the hemisphere, cosine-weighted; a: how open it is
+    vec3 specular; // radiance towards the viewer
+};
 
-// Radiance from the mirror direction.
-vec3 specularCone(ConeOrigin o, Surface s, vec3 face, vec3 v) {
-#ifdef VOXEL_RAYS
-    if (TRACE == TRACE_LOBE_RAYS) return specularRays(o, s, face, v);
-#endif
+// Of the cone that stands for the specular lobe: w is the tangent of half its angle.
+vec4 specularCone(Surface s, vec3 face, vec3 v) {
     float alpha = ggxAlpha(s.roughness);
     vec3 d = reflect(-v, s.normal);
     // Where a rough lobe's weight lies: between the mirror direction and the normal (Lagarde and de Rousiers 2014,
@@ -104,13 +82,48 @@ vec3 specularCone(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     // for the whole aperture.
     float half_angle = params.specular_aperture == SPECULAR_APERTURE_THESIS ? 0.05 * PI * s.roughness
                                                                             : min(2.0 * atan(alpha), PI / 3.0);
-#ifdef CONE_RECORD
-    recordCone(0u);
-#endif
-    vec3 l = coneRadiance(traceAny(o, d, tan(half_angle), params.specular_steps, 0u));
-    if (params.specular_weight == SPECULAR_WEIGHT_PLAIN) return l; // as the thesis adds it
+    return vec4(d, tan(half_angle));
+}
+
+// How much of the specular cone's radiance goes to the viewer.
+vec3 specularWeight(Surface s, vec3 v) {
+    if (params.specular_weight == SPECULAR_WEIGHT_PLAIN) return vec3(1.0); // as the thesis adds it
     vec2 albedo = textureLod(specularAlbedo, (vec2(sqrt(max(dot(s.normal, v), 0.0)), s.roughness) * 31.0 + 0.5) / 32.0, 0.0).rg;
-    return l * (s.f0 * albedo.r + albedo.g);
+    return s.f0 * albedo.r + albedo.g;
+}
+
+// One loop over all cones, the specular one last: the compiler copies what traces them once for each place that it
+// is called from, and a researcher waits for that at every save.
+Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    vec3 n = params.cone_normal == CONE_NORMAL_MAPPED ? s.normal : face;
+#ifdef VOXEL_RAYS
+    if (TRACE == TRACE_LOBE_RAYS)
+        return Gathered(diffuseRays(o, n, face), params.specular_cone ? specularRays(o, s, face, v) : vec3(0.0));
+#endif
+    ConeSet set = diffuseCones();
+    mat3 frame = frameOf(n);
+    float turn = 0.0;
+    if (params.cone_rotate) // interleaved gradient noise (Jimenez 2014): trades banding for noise
+        turn = fract(52.9829189 * fract(dot(pixelCentre(), vec2(0.06711056, 0.00583715))));
+    vec4 mirror = specularCone(s, face, v);
+    Gathered sum = Gathered(vec4(0.0), vec3(0.0));
+    int cones = set.count + (params.specular_cone ? 1 : 0);
+    for (int i = 0; i < cones; i++) {
+        bool specular = i == set.count;
+        float angle = 2.0 * PI * (float(i) + turn) / float(set.count - 1);
+        vec3 d = i == 0 ? n : frame * vec3(set.sin_tilt * cos(angle), set.sin_tilt * sin(angle), set.cos_tilt);
+        float weight = i == 0 ? set.axial_weight : (1.0 - set.axial_weight) / float(set.count - 1);
+        uint number = specular ? 0u : uint(i) + 1u;
+#ifdef CONE_RECORD
+        recordCone(number);
+#endif
+        vec4 cone = traceAny(o, specular ? mirror.xyz : d, specular ? mirror.w : set.tan_half,
+            specular ? params.specular_steps : params.diffuse_steps, number);
+        vec3 l = coneRadiance(cone);
+        if (specular) sum.specular = l * specularWeight(s, v);
+        else sum.hemisphere += weight * vec4(l, 1.0 - cone.a);
+    }
+    return sum;
 }
 
 #endif

@@ -23,11 +23,11 @@ Shading shade(Surface s, vec3 p, vec3 face, vec3 v) {
     Shading result;
     result.direct = directLight(s, p, face, v);
     ConeOrigin o = coneOrigin(p, face, s.normal);
-    vec4 hemisphere = diffuseCone(o, s, face);
-    result.diffuse = s.albedo * hemisphere.rgb * params.indirect_scale;
-    result.specular = params.specular_cone ? specularCone(o, s, face, v) * params.indirect_scale : vec3(0.0);
-    result.open = hemisphere.a;
-    if (params.multiply_occlusion == MULTIPLY_OCCLUSION_ALL) result.direct *= hemisphere.a;
+    Gathered light = gather(o, s, face, v);
+    result.diffuse = s.albedo * light.hemisphere.rgb * params.indirect_scale;
+    result.specular = light.specular * params.indirect_scale;
+    result.open = light.hemisphere.a;
+    if (params.multiply_occlusion == MULTIPLY_OCCLUSION_ALL) result.direct *= light.hemisphere.a;
     return result;
 }
 

@@ -148,18 +148,22 @@ vec3 cellSize(Grid g, vec3 p) {
     return vec3(length(a[0]), length(a[1]), length(a[2]));
 }
 
-// Length of the level-0 cell at p along the unit vector d [m]: 1 / (cells crossed per metre).
-float cellAlong(Grid g, vec3 p, vec3 d) {
-    if (WARP == WARP_NONE || CURVED && g.curved == 0) return 1.0 / length(d / g.cell);
-    if (!CURVED) return 1.0 / length(d * warpSlope(clamp((p - g.minimum) / g.size, 0.0, 1.0)) / g.cell);
-    return 1.0 / max(length(inverse(cellAxes(g, p)) * d), 1e-6);
+// The unit vector d at p: how long a level-0 cell is along it [m], 1 / (cells crossed per metre), and d in cells, unit length.
+void cellAlong(Grid g, vec3 p, vec3 d, out float cell, out vec3 way) {
+    vec3 crossed;
+    if (WARP == WARP_NONE || CURVED && g.curved == 0) crossed = d / g.cell;
+    else if (!CURVED) crossed = d * warpSlope(clamp((p - g.minimum) / g.size, 0.0, 1.0)) / g.cell;
+    else crossed = inverse(cellAxes(g, p)) * d;
+    float many = CURVED ? max(length(crossed), 1e-6) : length(crossed);
+    cell = 1.0 / many;
+    way = crossed / many;
 }
 
-// The unit vector d in cells at p: unit length.
-vec3 gridDirection(Grid g, vec3 p, vec3 d) {
-    if (WARP == WARP_NONE || CURVED && g.curved == 0) return normalize(d / g.cell);
-    if (!CURVED) return normalize(d * warpSlope(clamp((p - g.minimum) / g.size, 0.0, 1.0)) / g.cell);
-    return normalize(inverse(cellAxes(g, p)) * d);
+float cellLength(Grid g, vec3 p, vec3 d) {
+    float cell;
+    vec3 way;
+    cellAlong(g, p, d, cell, way);
+    return cell;
 }
 
 // Half the extent of a cell across a plane of normal n: a plane through the cell's centre moved by this
@@ -202,14 +206,11 @@ bool isKept(Grid g, vec3 at) {
     return all(greaterThan(at, vec3(g.kept_from))) && all(lessThan(at, vec3(g.kept_to)));
 }
 
-// The finest block that holds p, with its coordinates there; else the coarsest.
-int blockAt(vec3 p, out vec3 u) {
-    for (int k = 0; k < BLOCKS - 1; k++) {
-        u = worldToVolume(volume.grids[k], p);
-        if (inVolume(u)) return k;
-    }
-    u = worldToVolume(volume.grids[BLOCKS - 1], p);
-    return BLOCKS - 1;
+// The finest block that holds p; else the coarsest.
+int blockAt(vec3 p) {
+    int k = 0;
+    while (k < BLOCKS - 1 && !inVolume(worldToVolume(volume.grids[k], p))) k++;
+    return k;
 }
 
 // Blocks that the tessellator fills: beside the rasteriser, the curved one.
