@@ -25,7 +25,7 @@ void main() {
     if (any(greaterThanEqual(cell, imageSize(voxelHistory)))) return;
     vec4 value = texelFetch(voxelLight, cell, 0);
     Grid g = volume.grids[block], last = lastVolume.grids[block];
-    if (lastVolume.frames > 0 && lastVolume.signature == voxelSignature() && !isCut(g, last)) {
+    if (lastVolume.frames > 0 && lastVolume.signature == voxelCounter.signature && !isCut(g, last)) {
         vec3 u = worldToVolume(last, volumeToWorld(g, cellCentre(cell)));
         // A volume that moved by whole voxels finds its cell's centre again, to rounding.
         if (inVolume(u)) {

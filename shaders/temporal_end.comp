@@ -11,6 +11,6 @@ layout(std430) buffer LastVolume { Grid grids[MAX_BLOCKS]; uint frames; uint sig
 
 void main() {
     lastVolume.grids = volume.grids;
-    lastVolume.signature = voxelSignature();
+    lastVolume.signature = voxelCounter.signature;
     lastVolume.frames = min(lastVolume.frames, 0xfffffffeu) + 1;
 }

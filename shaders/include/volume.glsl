@@ -102,7 +102,8 @@ vec3 worldToVolume(Grid g, vec3 p) {
         // Azimuth, angle from the vertical axis, logarithm of the distance: cells keep their shape. The axes are the
         // world's, so that a camera that turns moves nothing.
         float r = max(length(d), 1e-6);
-        return vec3(angleOf(d.x, d.z) / TURN + 0.5, angleOf(d.y, length(d.xz)) / (0.5 * TURN), log(r / g.range.x) / log(g.range.y / g.range.x));
+        vec2 angles = vec2(angleOf(d.x, d.z) / TURN + 0.5, angleOf(d.y, length(d.xz)) / (0.5 * TURN));
+        return vec3(clamp(angles, 0.0, 1.0), log(r / g.range.x) / log(g.range.y / g.range.x));
     }
     float w = dot(d, g.axis_z);
     if (w < 0.5 * g.range.x) return vec3(-1.0);
@@ -206,10 +207,18 @@ bool isKept(Grid g, vec3 at) {
     return all(greaterThan(at, vec3(g.kept_from))) && all(lessThan(at, vec3(g.kept_to)));
 }
 
+// Spheres hold what is far enough and near enough: their angles would cost four trigonometric functions a sample. The
+// margin is wider than rounding, so that worldToVolume agrees.
+bool holds(Grid g, vec3 p) {
+    if (WARP != WARP_SPHERICAL || g.curved == 0) return inVolume(worldToVolume(g, p));
+    float r = distance(p, g.eye);
+    return r > g.range.x * 1.00001 && r < g.range.y * 0.99999;
+}
+
 // The finest block that holds p; else the coarsest.
 int blockAt(vec3 p) {
     int k = 0;
-    while (k < BLOCKS - 1 && !inVolume(worldToVolume(volume.grids[k], p))) k++;
+    while (k < BLOCKS - 1 && !holds(volume.grids[k], p)) k++;
     return k;
 }
 
