@@ -7,9 +7,11 @@ use super::{
 use crate::experiment::{Experiment, checked_name, resolved_text};
 use crate::graph::link::Linked;
 use crate::graph::load::{Folders, Graph};
+use crate::graph::runs::generated;
 use crate::lab::{Lab, LabError, camera_of, no_texture};
 use crate::picture;
 use crate::scene::Scene;
+use crate::shader::ShaderCompiler;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
@@ -175,13 +177,16 @@ fn write_sources(
             return Err(failed(file, format!("an include has the name of the graph, '{main_name}'; rename one")));
         }
     }
-    for compiled in linked.iter().flat_map(|l| &l.stages) {
-        // The generated include comes from the graph's parameters.
-        for (name, text) in compiled.texts.iter().filter(|t| t.0 != "params.glsl") {
-            let include = Path::new("include").join(name);
-            let place = if folders.shaders.join(&include).is_file() { include } else { PathBuf::from(name) };
-            wanted.insert(Path::new("shaders").join(place), text);
-        }
+    // What the graph makes comes from its parameters. The files of other options go along: a capture can be varied.
+    let generated = generated(graph, &graph.params);
+    let compiler = ShaderCompiler::new(&folders.shaders, None);
+    let options = graph.params.list.iter().flat_map(|p| &p.files);
+    let others: Vec<_> = options.filter_map(|file| compiler.texts(file, &generated).ok()).collect();
+    let compiled = linked.iter().flat_map(|l| &l.stages).map(|s| &*s.texts);
+    for (name, text) in others.iter().chain(compiled).flatten().filter(|t| !generated.contains_key(t.0)) {
+        let include = Path::new("include").join(name);
+        let place = if folders.shaders.join(&include).is_file() { include } else { PathBuf::from(name) };
+        wanted.insert(Path::new("shaders").join(place), text);
     }
     // Graphs without shaders have an empty folder.
     std::fs::create_dir_all(sources.join("shaders")).map_err(|e| failed(&sources, e))?;

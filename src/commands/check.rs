@@ -97,10 +97,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
     for file in &files {
         let name = file.to_string_lossy();
         let findings = match kind(&name) {
-            FileKind::Graph => match home.graph(&name) {
-                Ok((_, _, warnings)) => warnings,
-                Err(errors) => errors,
-            },
+            FileKind::Graph => home.check(&name),
             FileKind::Path => crate::camera_path::CameraPath::read(file).err().unwrap_or_default(),
             FileKind::Sweep => crate::sweep::check(&home, file).err().unwrap_or_default(),
             FileKind::Stability => crate::stability::check(&home, file).err().unwrap_or_default(),

@@ -14,6 +14,12 @@ pub struct GraphFile {
     pub include: Items<String>,
     /// Parameters.
     pub params: Items<Decl>,
+    /// Other defaults for parameters of included files.
+    pub defaults: Entries<RawText>,
+    /// Modules that nobody chooses: name, file in the shader folder.
+    pub modules: Entries<String>,
+    /// What to write instead of a parameter, or of `parameter=option`, that is no more.
+    pub retired: Entries<String>,
     /// Expressions by name, for other expressions and shaders.
     pub values: Entries<ValueDecl>,
     /// Textures by name.

@@ -7,7 +7,7 @@ use super::param::Kind;
 use super::runs::Runs;
 use super::source::{Diagnostic, Place, Severity};
 use super::unused::{Texts, unused};
-use crate::shader::{Compiled, Resource, ShaderCompiler, Shape, Source};
+use crate::shader::{Compiled, Generated, Resource, ShaderCompiler, Shape, Source};
 use crate::vulkan::Stage;
 use crate::vulkan::format::{Channels, Format};
 use rayon::prelude::*;
@@ -63,7 +63,7 @@ pub fn link(
     shaders: &Path,
     runs: &Runs,
 ) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let params = graph.params.glsl(&graph.values);
+    let generated = &runs.generated;
     let mut files: BTreeMap<&str, Stage> = BTreeMap::new();
     for (_, pass) in graph.passes.iter().enumerate().filter(|(i, _)| runs.has(*i)) {
         for shader in &pass.value.shaders.0 {
@@ -74,7 +74,7 @@ pub fn link(
     }
     let results: Vec<_> = files
         .par_iter()
-        .map(|(file, stage)| (*file, compiler.compile(&Source { file: (*file).to_string(), stage: *stage }, &params)))
+        .map(|(file, stage)| (*file, compiler.compile(&Source { file: (*file).to_string(), stage: *stage }, generated)))
         .collect();
     let mut findings = Vec::new();
     let mut compiled = BTreeMap::new();
@@ -100,10 +100,11 @@ pub fn link(
         linked.push(if runs.has(i) {
             linker.pass(&pass.value, &compiled)
         } else {
-            texts.extend(linker.resting(&pass.value, compiler, &params));
+            texts.extend(linker.resting(&pass.value, compiler, generated));
             Linked::default()
         });
     }
+    texts.extend(linker.options(compiler, generated));
     let Linker { mut findings, used, .. } = linker;
     findings.extend(unused(graph, &used, &texts));
     if findings.iter().any(|f| f.severity == Severity::Error) { Err(findings) } else { Ok((linked, findings)) }
@@ -174,17 +175,30 @@ impl Linker<'_> {
     }
 
     /// What a pass that does not run would use, as far as the texts of its shaders tell; returns these.
-    fn resting(&mut self, pass: &PassDecl, compiler: &ShaderCompiler, params: &str) -> Vec<Texts> {
+    fn resting(&mut self, pass: &PassDecl, compiler: &ShaderCompiler, generated: &Generated) -> Vec<Texts> {
         self.mark_used(pass);
         self.used.extend(pass.bind.0.iter().map(|(_, bind)| bind.value.of.value.clone()));
         // What cannot be read is told when the pass runs.
         let files = pass.shaders.0.iter();
-        let texts: Vec<Texts> = files.filter_map(|s| Some(Arc::new(compiler.texts(&s.value, params).ok()?))).collect();
+        let texts: Vec<Texts> =
+            files.filter_map(|s| Some(Arc::new(compiler.texts(&s.value, generated).ok()?))).collect();
+        self.mark_named(&texts);
+        texts
+    }
+
+    /// What the files of all options of modules would use; returns their texts.
+    fn options(&mut self, compiler: &ShaderCompiler, generated: &Generated) -> Vec<Texts> {
+        let files = self.graph.params.list.iter().flat_map(|p| &p.files);
+        let texts: Vec<Texts> = files.filter_map(|f| Some(Arc::new(compiler.texts(f, generated).ok()?))).collect();
+        self.mark_named(&texts);
+        texts
+    }
+
+    fn mark_named(&mut self, texts: &[Texts]) {
         let graph = self.graph;
         let names = graph.textures.iter().map(|t| &t.0).chain(graph.buffers.iter().map(|b| &b.0));
         let named = names.filter(|name| texts.iter().flat_map(|t| t.values()).any(|text| has_word(text, name)));
         self.used.extend(named.cloned());
-        texts
     }
 
     fn mark_used(&mut self, pass: &PassDecl) {
@@ -246,8 +260,7 @@ impl Linker<'_> {
         for file in main {
             let Some(text) = shader.texts.get(file) else { continue };
             if let Some((number, line)) = (1u32..).zip(text.lines()).find(|(_, l)| declares(l)) {
-                let path = [self.shaders.join(file), self.shaders.join("include").join(file)];
-                let path = path.iter().find(|p| p.is_file()).unwrap_or(&path[0]).clone();
+                let path = crate::shader::find(self.shaders, file).unwrap_or_else(|| self.shaders.join(file));
                 let place = Place { file: path, line: number, column: 0 };
                 return Diagnostic { source: Some(line.trim().into()), ..Diagnostic::error(place, message) };
             }

@@ -31,6 +31,8 @@ pub struct Graph {
     pub params: Params,
     /// Where each parameter is declared.
     pub params_at: Vec<At>,
+    /// Modules that nobody chooses: name, file in the shader folder.
+    pub modules: Vec<(String, String)>,
     /// Named values, each after those that it reads.
     pub values: Vec<Named>,
     /// Textures by name.
@@ -102,6 +104,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
         params: Params::default(),
         params_at: Vec::new(),
+        modules: Vec::new(),
         values: Vec::new(),
         textures: Vec::new(),
         buffers: Vec::new(),
@@ -128,7 +131,18 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let mut pointer = None;
     let mut tables = Vec::new();
     let mut fit: Vec<(Loc<String>, Loc<RawText>)> = Vec::new();
+    let mut defaults: Vec<(Loc<String>, Loc<RawText>)> = Vec::new();
+    let mut modules: Vec<(Loc<String>, Loc<String>)> = Vec::new();
+    let mut retired = Vec::new();
     for file in files {
+        // A parameter takes the place of the module that an included file has set once and for all.
+        modules.retain(|(name, _)| !file.params.0.iter().any(|p| p.value.name().value == name.value));
+        for (name, path) in file.modules.0 {
+            modules.retain(|(other, _)| other.value != name.value);
+            modules.push((name, path));
+        }
+        defaults.extend(file.defaults.0);
+        retired.extend(file.retired.0.into_iter().map(|(name, instead)| (name.value, instead.value)));
         decls.extend(file.params.0);
         values.extend(file.values.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
@@ -158,12 +172,14 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         graph.parts.extend(file.parts.0.iter().map(|(part, texture)| (part.value.clone(), texture.value.clone())));
         wanted.extend(file.parts.0.into_iter().map(|p| p.1));
     }
-    let list = check_params(&decls, &graph.sources, &mut errors, &mut broken);
+    let mut list = check_params(&decls, &graph.sources, &mut errors, &mut broken);
     graph.params_at = list.iter().map(|p| declared_at(&decls, &p.name)).collect();
-    graph.params = Params::new(list);
+    set_defaults(&mut list, &defaults, &graph.sources, whole, &broken, &mut errors);
+    graph.params = Params { retired, ..Params::new(list) };
     graph.values = ordered(values, &graph.params, &graph.sources, &mut errors, &mut broken);
     let mut check = Check { graph: &graph, folders, errors, broken, whole, variables: HashSet::new() };
     check.names();
+    check.modules(&modules);
     check.named_values();
     check.textures();
     for pass in &graph.passes {
@@ -194,6 +210,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         check.exprs(needs.value.when.as_ref());
     }
     let mut errors = check.errors;
+    graph.modules = modules.into_iter().map(|(name, file)| (name.value, file.value)).collect();
     graph.checks = checks.into_iter().map(|c| c.value).collect();
     graph.pointer = pointer.map(|p| p.value);
     graph.tables = tables.into_iter().map(|t| t.value).collect();
@@ -285,30 +302,30 @@ fn check_params(
             Err(message) => {
                 errors.push(sources.error(decl.at, message));
                 broken.push(name.value.clone());
-                if let super::param::Decl::Choice(fields) = &decl.value {
-                    broken.extend(fields.options.iter().map(|o| o.value.clone()));
-                }
+                broken.extend(decl.value.options().into_iter().map(|o| o.value));
             }
         }
     }
     let names: HashSet<&str> = list.iter().map(|p| p.name.as_str()).collect();
     for decl in decls {
-        if let super::param::Decl::Choice(fields) = &decl.value {
-            for (i, option) in fields.options.iter().enumerate() {
-                if fields.options[..i].iter().any(|o| o.value == option.value) {
-                    errors.push(sources.error(option.at, format!("option '{}' stands twice", option.value)));
-                } else if !is_identifier(&option.value) {
-                    errors.push(
-                        sources
-                            .error(option.at, format!("'{}' cannot be an option's name", option.value))
-                            .help(Some("letters, digits and underscores, starting with a lower-case letter".into())),
-                    );
-                } else if names.contains(option.value.as_str()) || BUILTIN_VARIABLES.contains(&option.value.as_str()) {
-                    errors.push(sources.error(
-                        option.at,
-                        format!("option '{}' has the name of a parameter or variable, which expressions could not tell apart", option.value),
-                    ));
-                }
+        let options = decl.value.options();
+        for (i, option) in options.iter().enumerate() {
+            if options[..i].iter().any(|o| o.value == option.value) {
+                errors.push(sources.error(option.at, format!("option '{}' stands twice", option.value)));
+            } else if !is_identifier(&option.value) {
+                errors.push(
+                    sources
+                        .error(option.at, format!("'{}' cannot be an option's name", option.value))
+                        .help(Some("letters, digits and underscores, starting with a lower-case letter".into())),
+                );
+            } else if names.contains(option.value.as_str()) || BUILTIN_VARIABLES.contains(&option.value.as_str()) {
+                errors.push(sources.error(
+                    option.at,
+                    format!(
+                        "option '{}' has the name of a parameter or variable, which expressions could not tell apart",
+                        option.value
+                    ),
+                ));
             }
         }
     }
@@ -317,6 +334,31 @@ fn check_params(
 
 fn declared_at(decls: &[Loc<super::param::Decl>], name: &str) -> At {
     decls.iter().find(|d| d.value.name().value == name).map_or(At::default(), |d| d.value.name().at)
+}
+
+/// Changes defaults, the later one last.
+fn set_defaults(
+    list: &mut [Param],
+    defaults: &[(Loc<String>, Loc<RawText>)],
+    sources: &Sources,
+    whole: bool,
+    broken: &[String],
+    errors: &mut Vec<Diagnostic>,
+) {
+    for (name, text) in defaults {
+        match list.iter_mut().find(|p| p.name == name.value) {
+            Some(param) => match param.parse(&text.value.0) {
+                Ok(value) => param.default = value,
+                Err(message) => errors.push(sources.error(text.at, format!("default of {message}"))),
+            },
+            None if whole && !broken.contains(&name.value) => {
+                let known = list.iter().map(|p| p.name.as_str());
+                let found = sources.error(name.at, format!("no parameter '{}' to give a default to", name.value));
+                errors.push(found.nearest(&name.value, known));
+            }
+            None => {}
+        }
+    }
 }
 
 /// Names that GLSL and expressions can use.
@@ -399,6 +441,30 @@ impl Check<'_> {
                     name.at,
                     format!("two passes are named '{}'; timings could not tell them apart", name.value),
                 );
+            }
+        }
+    }
+
+    /// Names and files of modules, chosen or not.
+    fn modules(&mut self, fixed: &[(Loc<String>, Loc<String>)]) {
+        for (name, _) in fixed {
+            if !is_identifier(&name.value) {
+                self.error(name.at, format!("'{}' cannot be a module's name", name.value));
+            }
+            if self.graph.params.index(&name.value).is_some() {
+                let message =
+                    format!("module '{}' is a parameter, which an option is chosen for: remove one", name.value);
+                self.error(name.at, message);
+            }
+        }
+        // Of a choice, each option's file is looked for when it is set: a capture holds no other.
+        for (_, file) in fixed {
+            if crate::shader::find(&self.folders.shaders, &file.value).is_none() {
+                let found = self.graph.sources.error(file.at, format!("no shader file '{}'", file.value));
+                let folder = Path::new(&file.value).parent().unwrap_or(Path::new(""));
+                let known = files_of(&self.folders.shaders.join(folder));
+                let known: Vec<String> = known.iter().map(|f| folder.join(f).to_string_lossy().into_owned()).collect();
+                self.errors.push(found.nearest(&file.value, known.iter().map(String::as_str)));
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Parameters: declared once in a graph, read by shaders, `--set`, experiments, panels and sweeps.
 
 use super::expr::{Env, Var};
-use super::source::{Loc, nearest, options};
+use super::source::{Entries, Loc, nearest, options};
 use super::value::{Named, members as members_of};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -87,6 +87,8 @@ pub struct Param {
     pub help: String,
     /// Whether it is a specialisation constant.
     pub constant: bool,
+    /// Of a module: the shader file of each option; empty for all others.
+    pub files: Vec<String>,
 }
 
 /// A declaration as it stands in a graph file.
@@ -108,6 +110,26 @@ pub enum Decl {
     Colour(Fields<(f64, f64, f64)>),
     /// One of some names.
     Choice(Fields<String>),
+    /// One of some shader files, by name.
+    Module(ModuleFields),
+}
+
+/// Fields of a module: a choice whose options are shader files. `#include "modules/NAME.glsl"` is the file of the option
+/// that is set.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModuleFields {
+    /// Name.
+    pub name: Loc<String>,
+    /// The file of each option, in the shader folder.
+    pub options: Entries<String>,
+    /// Default; the first option when absent.
+    pub default: Option<String>,
+    /// Group.
+    #[serde(default)]
+    pub group: String,
+    /// Help.
+    pub help: String,
 }
 
 /// Fields of a declaration.
@@ -159,6 +181,30 @@ impl Decl {
                 fields.default = fields.default.or(Some(first));
                 make(&fields, Kind::Choice(names), |v| Value::Choice(v.clone()))
             }
+            Decl::Module(f) => {
+                let choice = Fields {
+                    name: f.name.clone(),
+                    default: f.default.clone(),
+                    range: None,
+                    step: None,
+                    unit: String::new(),
+                    group: f.group.clone(),
+                    help: f.help.clone(),
+                    options: self.options(),
+                    constant: false,
+                };
+                let files = f.options.0.iter().map(|(_, file)| file.value.clone()).collect();
+                Decl::Choice(choice).param().map(|param| Param { files, ..param })
+            }
+        }
+    }
+
+    /// The options of a choice or a module, with their places.
+    pub fn options(&self) -> Vec<Loc<String>> {
+        match self {
+            Decl::Choice(f) => f.options.clone(),
+            Decl::Module(f) => f.options.0.iter().map(|(option, _)| option.clone()).collect(),
+            _ => Vec::new(),
         }
     }
 
@@ -172,6 +218,7 @@ impl Decl {
             Decl::Vec3(f) | Decl::Colour(f) => &f.name,
             Decl::Vec4(f) => &f.name,
             Decl::Choice(f) => &f.name,
+            Decl::Module(f) => &f.name,
         }
     }
 }
@@ -200,12 +247,18 @@ fn make<T>(fields: &Fields<T>, kind: Kind, value: impl Fn(&T) -> Value) -> Resul
         group: fields.group.clone(),
         help: fields.help.clone(),
         constant: fields.constant,
+        files: Vec::new(),
     };
     param.check(&default).map_err(|e| format!("default of {e}"))?;
     Ok(param)
 }
 
 impl Param {
+    /// Whether its options are shader files: then it stands in no shader itself.
+    pub fn is_module(&self) -> bool {
+        !self.files.is_empty()
+    }
+
     /// Whether a value is of the right kind and in range; the error names the parameter and what was expected.
     ///
     /// # Errors
@@ -290,13 +343,28 @@ pub struct Params {
     pub list: Vec<Param>,
     /// The values, in the same order.
     pub values: Vec<Value>,
+    /// What to write instead of a parameter, or of `parameter=option`, that is no more.
+    pub retired: Vec<(String, String)>,
 }
 
 impl Params {
     /// All at their defaults.
     pub fn new(list: Vec<Param>) -> Params {
         let values = list.iter().map(|p| p.default.clone()).collect();
-        Params { list, values }
+        Params { list, values, retired: Vec::new() }
+    }
+
+    /// The module files in use: name of the module, file of its option.
+    pub fn modules(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.list.iter().zip(&self.values).filter_map(|(param, value)| {
+            let (Kind::Choice(options), Value::Choice(option)) = (&param.kind, value) else { return None };
+            let number = options.iter().position(|o| o == option)?;
+            Some((param.name.as_str(), param.files.get(number)?.as_str()))
+        })
+    }
+
+    fn instead(&self, name: &str) -> Option<&str> {
+        self.retired.iter().find(|(retired, _)| retired == name).map(|(_, instead)| instead.as_str())
     }
 
     /// Number of a parameter.
@@ -310,11 +378,15 @@ impl Params {
     /// Unknown name (with the nearest), wrong kind, out of range.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
         let Some(i) = self.index(name) else {
+            if let Some(instead) = self.instead(name) {
+                return Err(format!("no parameter '{name}' in this graph: {instead}"));
+            }
             let hint =
                 nearest(name, self.list.iter().map(|p| p.name.as_str())).map_or(String::new(), |h| format!(" ({h})"));
             return Err(format!("no parameter '{name}'{hint}"));
         };
-        self.values[i] = self.list[i].parse(text)?;
+        let instead = self.instead(&format!("{name}={}", text.trim().trim_matches('"')));
+        self.values[i] = self.list[i].parse(text).map_err(|e| instead.map_or(e.clone(), |i| format!("{e}: {i}")))?;
         Ok(())
     }
 
@@ -364,7 +436,7 @@ impl Params {
     pub fn glsl(&self, values: &[Named]) -> String {
         let mut members = String::new();
         let mut rest = String::new();
-        for (id, param) in self.list.iter().enumerate() {
+        for (id, param) in self.list.iter().enumerate().filter(|(_, p)| !p.is_module()) {
             let upper = param.name.to_uppercase();
             let (ty, value) = glsl_value(param);
             if param.constant {
@@ -391,7 +463,7 @@ impl Params {
     /// The content of the uniform block (std140, OpenGL 4.6 section 7.6.2.2), with the named values of [`Params::glsl`].
     pub fn uniform_bytes(&self, values: &[Value]) -> Vec<u8> {
         let mut bytes = Vec::new();
-        for (param, value) in self.list.iter().zip(&self.values).filter(|(p, _)| !p.constant) {
+        for (param, value) in self.list.iter().zip(&self.values).filter(|(p, _)| !p.constant && !p.is_module()) {
             let words = words(param, value);
             let align = match words.len() {
                 1 => 4,

@@ -2,6 +2,7 @@
 
 use super::load::Graph;
 use super::source::{At, Diagnostic, Severity};
+use crate::shader::module_include;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;
 
@@ -48,7 +49,8 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
                 .any(|v| *v == param.name || v.strip_prefix(&param.name).is_some_and(|r| r.starts_with('_')))
         });
         let as_format = graph.textures.iter().any(|t| t.1.value.format.value == param.name);
-        if !in_graph && !as_format && !in_texts(&in_shader) {
+        let included = param.is_module() && shaders.iter().any(|t| t.contains_key(&module_include(&param.name)));
+        if !in_graph && !as_format && !included && !in_texts(&in_shader) {
             let at = graph.params_at.get(i).copied().unwrap_or_default();
             warn(at, format!("parameter '{}' is declared and never used", param.name));
         }

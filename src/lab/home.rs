@@ -4,8 +4,9 @@ use super::{LabError, environment, params_of};
 use crate::experiment::Experiment;
 use crate::graph::link::{Linked, link};
 use crate::graph::load::{Folders, Graph, load};
+use crate::graph::param::{Kind, Value};
 use crate::graph::runs::{Runs, runs};
-use crate::graph::source::Diagnostic;
+use crate::graph::source::{Diagnostic, Place};
 use crate::scene::Scene;
 use crate::shader::ShaderCompiler;
 use std::path::{Path, PathBuf};
@@ -84,8 +85,39 @@ impl Home {
     /// All mistakes.
     pub fn graph(&self, name: &str) -> Result<(Graph, Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
         let graph = self.read(name)?;
-        let (linked, warnings) = self.link(&graph, &Runs::all(&graph))?;
+        let (linked, warnings) = self.link(&graph, &Runs::all(&graph, &graph.params))?;
         Ok((graph, linked, warnings))
+    }
+
+    /// Everything that is wrong with a graph and its shaders, or worth knowing, whichever option its modules are set to;
+    /// needs no device.
+    pub fn check(&self, name: &str) -> Vec<Diagnostic> {
+        let graph = match self.read(name) {
+            Ok(graph) => graph,
+            Err(errors) => return errors,
+        };
+        let mut findings: Vec<Diagnostic> = Vec::new();
+        let mut settings = vec![graph.params.clone()];
+        for param in graph.params.list.iter().filter(|p| p.is_module()) {
+            let Kind::Choice(options) = &param.kind else { continue };
+            for option in options.iter().filter(|o| Value::Choice((*o).clone()) != param.default) {
+                let mut params = graph.params.clone();
+                findings.extend(params.set(&param.name, option).err().map(|e| Diagnostic::error(Place::default(), e)));
+                settings.push(params);
+            }
+        }
+        for params in settings {
+            let found = match self.link(&graph, &Runs::all(&graph, &params)) {
+                Ok((_, warnings)) => warnings,
+                Err(errors) => errors,
+            };
+            for finding in found {
+                if !findings.contains(&finding) {
+                    findings.push(finding);
+                }
+            }
+        }
+        findings
     }
 
     /// [`Home::graph`], to be shared.
@@ -133,6 +165,8 @@ impl Home {
 
 /// The passes that an experiment runs. With parameters that are none, which is told elsewhere: all.
 fn runs_of(graph: &Graph, experiment: &Experiment, scene: &Scene) -> Runs {
-    params_of(graph, experiment)
-        .map_or_else(|_| Runs::all(graph), |params| runs(graph, &params, &environment(scene, experiment.size)))
+    params_of(graph, experiment).map_or_else(
+        |_| Runs::all(graph, &graph.params),
+        |params| runs(graph, &params, &environment(scene, experiment.size)),
+    )
 }

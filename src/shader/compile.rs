@@ -38,6 +38,24 @@ static COMPILER: LazyLock<Result<shaderc::Compiler, shaderc::Error>> = LazyLock:
 /// The last module of each file (folder, name), in this program: an edit compiles and reads only what it touches.
 static LAST: Mutex<BTreeMap<(PathBuf, String), Compiled>> = Mutex::new(BTreeMap::new());
 
+/// Files that the graph makes, by the name that shaders include them by: `params.glsl`, and a line for each module that
+/// includes the file of its option.
+pub type Generated = BTreeMap<String, String>;
+
+/// The include of a module, which stands for the file of its option.
+pub fn module_include(name: &str) -> String {
+    format!("modules/{name}.glsl")
+}
+
+/// Path of a shader or include in a folder of shaders; older graphs keep includes in `include/`.
+pub fn find(folder: &Path, name: &str) -> Option<PathBuf> {
+    // Names come from shader text: they stay inside the folder.
+    if Path::new(name).components().any(|c| !matches!(c, std::path::Component::Normal(_))) {
+        return None;
+    }
+    [folder.join("include").join(name), folder.join(name)].into_iter().find(|p| p.is_file())
+}
+
 /// Compiles shaders of one folder.
 pub struct ShaderCompiler {
     folder: PathBuf,
@@ -55,12 +73,12 @@ impl ShaderCompiler {
         ShaderCompiler { folder: folder.to_path_buf(), cache: cache.map(Path::to_path_buf) }
     }
 
-    /// Compiles one file. `params` is the generated `params.glsl`.
+    /// Compiles one file.
     ///
     /// # Errors
     /// Every message of the compiler, with the original file and line.
-    pub fn compile(&self, source: &Source, params: &str) -> Result<Compiled, Vec<Diagnostic>> {
-        let texts = self.texts(&source.file, params)?;
+    pub fn compile(&self, source: &Source, generated: &Generated) -> Result<Compiled, Vec<Diagnostic>> {
+        let texts = self.texts(&source.file, generated)?;
         let name = (self.folder.clone(), source.file.clone());
         let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = last().get(&name).filter(|k| k.stage == source.stage && *k.texts == texts) {
@@ -102,26 +120,42 @@ impl ShaderCompiler {
     ///
     /// # Errors
     /// Files that cannot be read.
-    pub fn texts(&self, file: &str, params: &str) -> Result<BTreeMap<String, String>, Vec<Diagnostic>> {
-        let mut texts = BTreeMap::from([("params.glsl".to_string(), params.to_string())]);
-        self.collect(file, &mut texts)?;
+    pub fn texts(&self, file: &str, generated: &Generated) -> Result<BTreeMap<String, String>, Vec<Diagnostic>> {
+        let mut texts = BTreeMap::new();
+        self.collect(file, generated, &mut texts)?;
         Ok(texts)
     }
 
-    /// Path of an include: beside the shaders, or in `include/`.
     fn find(&self, name: &str) -> Option<PathBuf> {
-        // Names come from shader text: they stay inside the folder.
-        if Path::new(name).components().any(|c| !matches!(c, std::path::Component::Normal(_))) {
-            return None;
-        }
-        [self.folder.join("include").join(name), self.folder.join(name)].into_iter().find(|p| p.is_file())
+        find(&self.folder, name)
     }
 
     /// Reads a file and, textually, everything it includes.
-    fn collect(&self, name: &str, texts: &mut BTreeMap<String, String>) -> Result<(), Vec<Diagnostic>> {
+    fn collect(
+        &self,
+        name: &str,
+        generated: &Generated,
+        texts: &mut BTreeMap<String, String>,
+    ) -> Result<(), Vec<Diagnostic>> {
         if texts.contains_key(name) {
             return Ok(());
         }
+        let text = match generated.get(name) {
+            Some(text) => text.clone(),
+            None => self.read(name)?,
+        };
+        let includes: Vec<String> = text.lines().filter_map(included).map(String::from).collect();
+        texts.insert(name.to_string(), text);
+        for include in includes {
+            // One that is missing is told by the compiler, with its line.
+            if generated.contains_key(&include) || self.find(&include).is_some() {
+                self.collect(&include, generated, texts)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn read(&self, name: &str) -> Result<String, Vec<Diagnostic>> {
         let path = self.find(name).unwrap_or_else(|| self.folder.join(name));
         let fail = |why: String| {
             vec![Diagnostic::error(Place { file: path.clone(), ..Place::default() }, format!("cannot read it: {why}"))]
@@ -134,15 +168,7 @@ impl ShaderCompiler {
         if text.contains('\0') {
             return Err(fail("it holds a zero byte".into()));
         }
-        let includes: Vec<String> = text.lines().filter_map(included).map(String::from).collect();
-        texts.insert(name.to_string(), text);
-        for include in includes {
-            // One that is missing is told by the compiler, with its line.
-            if self.find(&include).is_some() {
-                self.collect(&include, texts)?;
-            }
-        }
-        Ok(())
+        Ok(text)
     }
 
     fn key(&self, source: &Source, texts: &BTreeMap<String, String>) -> String {
@@ -211,10 +237,21 @@ impl ShaderCompiler {
         }
     }
 
+    /// Names that an include may have.
     fn includes(&self) -> Vec<String> {
         let mut names = vec![String::from("params.glsl")];
-        if let Ok(entries) = std::fs::read_dir(self.folder.join("include")) {
-            names.extend(entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()));
+        let mut folders = vec![PathBuf::new()];
+        while let Some(folder) = folders.pop() {
+            // Folders nested deeper are no one's shaders.
+            let Ok(entries) = std::fs::read_dir(self.folder.join(&folder)) else { continue };
+            for entry in entries.flatten() {
+                let name = folder.join(entry.file_name());
+                match entry.file_type() {
+                    Ok(kind) if kind.is_dir() && folder.components().count() < 4 => folders.push(name),
+                    Ok(kind) if kind.is_file() => names.push(name.to_string_lossy().into_owned()),
+                    _ => {}
+                }
+            }
         }
         names
     }
@@ -231,11 +268,7 @@ impl ShaderCompiler {
                 _ => None,
             };
             let Some((file, number, level, message)) = parsed else { continue };
-            let path = if file == "params.glsl" {
-                PathBuf::from("params.glsl (generated)")
-            } else {
-                self.find(file).unwrap_or_else(|| self.folder.join(file))
-            };
+            let path = self.find(file).unwrap_or_else(|| PathBuf::from(format!("{file} (generated)")));
             let place = Place { file: path, line: number, column: 0 };
             let mut found = match level {
                 "error" => Diagnostic::error(place, message),

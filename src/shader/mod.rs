@@ -4,6 +4,6 @@ mod compile;
 mod reflect;
 mod strip;
 
-pub use compile::{Compiled, ShaderCompiler, Source};
+pub use compile::{Compiled, Generated, ShaderCompiler, Source, find, module_include};
 pub use reflect::{Binding, Interface, Resource, Shape};
 pub use strip::strip_outputs;
