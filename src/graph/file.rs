@@ -186,6 +186,8 @@ pub struct BufferDecl {
 pub struct PassDecl {
     /// Name, for people and timings.
     pub name: Loc<String>,
+    /// The pass of an included file that it runs right after; where it is written when absent.
+    pub after: Option<Loc<String>>,
     /// What tables of times count it under, where that is not its name.
     pub stage: Option<String>,
     /// Condition; always when absent.

@@ -144,10 +144,17 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         defaults.extend(file.defaults.0);
         retired.extend(file.retired.0.into_iter().map(|(name, instead)| (name.value, instead.value)));
         decls.extend(file.params.0);
+        // A value or parameter of an including file takes the place of an included one's value.
+        values.retain(|(name, _): &(Loc<String>, _)| {
+            !file.values.0.iter().any(|(other, _)| other.value == name.value)
+                && !file.params.0.iter().any(|p| p.value.name().value == name.value)
+        });
         values.extend(file.values.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
         graph.buffers.extend(file.buffers.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
-        graph.passes.extend(file.passes.0);
+        for pass in file.passes.0 {
+            insert_pass(&mut graph.passes, pass, &graph.sources, whole, &broken, &mut errors);
+        }
         graph.scene = file.scene.or(graph.scene);
         checks.extend(file.checks.0);
         graph.compare.extend(file.compare.0);
@@ -334,6 +341,26 @@ fn check_params(
 
 fn declared_at(decls: &[Loc<super::param::Decl>], name: &str) -> At {
     decls.iter().find(|d| d.value.name().value == name).map_or(At::default(), |d| d.value.name().at)
+}
+
+/// Adds a pass at the end, or after the one that it names.
+fn insert_pass(
+    passes: &mut Vec<Loc<PassDecl>>,
+    pass: Loc<PassDecl>,
+    sources: &Sources,
+    whole: bool,
+    broken: &[String],
+    errors: &mut Vec<Diagnostic>,
+) {
+    let Some(after) = pass.value.after.clone() else { return passes.push(pass) };
+    match passes.iter().position(|p| p.value.name.value == after.value) {
+        Some(i) => passes.insert(i + 1, pass),
+        None if whole && !broken.contains(&after.value) => {
+            let found = sources.error(after.at, format!("no pass '{}' stands before this one", after.value));
+            errors.push(found.nearest(&after.value, passes.iter().map(|p| p.value.name.value.as_str())));
+        }
+        None => passes.push(pass),
+    }
 }
 
 /// Changes defaults, the later one last.

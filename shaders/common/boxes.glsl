@@ -1,0 +1,41 @@
+// Cells in a box, warped axis by axis. The warp function says: warp, a monotonic bijection of [0,1] with its densest point
+// at 0.5; warpSlope, its derivative, the local density of cells against no warp; unwarp, its exact inverse.
+const bool CURVED = false;
+
+// Outside the volume the result is outside [0,1].
+vec3 worldToVolume(VolumeMap map, vec3 p) {
+    vec3 x = (p - map.minimum) / map.size;
+    return mix(x, warp(x), equal(clamp(x, 0.0, 1.0), x));
+}
+
+vec3 volumeToWorld(VolumeMap map, vec3 u) {
+    return map.minimum + unwarp(u) * map.size;
+}
+
+// Columns: the world vectors that span the level-0 cell at p [m].
+mat3 cellAxes(VolumeMap map, vec3 p) {
+    vec3 c = map.cell / warpSlope(clamp((p - map.minimum) / map.size, 0.0, 1.0));
+    return mat3(c.x, 0, 0, 0, c.y, 0, 0, 0, c.z);
+}
+
+// Cells that a step of a metre along d crosses at p.
+vec3 cellsPerMetre(VolumeMap map, vec3 p, vec3 d) {
+    return d * warpSlope(clamp((p - map.minimum) / map.size, 0.0, 1.0)) / map.cell;
+}
+
+bool holds(VolumeMap map, vec3 p) {
+    return inVolume(worldToVolume(map, p));
+}
+
+
+// What curved cells have, for code that knows both.
+const vec3 CURVED_BORDERS = vec3(1.0);
+const bool CURVED_SEAM = false;
+
+int curvedOutside(VolumeMap map, vec3 a, vec3 b, vec3 c) {
+    return -1;
+}
+
+vec3 curvedEye(vec3 position, vec3 cell) {
+    return position;
+}

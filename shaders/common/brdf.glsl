@@ -1,0 +1,47 @@
+// Reflectance of a surface (thesis, Section 4.5.1; Karis 2013, "Real Shading in Unreal Engine 4").
+// Every function returns the BRDF [1/sr]; irradiance and the cosine are the caller's.
+#ifndef BRDF_GLSL
+#define BRDF_GLSL
+
+const float PI = 3.14159265359;
+
+struct Surface {
+    vec3 normal; // shading normal, facing the viewer
+    vec3 albedo; // diffuse reflectance: base colour * (1 - metallic)
+    vec3 f0; // reflectance at normal incidence
+    float roughness; // clamped: 0 makes GGX 0/0
+};
+
+Surface makeSurface(vec3 normal, vec3 base_color, float roughness, float metallic) {
+    return Surface(normal, base_color * (1.0 - metallic), mix(vec3(0.04), base_color, metallic), clamp(roughness, 0.03, 1.0));
+}
+
+vec3 fresnel(vec3 f0, float cosine) {
+    return f0 + (1.0 - f0) * pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0);
+}
+
+// Trowbridge-Reitz. The thesis writes alpha = roughness; Burley and Unreal Engine 4 alpha = roughness^2.
+float ggxAlpha(float roughness) {
+    return params.ggx_alpha == GGX_ALPHA_SQUARED ? roughness * roughness : roughness;
+}
+
+float distribution(float n_h, float roughness) {
+    float alpha = ggxAlpha(roughness);
+    float a2 = alpha * alpha;
+    float d = n_h * n_h * (a2 - 1.0) + 1.0;
+    return a2 / (PI * d * d);
+}
+
+// Smith-Schlick G / (4 n.l n.v), k = (roughness + 1)^2 / 8; the cosines cancel.
+float visibility(float n_l, float n_v, float roughness) {
+    float k = (roughness + 1.0) * (roughness + 1.0) / 8.0;
+    return 0.25 / ((n_l * (1.0 - k) + k) * (n_v * (1.0 - k) + k));
+}
+
+vec3 diffuseBrdf(Surface s) {
+    return s.albedo / PI;
+}
+
+#include "modules/shading_model.glsl"
+
+#endif

@@ -1,0 +1,41 @@
+// A first cascade of curved cells, the others boxes of cells of one size. The module says: the four functions below for
+// the curved ones, and curvedHolds.
+const bool WARPED = true, CURVED = true;
+
+// What function warps have, for passes that draw boxes before warping.
+vec3 warp(vec3 x) {
+    return x;
+}
+
+vec3 warpSlope(vec3 x) {
+    return vec3(1.0);
+}
+
+vec3 unwarp(vec3 y) {
+    return y;
+}
+
+// Outside the volume the result is outside [0,1].
+vec3 worldToVolume(VolumeMap map, vec3 p) {
+    return map.curved == 0 ? (p - map.minimum) / map.size : curvedFromWorld(map, p);
+}
+
+vec3 volumeToWorld(VolumeMap map, vec3 u) {
+    return map.curved == 0 ? map.minimum + u * map.size : curvedToWorld(map, u);
+}
+
+// Columns: the world vectors that span the level-0 cell at p [m].
+mat3 cellAxes(VolumeMap map, vec3 p) {
+    if (map.curved != 0) return curvedAxes(map, p);
+    return mat3(map.cell.x, 0, 0, 0, map.cell.y, 0, 0, 0, map.cell.z);
+}
+
+// Cells that a step of a metre along d crosses at p.
+vec3 cellsPerMetre(VolumeMap map, vec3 p, vec3 d) {
+    if (map.curved == 0) return d / map.cell;
+    return inverse(curvedAxes(map, p)) * d;
+}
+
+bool holds(VolumeMap map, vec3 p) {
+    return map.curved == 0 ? inVolume(worldToVolume(map, p)) : curvedHolds(map, p);
+}

@@ -1,0 +1,40 @@
+// The surface under a fragment of forward.vert.
+#ifndef SURFACE_GLSL
+#define SURFACE_GLSL
+#include "common/scene.glsl"
+#include "common/materials.glsl"
+#include "common/brdf.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 tangent;
+layout(location = 3) in vec2 uv;
+layout(location = 4) flat in uint material;
+
+// The triangle's normal on the viewer's side. Has derivatives: call it before anything returns.
+vec3 faceNormal(vec3 v) {
+    vec3 face = cross(dFdx(position), dFdy(position));
+    face = dot(face, face) > 0.0 ? normalize(face) : normalize(normal);
+    return dot(face, v) < 0.0 ? -face : face;
+}
+
+vec3 shadingNormal(Material m, Gradient g, vec3 face) {
+    vec3 n = normalize(normal);
+    float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
+    if (m.normal_texture != NO_TEXTURE) {
+        vec3 t = tangentNormal(m, uv, g);
+        vec3 x = tangent.xyz - n * dot(n, tangent.xyz);
+        if (dot(x, x) > 1e-12) {
+            x = normalize(x);
+            n = normalize(mat3(x, cross(n, x) * tangent.w, n) * t);
+        }
+    }
+    return n * side;
+}
+
+Surface surfaceAt(Material m, Gradient g, vec3 face) {
+    vec2 rm = roughnessMetallic(m, uv, g);
+    return makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y);
+}
+
+#endif

@@ -1,0 +1,49 @@
+// Reading the G-buffer.
+#ifndef GBUFFER_READ_GLSL
+#define GBUFFER_READ_GLSL
+#include "common/scene.glsl"
+#include "common/brdf.glsl"
+#include "common/gbuffer.glsl"
+
+struct GBufferSurface {
+    bool any; // or the background
+    vec3 position;
+    vec3 face; // geometric normal
+    vec3 to_viewer;
+    Surface surface;
+    vec3 emission;
+};
+
+uniform sampler2D gbufferBase; // base colour, roughness
+uniform sampler2D gbufferNormals; // packed: shading, geometric
+uniform sampler2D gbufferEmission; // radiance, metallic
+uniform sampler2D gbufferDistance; // from the camera [m]; 0: background
+
+// Unit vector through a point of the picture. From the view and projection apart: their product's inverse has lost the
+// digits that a short shadow bias needs.
+vec3 viewRay(vec2 pixel) {
+    vec2 clip = pixel / vec2(camera.size) * 2.0 - 1.0;
+    vec3 d = vec3(clip.x / camera.projection[0][0], clip.y / camera.projection[1][1], -1.0);
+    return normalize(transpose(mat3(camera.view)) * d);
+}
+
+GBufferSurface gbufferAt(ivec2 pixel) {
+    GBufferSurface seen;
+    float range = texelFetch(gbufferDistance, pixel, 0).r;
+    seen.any = range > 0.0;
+    if (!seen.any) return seen;
+    vec3 ray = viewRay(vec2(pixel) + 0.5);
+    vec4 base = texelFetch(gbufferBase, pixel, 0), normals = texelFetch(gbufferNormals, pixel, 0);
+    vec4 emission = texelFetch(gbufferEmission, pixel, 0);
+    seen.position = camera.position + range * ray;
+    seen.to_viewer = -ray;
+    seen.face = unpackNormal(normals.zw);
+    if (dot(seen.face, ray) > 0.0) seen.face = -seen.face;
+    vec3 normal = unpackNormal(normals.xy);
+    if (dot(normal, seen.face) < -0.5) normal = -normal; // mapped normals lean, mixtures may point anywhere
+    seen.surface = makeSurface(normal, base.rgb, base.a, emission.a);
+    seen.emission = emission.rgb;
+    return seen;
+}
+
+#endif

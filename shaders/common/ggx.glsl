@@ -1,0 +1,49 @@
+// Directions drawn as dense as a lobe of the BRDF.
+#ifndef GGX_GLSL
+#define GGX_GLSL
+#include "common/brdf.glsl"
+#include "common/frame.glsl"
+
+// A direction, and BRDF * cosine / density; the direction is of no use where that is 0.
+struct LobeSample {
+    vec3 direction;
+    vec3 weight;
+};
+
+// A direction around z, as dense as its cosine over pi. u: two numbers in [0, 1).
+vec3 cosineSample(vec2 u) {
+    float r = sqrt(u.x), angle = 2.0 * PI * u.y;
+    return vec3(r * cos(angle), r * sin(angle), sqrt(max(1.0 - u.x, 0.0)));
+}
+
+// face: the triangle's normal on the viewer's side, which no direction may fall below.
+LobeSample diffuseSample(Surface s, vec3 face, vec2 u) {
+    vec3 l = frameOf(s.normal) * cosineSample(u);
+    return LobeSample(l, dot(l, face) > 0.0 ? s.albedo : vec3(0.0));
+}
+
+// Heitz 2018, "Sampling the GGX Distribution of Visible Normals".
+LobeSample specularSample(Surface s, vec3 face, vec3 view, vec2 u) {
+    mat3 frame = frameOf(s.normal);
+    vec3 v = view * frame;
+    v = normalize(vec3(v.xy, max(v.z, 1e-4))); // mapped normals may face away
+    float alpha = ggxAlpha(s.roughness);
+    vec3 stretched = normalize(vec3(alpha * v.xy, v.z));
+    float side2 = dot(stretched.xy, stretched.xy);
+    vec3 x = side2 > 0.0 ? vec3(-stretched.y, stretched.x, 0.0) * inversesqrt(side2) : vec3(1, 0, 0);
+    vec3 y = cross(stretched, x);
+    float r = sqrt(u.x), angle = 2.0 * PI * u.y;
+    vec2 t = r * vec2(cos(angle), sin(angle));
+    float blend = 0.5 * (1.0 + stretched.z);
+    t.y = mix(sqrt(max(1.0 - t.x * t.x, 0.0)), t.y, blend);
+    vec3 n = t.x * x + t.y * y + sqrt(max(1.0 - dot(t, t), 0.0)) * stretched;
+    vec3 half_way = normalize(vec3(alpha * n.xy, max(n.z, 0.0)));
+    vec3 local = reflect(-v, half_way);
+    vec3 l = frame * local;
+    if (local.z <= 0.0 || dot(l, face) <= 0.0) return LobeSample(l, vec3(0.0));
+    float a2 = alpha * alpha;
+    float g1 = 2.0 * v.z / (v.z + sqrt(a2 + (1.0 - a2) * v.z * v.z));
+    return LobeSample(l, lobeWeight(s, frame, v, local, half_way, g1));
+}
+
+#endif

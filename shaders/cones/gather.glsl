@@ -1,0 +1,42 @@
+// The light that a surface's cones gather (thesis, Section 4.5.2). What traces a cone is in modules/trace, which includes
+// this after saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number).
+#include "cones/sets.glsl"
+#include "cones/light.glsl"
+#include "modules/specular_lobe.glsl"
+
+// Before each cone; number 0 is the specular one, 1 the diffuse one on the normal, then the ring.
+#ifndef CONE_BEGINS
+#define CONE_BEGINS(number)
+#endif
+
+vec4 gatherDiffuse(ConeOrigin o, vec3 n) {
+    ConeSet set = diffuseConeSet();
+    mat3 frame = frameOf(n);
+    float turn = 0.0;
+    if (bool(params.cone_rotate)) // interleaved gradient noise (Jimenez 2014): trades banding for noise
+        turn = fract(52.9829189 * fract(dot(pixelCentre(), vec2(0.06711056, 0.00583715))));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < set.count; i++) {
+        float angle = 2.0 * PI * (float(i) + turn) / float(set.count - 1);
+        vec3 d = i == 0 ? n : frame * vec3(set.sin_tilt * cos(angle), set.sin_tilt * sin(angle), set.cos_tilt);
+        float weight = i == 0 ? set.axial_weight : (1.0 - set.axial_weight) / float(set.count - 1);
+        CONE_BEGINS(uint(i) + 1u);
+        vec4 cone = traceAny(o, d, set.tan_half, params.diffuse_steps, uint(i) + 1u);
+        sum += weight * vec4(coneRadiance(cone), 1.0 - cone.a);
+    }
+    return sum;
+}
+
+vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    vec3 d = specularDirection(s, v);
+    d = normalize(d + face * max(0.02 - dot(d, face), 0.0)); // mapped normals may reflect into the surface
+    CONE_BEGINS(0u);
+    return coneRadiance(traceAny(o, d, tan(specularHalfAngle(s)), params.specular_steps, 0u)) * specularWeight(s, v);
+}
+
+// Diffuse and specular cones are traced in two places: the compiler makes two loops of them, each the faster for it.
+Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    Gathered sum = Gathered(gatherDiffuse(o, s.normal), vec3(0.0));
+    if (params.specular_cone) sum.specular = gatherSpecular(o, s, face, v);
+    return sum;
+}

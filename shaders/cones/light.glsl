@@ -1,0 +1,18 @@
+// What cones gather is told as.
+#ifndef CONE_LIGHT_GLSL
+#define CONE_LIGHT_GLSL
+#include "common/scene.glsl"
+#include "common/brdf.glsl"
+#include "cones/origin.glsl"
+#include "modules/escape.glsl"
+
+// What a surface's cones gather.
+struct Gathered {
+    vec4 hemisphere; // rgb: mean radiance over the hemisphere, cosine-weighted; a: how open it is
+    vec3 specular; // radiance towards the viewer
+};
+
+// Centre of the pixel that is shaded: defined by the shader.
+vec2 pixelCentre();
+
+#endif

@@ -1,0 +1,37 @@
+// Cone tracing as Listing 4.1 of the thesis has it: a start `bias` voxels along the shading normal, a level as wide as the
+// cone, opacity as stored, steps as long as the cone's radius. Lengths are world lengths; the listing's are in voxels.
+#ifndef CONE_GLSL
+#define CONE_GLSL
+#include "cones/origin.glsl"
+#include "modules/mips.glsl"
+#include "cones/sample.glsl"
+
+// The shading normal can point into the geometry.
+ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
+    return ConeOrigin(p + params.bias * cellLength(volume.maps[0], p, shading) * shading, geometric, 0.0, 0.0, 0, 1.0);
+}
+
+// Radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
+vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
+    float voxel = cellLength(volume.maps[0], o.position, d);
+    float along = params.cone_height * voxel;
+    vec3 color = vec3(0.0);
+    float alpha = 0.0;
+    for (int i = 0; i < steps; i++) {
+        float radius = along * tan_half;
+        float level = clamp(coneLevel(voxel, radius), 0.0, volume.maps[0].last);
+        vec3 p = o.position + along * d;
+        vec3 u = worldToVolume(volume.maps[0], p);
+        if (!inVolume(u)) break;
+        vec4 texel = sampleLevel(u, d, level);
+        float a = texel.a > 1e-5 ? (1.0 - alpha) * texel.a : 0.0, advance = max(radius, 0.05 * voxel);
+        if (a > 0.0) color += texel.rgb * (a / texel.a);
+        alpha += a;
+        CONE_SAMPLED(i, along, ConeSample(p, radius, level, voxel, voxel * exp2(level), advance, texel, false, false), a, 1.0 - alpha);
+        if (1.0 - alpha < params.stop_transmittance) break;
+        along += advance;
+    }
+    return vec4(color, min(alpha, 1.0));
+}
+
+#endif

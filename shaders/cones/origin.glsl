@@ -1,0 +1,17 @@
+// Where cones start, off the surface.
+#ifndef CONE_ORIGIN_GLSL
+#define CONE_ORIGIN_GLSL
+#include "common/volume.glsl"
+
+uniform sampler3D voxelRadiance; // premultiplied by opacity; border clamped
+
+struct ConeOrigin {
+    vec3 position; // off the surface
+    vec3 normal; // geometric: the plane that cones must stay above
+    float height; // of position above the surface [m]
+    float reach; // half the local cell's extent across the surface [m]
+    int cascade; // that the surface lies in
+    float weight; // of it; of the next one, the rest: so that no seam shows where a cascade ends
+};
+
+#endif

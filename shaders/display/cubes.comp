@@ -1,0 +1,18 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Lists the cells of the shown level that hold anything, one cube each.
+#include "params.glsl"
+#include "display/cubes.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+void main() {
+    uvec3 size = uvec3(shownCells());
+    uvec3 cell = gl_GlobalInvocationID;
+    if (any(greaterThanEqual(cell, size)) || shownTexel(ivec3(cell), 0).a <= 0.0) return;
+    uint i = atomicAdd(voxelCubes.found, 1u);
+    if (i >= voxelCubes.cells.length()) return;
+    voxelCubes.cells[i] = cell.x + size.x * (cell.y + size.y * cell.z);
+    voxelCubes.draw_vertices = 36;
+    atomicMax(voxelCubes.draw_instances, i + 1u);
+}

@@ -1,0 +1,18 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Depth prepass (thesis, Section 4.7.1). The position must come out bit-equal to forward.vert's: the
+// shading pass compares depth with EQUAL.
+#include "common/scene.glsl"
+
+layout(location = 0) out vec2 uv;
+layout(location = 1) flat out uint material;
+
+precise gl_Position; // same operations in both shaders: no contraction, so bit-equal depth
+
+void main() {
+    Draw draw = draws.draws[gl_InstanceIndex];
+    vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
+    gl_Position = camera.view_projection * vec4(p, 1.0);
+    uv = loadAttributes(gl_VertexIndex).uv;
+    material = draw.material;
+}

@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Forward shading: world-space attributes. gl_Position must equal depth.vert's to the bit.
+#include "common/scene.glsl"
+
+layout(location = 0) out vec3 position;
+layout(location = 1) out vec3 normal;
+layout(location = 2) out vec4 tangent;
+layout(location = 3) out vec2 uv;
+layout(location = 4) flat out uint material;
+
+precise gl_Position; // same operations in both shaders: no contraction, so bit-equal depth
+
+void main() {
+    Draw draw = draws.draws[gl_InstanceIndex];
+    vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
+    gl_Position = camera.view_projection * vec4(p, 1.0);
+    VertexAttributes a = loadAttributes(gl_VertexIndex);
+    position = p;
+    normal = normalToWorld(draw.instance, a.normal);
+    tangent = vec4(mat3(instances.instances[draw.instance].model) * a.tangent.xyz, a.tangent.w);
+    uv = a.uv;
+    material = draw.material;
+}

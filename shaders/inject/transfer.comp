@@ -1,0 +1,20 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Transfer of opacity into the radiance texture (thesis, Section 4.3), before the lit voxels are written;
+// emission comes along.
+#include "params.glsl"
+#include "common/volume.glsl"
+#include "common/voxels.glsl"
+
+layout(local_size_x = 128) in;
+
+uniform sampler3D voxelColor;
+uniform writeonly image3D injected;
+
+void main() {
+    uint slot = gl_GlobalInvocationID.x;
+    if (slot >= voxelCounter.count) return;
+    ivec3 cell = cellOfSlot(slot);
+    float opacity = texelFetch(voxelColor, cell, 0).a;
+    imageStore(injected, cell, vec4(meanEmission(slot) * opacity, opacity));
+}

@@ -1,0 +1,117 @@
+// Lookups of cones in a volume of several cascades: a sample reads the finest that holds it, and towards that one's border
+// turns into the next.
+#include "cones/origin.glsl"
+#include "modules/opacity.glsl"
+#include "modules/mips.glsl"
+
+// A cone on its way.
+struct Cone {
+    ConeOrigin origin;
+    vec3 direction;
+    float tan_half; // of half the aperture
+    float rise; // above the surface for each metre
+    int cascade; // of the last sample
+    float voxel; // length of its level-0 cell along the cone [m]
+    vec3 dir; // direction in its cells, unit length
+};
+
+#include "cones/sample.glsl"
+
+// Towards a cascade's border, over so many cells of a level, lookups turn into the next one's.
+const float BLEND_CELLS = 6.0;
+
+float cascadeWeight(vec3 u, float level) {
+    vec3 inside = mix(vec3(1.0), min(u, 1.0 - u), CURVED_BORDERS);
+    return clamp(min(inside.x, min(inside.y, inside.z)) * float(params.voxel_dim) / (BLEND_CELLS * exp2(max(level, 0.0))), 0.0, 1.0);
+}
+
+// Starts outside the voxels of the cone's own surface: `bias` cell extents off it.
+ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
+    int cascade = cascadeAt(p);
+    VolumeMap map = volume.maps[cascade];
+    float reach = cellReach(map, p, geometric), weight = 1.0;
+    if (CASCADE_COUNT > 1 && cascade < CASCADE_COUNT - 1) {
+        weight = cascadeWeight(worldToVolume(map, p), 0.0);
+        reach = mix(cellReach(volume.maps[cascade + 1], p, geometric), reach, weight);
+    }
+    float height = 2.0 * params.bias * reach;
+    return ConeOrigin(p + height * geometric, geometric, height, reach, cascade, weight);
+}
+
+Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {
+    Cone cone = Cone(o, d, tan_half, max(dot(d, o.normal), 0.0), o.cascade, 0.0, vec3(0.0));
+    cellAlong(volume.maps[o.cascade], o.position, d, cone.voxel, cone.dir);
+    first_cell = cone.voxel;
+    if (CASCADE_COUNT > 1 && o.weight < 1.0)
+        first_cell = mix(cellLength(volume.maps[o.cascade + 1], o.position, d), cone.voxel, o.weight);
+    return cone;
+}
+
+// Between cascades and at their borders a lookup keeps half a cell of its level's distance.
+vec4 sampleCascade(vec3 u, int cascade, vec3 dir, float level) {
+    if (CASCADE_COUNT > 1) {
+        float margin = 0.5 * exp2(ceil(max(level, 0.0))) / float(params.voxel_dim);
+        u.z = (float(cascade) + clamp(u.z, margin, 1.0 - margin)) / float(CASCADE_COUNT);
+    }
+    return sampleLevel(u, dir, level);
+}
+
+// The same; round the seam of spheres, where the first cells follow the last, both sides.
+vec4 sampleMap(vec3 u, int cascade, vec3 dir, float level) {
+    if (!CURVED_SEAM || cascade > 0) return sampleCascade(u, cascade, dir, level);
+    float half_cell = 0.5 * exp2(level) / float(params.voxel_dim);
+    vec4 texel = sampleCascade(vec3(clamp(u.x, half_cell, 1.0 - half_cell), u.yz), cascade, dir, level);
+    float over = max(half_cell - u.x, u.x - 1.0 + half_cell) / (2.0 * half_cell);
+    if (over <= 0.0) return texel;
+    return mix(texel, sampleCascade(vec3(u.x < 0.5 ? 1.0 - half_cell : half_cell, u.yz), cascade, dir, level), over);
+}
+
+float levelAt(Cone cone, int cascade, vec3 p, float voxel, float radius, float height) {
+    float reach = cone.origin.reach;
+    if (WARPED || CASCADE_COUNT > 1) {
+        reach = cellReach(volume.maps[cascade], p, cone.origin.normal);
+        // Cells of a warp that grow towards the surface reach it sooner than those around the sample say.
+        if (WARPED && cascade == cone.origin.cascade) reach = max(reach, cone.origin.reach);
+    }
+    return clearLevel(coneLevel(voxel, radius), height, reach, volume.maps[cascade].last);
+}
+
+// Turns a sample into the next cascade's by its weight there.
+void blendNext(Cone cone, inout ConeSample x, float height, float weight) {
+    int next = cone.cascade + 1;
+    vec3 u = worldToVolume(volume.maps[next], x.position), dir;
+    if (!inVolume(u)) return;
+    float voxel;
+    cellAlong(volume.maps[next], x.position, cone.direction, voxel, dir);
+    float level = levelAt(cone, next, x.position, voxel, x.radius, height);
+    vec4 found = sampleMap(u, next, dir, level);
+    found *= opacityScale(found.a, x.voxel, x.cell, voxel, voxel * exp2(level));
+    x.texel = mix(found, x.texel, weight);
+}
+
+ConeSample coneSample(inout Cone cone, int number, float along) {
+    ConeSample x;
+    x.position = cone.origin.position + along * cone.direction;
+    x.radius = along * cone.tan_half;
+    int before = cone.cascade;
+    if (CASCADE_COUNT > 1) cone.cascade = cascadeAt(x.position);
+    int k = cone.cascade;
+    vec3 u = worldToVolume(volume.maps[k], x.position);
+    // Past the border of boxes the clamped lookup gives the border cells once more: a coarse cell that holds the outermost
+    // wall reaches to the border, and stopping short of it would let light out.
+    x.last = !inVolume(u);
+    x.outside = x.last && (number == 0 || k != before || CURVED && volume.maps[k].curved != 0);
+    if (x.outside) return x;
+    if (WARPED || CASCADE_COUNT > 1) cellAlong(volume.maps[k], x.position, cone.direction, cone.voxel, cone.dir);
+    float height = cone.origin.height + along * cone.rise;
+    x.voxel = cone.voxel;
+    x.level = levelAt(cone, k, x.position, x.voxel, x.radius, height);
+    x.cell = x.voxel * exp2(x.level);
+    x.advance = max(params.step_factor * x.cell, 0.05 * x.voxel);
+    x.texel = sampleMap(u, k, cone.dir, x.level);
+    if (CASCADE_COUNT > 1 && k < CASCADE_COUNT - 1) {
+        float weight = cascadeWeight(u, x.level);
+        if (weight < 1.0) blendNext(cone, x, height, weight);
+    }
+    return x;
+}

@@ -1,0 +1,14 @@
+// Blinn and Phong's lobe, its exponent matched to GGX's width, normalised to conserve energy.
+vec3 specularBrdf(Surface s, vec3 v, vec3 l) {
+    float n_h = max(dot(s.normal, normalize(v + l)), 0.0);
+    float a2 = pow(s.roughness, 4.0);
+    float exponent = 2.0 / a2 - 2.0;
+    return s.f0 * (exponent + 8.0) / (8.0 * PI) * pow(n_h, exponent);
+}
+
+// BRDF * cosine / density of a direction drawn by the visible normals. v, l and half_way are in the normal's frame; g1:
+// Smith's masking of v.
+vec3 lobeWeight(Surface s, mat3 frame, vec3 v, vec3 l, vec3 half_way, float g1) {
+    float density = g1 * distribution(half_way.z, s.roughness) / (4.0 * v.z);
+    return specularBrdf(s, frame * v, frame * l) * l.z / max(density, 1e-20);
+}

@@ -1,0 +1,18 @@
+// Rays through every voxel that fill the same cones evenly: what filtering and steps cost.
+#include "modules/lookup.glsl"
+#include "cones/rays.glsl"
+
+vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number) {
+    mat3 frame = frameOf(d);
+    float least = inversesqrt(1.0 + tan_half * tan_half);
+    vec2 shift = rayShift(number);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < params.exact_rays; i++) {
+        vec2 u = rayPoint(i, shift);
+        float z = mix(1.0, least, u.x), r = sqrt(max(1.0 - z * z, 0.0)), angle = 6.28318530718 * u.y;
+        sum += traceVoxels(o.position, frame * vec3(r * cos(angle), r * sin(angle), z));
+    }
+    return sum / float(params.exact_rays);
+}
+
+#include "cones/gather.glsl"

@@ -1,0 +1,34 @@
+// Without cones: rays through every voxel over the whole lobe.
+#include "modules/lookup.glsl"
+#include "cones/rays.glsl"
+#include "cones/light.glsl"
+#include "common/ggx.glsl"
+
+// As dense as the cosine.
+vec4 gatherDiffuse(ConeOrigin o, vec3 n, vec3 face) {
+    mat3 frame = frameOf(n);
+    vec2 shift = rayShift(1u);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < params.exact_rays; i++) {
+        vec3 d = frame * cosineSample(rayPoint(i, shift));
+        if (dot(d, face) <= 0.0) continue;
+        vec4 ray = traceVoxels(o.position, d);
+        sum += vec4(coneRadiance(ray), 1.0 - ray.a);
+    }
+    return sum / float(params.exact_rays);
+}
+
+// As dense as the visible normals of the lobe.
+vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    vec2 shift = rayShift(0u);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < params.exact_rays; i++) {
+        LobeSample l = specularSample(s, face, v, rayPoint(i, shift));
+        if (l.weight != vec3(0.0)) sum += l.weight * coneRadiance(traceVoxels(o.position, l.direction));
+    }
+    return sum / float(params.exact_rays);
+}
+
+Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    return Gathered(gatherDiffuse(o, s.normal, face), params.specular_cone ? gatherSpecular(o, s, face, v) : vec3(0.0));
+}

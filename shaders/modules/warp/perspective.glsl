@@ -1,0 +1,44 @@
+// Cells in the view frustum, depth in equal steps (thesis, Section 4.6.2). Behind the camera coordinates are -1.
+vec3 curvedFromWorld(VolumeMap map, vec3 p) {
+    vec3 d = p - map.eye;
+    float w = dot(d, map.axis_z);
+    if (w < 0.5 * map.range.x) return vec3(-1.0);
+    vec2 xy = vec2(dot(d, map.axis_x) / dot(map.axis_x, map.axis_x), dot(d, map.axis_y) / dot(map.axis_y, map.axis_y)) / w;
+    return vec3(xy * 0.5 + 0.5, (w - map.range.x) / (map.range.y - map.range.x)); // depth linear in metres
+}
+
+vec3 curvedToWorld(VolumeMap map, vec3 u) {
+    float w = mix(map.range.x, map.range.y, u.z);
+    return map.eye + w * (map.axis_z + (2.0 * u.x - 1.0) * map.axis_x + (2.0 * u.y - 1.0) * map.axis_y);
+}
+
+mat3 curvedAxes(VolumeMap map, vec3 p) {
+    vec3 d = p - map.eye;
+    float dim = float(params.voxel_dim);
+    float w = clamp(dot(d, map.axis_z), map.range.x, map.range.y);
+    vec3 along = map.axis_z + (dot(d, map.axis_x) / dot(map.axis_x, map.axis_x) * map.axis_x + dot(d, map.axis_y) / dot(map.axis_y, map.axis_y) * map.axis_y) / w;
+    return mat3(2.0 * w / dim * map.axis_x, 2.0 * w / dim * map.axis_y, (map.range.y - map.range.x) / dim * along);
+}
+
+bool curvedHolds(VolumeMap map, vec3 p) {
+    return inVolume(curvedFromWorld(map, p));
+}
+
+// Whether a triangle is wholly before or behind the cells (1), or crosses their near side, where it has no coordinates (0);
+// -1: its corners' coordinates tell.
+int curvedOutside(VolumeMap map, vec3 a, vec3 b, vec3 c) {
+    vec3 w = vec3(dot(a - map.eye, map.axis_z), dot(b - map.eye, map.axis_z), dot(c - map.eye, map.axis_z));
+    if (all(lessThan(w, vec3(map.range.x))) || all(greaterThan(w, vec3(map.range.y)))) return 1;
+    return any(lessThan(w, vec3(map.range.x))) ? 0 : -1;
+}
+
+// Moves with the camera.
+vec3 curvedEye(vec3 position, vec3 cell) {
+    return position;
+}
+
+// Borders that lookups blend towards the next cascade at.
+const vec3 CURVED_BORDERS = vec3(1.0);
+const bool CURVED_SEAM = false;
+
+#include "common/curved.glsl"

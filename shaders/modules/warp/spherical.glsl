@@ -1,0 +1,59 @@
+// Cells on spheres around the camera: azimuth, angle from the vertical axis, logarithm of the distance: cells keep their
+// shape. The axes are the world's, so that a camera that turns moves nothing.
+const float TURN = 6.28318530718;
+const float POLE = 0.1; // cells nearer to the axis are not taken for narrower than here (a sine)
+
+// The angle of (x, y) from the x axis; one step of Newton's method makes it the inverse of this device's sine and cosine.
+float angleOf(float x, float y) {
+    float t = atan(y, x), r = length(vec2(x, y));
+    return r > 0.0 ? t + (y * cos(t) - x * sin(t)) / r : 0.0;
+}
+
+vec3 curvedFromWorld(VolumeMap map, vec3 p) {
+    vec3 d = p - map.eye;
+    float r = max(length(d), 1e-6);
+    vec2 angles = vec2(angleOf(d.x, d.z) / TURN + 0.5, angleOf(d.y, length(d.xz)) / (0.5 * TURN));
+    return vec3(clamp(angles, 0.0, 1.0), log(r / map.range.x) / log(map.range.y / map.range.x));
+}
+
+vec3 curvedToWorld(VolumeMap map, vec3 u) {
+    float r = map.range.x * pow(map.range.y / map.range.x, u.z), azimuth = TURN * (u.x - 0.5), polar = 0.5 * TURN * u.y;
+    return map.eye + r * vec3(sin(polar) * cos(azimuth), cos(polar), sin(polar) * sin(azimuth));
+}
+
+mat3 curvedAxes(VolumeMap map, vec3 p) {
+    vec3 d = p - map.eye;
+    float dim = float(params.voxel_dim);
+    float far = max(length(d), 1e-6), r = clamp(far, map.range.x, map.range.y);
+    vec3 away = d / far;
+    float s = length(away.xz);
+    vec3 along = s > 0.0 ? vec3(-away.z, 0.0, away.x) / s : vec3(0, 0, 1);
+    vec3 down = cross(away, along);
+    return mat3(TURN * max(s, POLE) * r / dim * along, 0.5 * TURN * r / dim * down, log(map.range.y / map.range.x) * r / dim * away);
+}
+
+// What is far enough and near enough: angles would cost four trigonometric functions a sample. The margin is wider than
+// rounding, so that coordinates agree.
+bool curvedHolds(VolumeMap map, vec3 p) {
+    float r = distance(p, map.eye);
+    return r > map.range.x * 1.00001 && r < map.range.y * 0.99999;
+}
+
+// A sphere has no sides.
+int curvedOutside(VolumeMap map, vec3 a, vec3 b, vec3 c) {
+    return 0;
+}
+
+// A sphere turns with nothing, and need not move with every step of the camera either.
+vec3 curvedEye(vec3 position, vec3 cell) {
+    if (params.volume_snap == VOLUME_SNAP_OFF) return position;
+    vec3 unit = min(2.0 * cell, vec3(0.5 * params.warp_near));
+    return floor(position / unit + 0.5) * unit;
+}
+
+// Borders that lookups blend towards the next cascade at: along the distance alone. Round the seam the first cells follow
+// the last.
+const vec3 CURVED_BORDERS = vec3(0.0, 0.0, 1.0);
+const bool CURVED_SEAM = true;
+
+#include "common/curved.glsl"

@@ -1,0 +1,22 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Base colour in the light of a lamp at the camera.
+#include "params.glsl"
+#include "common/scene.glsl"
+#include "common/materials.glsl"
+#include "preview/preview.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec2 uv;
+layout(location = 3) flat in uint material;
+layout(location = 0) out vec4 display;
+
+void main() {
+    Material m = materials.materials[material];
+    Gradient g = Gradient(dFdx(uv), dFdy(uv));
+    vec4 base = baseColor(m, uv, g);
+    if (base.a < m.alpha_cutoff) discard;
+    float facing = abs(dot(normalize(normal), normalize(camera.position - position))); // surfaces have two sides
+    display = encoded(base.rgb * (0.2 + 0.8 * facing) + emission(m, uv, g));
+}

@@ -1,0 +1,18 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "common/scene.glsl"
+
+layout(location = 0) out vec3 position;
+layout(location = 1) out vec3 normal;
+layout(location = 2) out vec2 uv;
+layout(location = 3) flat out uint material;
+
+void main() {
+    Draw draw = draws.draws[gl_InstanceIndex];
+    VertexAttributes a = loadAttributes(gl_VertexIndex);
+    position = toWorld(draw.instance, loadPosition(gl_VertexIndex));
+    normal = normalToWorld(draw.instance, a.normal);
+    uv = a.uv;
+    material = draw.material;
+    gl_Position = camera.view_projection * vec4(position, 1.0);
+}

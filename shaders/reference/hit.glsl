@@ -1,0 +1,44 @@
+// The surface that a ray has hit.
+#ifndef HIT_GLSL
+#define HIT_GLSL
+#include "reference/trace.glsl"
+#include "common/brdf.glsl"
+
+struct SurfaceHit {
+    vec3 position;
+    vec3 face; // the triangle's normal on the viewer's side
+    vec3 view; // to where the ray came from
+    Surface surface;
+    vec3 emission;
+};
+
+SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
+    BvhTriangle t = bvhTriangles.triangles[hit.triangle];
+    Corners corners = cornersOf(t);
+    Material m = materials.materials[corners.material];
+    Gradient g;
+    vec2 uv = texturePlace(t, corners, hit.weights, f, g);
+    vec3 w = vec3(1.0 - hit.weights.x - hit.weights.y, hit.weights);
+    vec3 v = -ray.direction;
+    vec3 face = normalize(cross(t.b - t.a, t.c - t.a));
+    face = dot(face, v) < 0.0 ? -face : face;
+
+    VertexAttributes a = loadAttributes(corners.vertices.x), b = loadAttributes(corners.vertices.y), c = loadAttributes(corners.vertices.z);
+    vec3 n = normalize(normalToWorld(corners.instance, w.x * a.normal + w.y * b.normal + w.z * c.normal));
+    float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
+    if (m.normal_texture != NO_TEXTURE) {
+        vec3 mapped = tangentNormal(m, uv, g);
+        vec4 tangent = w.x * a.tangent + w.y * b.tangent + w.z * c.tangent;
+        vec3 x = mat3(instances.instances[corners.instance].model) * tangent.xyz;
+        x -= n * dot(n, x);
+        if (dot(x, x) > 1e-12) {
+            x = normalize(x);
+            n = normalize(mat3(x, cross(n, x) * sign(tangent.w), n) * mapped);
+        }
+    }
+    vec2 rm = roughnessMetallic(m, uv, g);
+    Surface s = makeSurface(n * side, baseColor(m, uv, g).rgb, rm.x, rm.y);
+    return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, uv, g));
+}
+
+#endif

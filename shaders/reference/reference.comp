@@ -1,0 +1,122 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// One sample of every pixel by path tracing (Kajiya 1986), with the surfaces, the BRDF and the lights of the
+// rasterised method. Every light is asked at every vertex (next-event estimation); directions are drawn from the
+// cosine and from the visible GGX normals. The first vertex sends out two rays, one for each lobe, so that
+// diffuse and specular light are known apart. Emission and the sky are met by the rays.
+#include "params.glsl"
+#include "common/direct.glsl"
+#include "reference/hit.glsl"
+#include "common/ggx.glsl"
+#include "common/random.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+// Sums over the even samples in layer 0, over the odd ones in layer 1; alpha counts them.
+layout(rgba32f) uniform image2DArray totalSum;
+layout(rgba32f) uniform image2DArray directSum;
+layout(rgba32f) uniform image2DArray diffuseSum;
+layout(rgba32f) uniform image2DArray specularSum;
+layout(rgba32f) uniform image2DArray occlusionSum;
+layout(std430) buffer ReferenceErrors { uint not_finite; } referenceErrors;
+
+float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
+    if (light.shadow_view < 0) return 1.0; // casts no shadows
+    vec3 from = offsetPoint(p, face);
+    float end = light.kind == LIGHT_DIRECTIONAL ? 1e30 : distance(light.position, from) * 0.9999;
+    return blocked(Ray(from, to_light, end)) ? 0.0 : 1.0;
+}
+
+float luminance(vec3 c) {
+    return dot(c, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// Radiance that arrives at p along -d after at most params.bounces turns, this ray being the first.
+vec3 incoming(vec3 p, vec3 d, inout Random random, out bool escaped) {
+    vec3 sum = vec3(0.0), weight = vec3(1.0);
+    escaped = false;
+    for (int bounce = 1; bounce <= params.bounces; bounce++) {
+        Ray ray = Ray(p, d, 1e30);
+        Hit hit = traceRay(ray, NO_FOOTPRINT, false);
+        if (hit.triangle == NO_HIT) {
+            escaped = bounce == 1;
+            return sum + weight * sceneInfo.sky;
+        }
+        SurfaceHit h = surfaceOf(hit, ray, NO_FOOTPRINT);
+        sum += weight * (h.emission + directLight(h.surface, h.position, h.face, h.view));
+        if (bounce == params.bounces) break;
+        vec4 u = next4(random);
+        float shine = luminance(fresnel(h.surface.f0, max(dot(h.surface.normal, h.view), 0.0)));
+        float chance = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
+        LobeSample next;
+        if (u.z < chance) {
+            next = specularSample(h.surface, h.face, h.view, u.xy);
+            next.weight /= chance;
+        } else {
+            next = diffuseSample(h.surface, h.face, u.xy);
+            next.weight /= 1.0 - chance;
+        }
+        weight *= next.weight;
+        if (weight == vec3(0.0)) break;
+        if (bounce > 3) { // Russian roulette (Arvo and Kirk 1990)
+            float survival = clamp(max(weight.r, max(weight.g, weight.b)), 0.05, 1.0);
+            if (u.w >= survival) break;
+            weight /= survival;
+        }
+        p = offsetPoint(h.position, h.face);
+        d = next.direction;
+    }
+    return sum;
+}
+
+vec3 cameraRay(vec2 at) {
+    vec2 q = (2.0 * at / vec2(camera.size) - 1.0) * tan(0.5 * camera.fov_y);
+    vec3 right = cross(camera.direction, camera.up);
+    return normalize(camera.direction + q.x * float(camera.size.x) / float(camera.size.y) * right - q.y * camera.up);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
+    uint number = uint(params.first_sample) + pass.index;
+    Random random = Random(uvec4(uint(pixel.x) | uint(pixel.y) << 16, number, 0, uint(params.seed)));
+    vec4 u = next4(random);
+    vec2 at = vec2(pixel) + (params.pixel == PIXEL_BOX ? u.xy : vec2(0.5));
+    vec3 d = cameraRay(at);
+    // The rasteriser's near plane cuts here too.
+    vec3 start = camera.position + d * (camera.near / dot(d, camera.direction));
+    // Rays spread over the pixel average its texels themselves; one ray through its centre needs them averaged.
+    Footprint f = params.pixel == PIXEL_BOX
+        ? NO_FOOTPRINT
+        : Footprint(camera.position, cameraRay(at + vec2(1, 0)), cameraRay(at + vec2(0, 1)));
+    Ray ray = Ray(start, d, 1e30);
+    Hit hit = traceRay(ray, f, false);
+
+    vec3 total = sceneInfo.sky, direct = vec3(0.0), diffuse = vec3(0.0), specular = vec3(0.0);
+    float open = 1.0;
+    if (hit.triangle != NO_HIT) {
+        SurfaceHit h = surfaceOf(hit, ray, f);
+        vec3 p = offsetPoint(h.position, h.face);
+        direct = directLight(h.surface, h.position, h.face, h.view);
+        vec4 v = next4(random);
+        LobeSample one = diffuseSample(h.surface, h.face, v.xy), two = specularSample(h.surface, h.face, h.view, v.zw);
+        // Numbers of its own: a path does not depend on how long the other one is.
+        Random other = Random(uvec4(random.key.xy, 1u << 16, random.key.w));
+        bool sky = false, unused;
+        // Its own albedo is left out of the test: black surfaces too have openness.
+        if (dot(one.direction, h.face) > 0.0) diffuse = one.weight * incoming(p, one.direction, random, sky);
+        open = sky ? 1.0 : 0.0;
+        if (two.weight != vec3(0.0)) specular = two.weight * incoming(p, two.direction, other, unused);
+        total = h.emission + direct + diffuse + specular;
+    }
+    if (any(isnan(total)) || any(isinf(total))) {
+        atomicAdd(referenceErrors.not_finite, 1u);
+        return;
+    }
+    ivec3 texel = ivec3(pixel, int(number & 1u));
+    imageStore(totalSum, texel, imageLoad(totalSum, texel) + vec4(total, 1.0));
+    imageStore(directSum, texel, imageLoad(directSum, texel) + vec4(direct, 1.0));
+    imageStore(diffuseSum, texel, imageLoad(diffuseSum, texel) + vec4(diffuse, 1.0));
+    imageStore(specularSum, texel, imageLoad(specularSum, texel) + vec4(specular, 1.0));
+    imageStore(occlusionSum, texel, imageLoad(occlusionSum, texel) + vec4(vec3(open), 1.0));
+}

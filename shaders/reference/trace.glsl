@@ -1,0 +1,187 @@
+// Rays through the scene's triangles. The hierarchy is binary, in world space, of this frame's pose. Alpha masks are
+// part of the geometry: what a mask cuts out is passed through.
+#ifndef TRACE_GLSL
+#define TRACE_GLSL
+#include "common/scene.glsl"
+#include "common/materials.glsl"
+
+struct BvhNode {
+    vec3 low;
+    uint count; // triangles; 0: an inner node
+    vec3 high;
+    uint first; // triangle, or the first of two children
+};
+
+struct BvhTriangle {
+    vec3 a; // world
+    uint draw;
+    vec3 b;
+    uint first_index; // of its three vertices in `indices`
+    vec3 c;
+    uint masked;
+};
+
+layout(std430) readonly buffer BvhNodes { BvhNode nodes[]; } bvhNodes;
+layout(std430) readonly buffer BvhTriangles { BvhTriangle triangles[]; } bvhTriangles;
+layout(std430) readonly buffer Indices { uint indices[]; } indices;
+
+const uint NO_HIT = 0xffffffffu;
+const int TRACE_STACK = 64; // the program refuses scenes whose hierarchy is deeper
+
+struct Ray {
+    vec3 origin;
+    vec3 direction; // unit
+    float end; // m
+};
+
+struct Hit {
+    float t;
+    uint triangle; // NO_HIT: none
+    vec2 weights; // of the corners b and c
+};
+
+// Rays through the neighbouring pixels, for the size of a texture lookup; of no length behind the first hit.
+struct Footprint {
+    vec3 origin;
+    vec3 x;
+    vec3 y;
+};
+
+const Footprint NO_FOOTPRINT = Footprint(vec3(0.0), vec3(0.0), vec3(0.0));
+
+// Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": a ray cannot slip between triangles that
+// share an edge. Precomputed for each ray: the axes with z the longest, and the shear that makes the ray (0, 0, 1).
+struct Shear {
+    ivec3 axes;
+    vec3 s;
+};
+
+Shear shearOf(vec3 d) {
+    vec3 a = abs(d);
+    int z = a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
+    ivec3 axes = ivec3((z + 1) % 3, (z + 2) % 3, z);
+    return Shear(axes, vec3(d[axes.x], d[axes.y], 1.0) / d[z]);
+}
+
+bool hitTriangle(Shear shear, vec3 origin, BvhTriangle t, float end, out Hit hit) {
+    vec3 a = t.a - origin, b = t.b - origin, c = t.c - origin;
+    ivec3 k = shear.axes;
+    precise vec2 pa = vec2(a[k.x], a[k.y]) - shear.s.xy * a[k.z];
+    precise vec2 pb = vec2(b[k.x], b[k.y]) - shear.s.xy * b[k.z];
+    precise vec2 pc = vec2(c[k.x], c[k.y]) - shear.s.xy * c[k.z];
+    // The same two products for both triangles at an edge, without contraction: opposite to the bit.
+    precise float u = pc.x * pb.y - pc.y * pb.x;
+    precise float v = pa.x * pc.y - pa.y * pc.x;
+    precise float w = pb.x * pa.y - pb.y * pa.x;
+    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0)) return false;
+    float sum = u + v + w;
+    if (sum == 0.0) return false;
+    float distance = shear.s.z * (u * a[k.z] + v * b[k.z] + w * c[k.z]) / sum;
+    if (!(distance > 0.0 && distance < end)) return false;
+    hit.t = distance;
+    hit.weights = vec2(v, w) / sum;
+    return true;
+}
+
+// Where the ray enters the box, or a negative number. Widened by the rounding of its own arithmetic (Ize 2013).
+float hitBox(BvhNode node, vec3 origin, vec3 inverse, float end) {
+    vec3 a = (node.low - origin) * inverse, b = (node.high - origin) * inverse;
+    vec3 near = min(a, b), far = max(a, b) * 1.0000004;
+    float enter = max(max(near.x, near.y), max(near.z, 0.0));
+    return enter <= min(min(far.x, far.y), min(far.z, end)) ? enter : -1.0;
+}
+
+struct Corners {
+    uvec3 vertices;
+    uint instance;
+    uint material;
+};
+
+Corners cornersOf(BvhTriangle t) {
+    Draw draw = draws.draws[t.draw];
+    uint i = t.first_index;
+    return Corners(uvec3(indices.indices[i], indices.indices[i + 1], indices.indices[i + 2]), draw.instance, draw.material);
+}
+
+// Weights of b and c at the point where a line meets the triangle's plane.
+vec2 planeWeights(BvhTriangle t, vec3 origin, vec3 d) {
+    vec3 ab = t.b - t.a, ac = t.c - t.a, n = cross(ab, ac);
+    vec3 p = origin + d * (dot(n, t.a - origin) / dot(n, d)) - t.a;
+    return vec2(dot(cross(p, ac), n), dot(cross(ab, p), n)) / dot(n, n);
+}
+
+vec2 mixCorners(vec2 a, vec2 b, vec2 c, vec2 weights) {
+    return a + weights.x * (b - a) + weights.y * (c - a);
+}
+
+// Texture coordinates at a hit and their change from pixel to pixel.
+vec2 texturePlace(BvhTriangle t, Corners corners, vec2 weights, Footprint f, out Gradient gradient) {
+    vec2 a = loadAttributes(corners.vertices.x).uv, b = loadAttributes(corners.vertices.y).uv, c = loadAttributes(corners.vertices.z).uv;
+    vec2 uv = mixCorners(a, b, c, weights);
+    gradient = Gradient(vec2(0.0), vec2(0.0));
+    if (f.x != vec3(0.0))
+        gradient = Gradient(mixCorners(a, b, c, planeWeights(t, f.origin, f.x)) - uv, mixCorners(a, b, c, planeWeights(t, f.origin, f.y)) - uv);
+    return uv;
+}
+
+bool cutOut(BvhTriangle t, vec2 weights, Footprint f) {
+    Corners corners = cornersOf(t);
+    Material m = materials.materials[corners.material];
+    Gradient g;
+    vec2 uv = texturePlace(t, corners, weights, f, g);
+    return baseColor(m, uv, g).a < m.alpha_cutoff;
+}
+
+Hit traceRay(Ray ray, Footprint f, bool any) {
+    Hit hit = Hit(ray.end, NO_HIT, vec2(0.0));
+    Shear shear = shearOf(ray.direction);
+    vec3 d = mix(ray.direction, vec3(1e-20), equal(ray.direction, vec3(0.0)));
+    vec3 inverse = 1.0 / d;
+    uint stack[TRACE_STACK];
+    int depth = 0;
+    uint at = 0;
+    if (hitBox(bvhNodes.nodes[0], ray.origin, inverse, hit.t) < 0.0) return hit;
+    while (true) {
+        BvhNode node = bvhNodes.nodes[at];
+        if (node.count == 0) {
+            uint left = node.first, right = node.first + 1;
+            float l = hitBox(bvhNodes.nodes[left], ray.origin, inverse, hit.t);
+            float r = hitBox(bvhNodes.nodes[right], ray.origin, inverse, hit.t);
+            if (l >= 0.0 && r >= 0.0) {
+                stack[depth++] = l <= r ? right : left;
+                at = l <= r ? left : right;
+                continue;
+            }
+            if (l >= 0.0 || r >= 0.0) {
+                at = l >= 0.0 ? left : right;
+                continue;
+            }
+        } else {
+            for (uint i = node.first; i < node.first + node.count; i++) {
+                BvhTriangle t = bvhTriangles.triangles[i];
+                Hit found;
+                if (!hitTriangle(shear, ray.origin, t, hit.t, found)) continue;
+                if (t.masked != 0 && cutOut(t, found.weights, f)) continue;
+                hit = Hit(found.t, i, found.weights);
+                if (any) return hit;
+            }
+        }
+        if (depth == 0) return hit;
+        at = stack[--depth];
+    }
+    return hit;
+}
+
+bool blocked(Ray ray) {
+    return traceRay(ray, NO_FOOTPRINT, true).triangle != NO_HIT;
+}
+
+// A point just off a surface, by more than the rounding of p (Waechter and Binder 2019, "A Fast and Robust Method
+// for Avoiding Self-Intersection"). n: the geometric normal on the side to start from.
+vec3 offsetPoint(vec3 p, vec3 n) {
+    ivec3 steps = ivec3(256.0 * n);
+    vec3 moved = intBitsToFloat(floatBitsToInt(p) + mix(steps, -steps, lessThan(p, vec3(0.0))));
+    return mix(moved, p + n / 65536.0, lessThan(abs(p), vec3(1.0 / 32.0)));
+}
+
+#endif

@@ -1,0 +1,42 @@
+#ifndef SHADE_PIXELS_GLSL
+#define SHADE_PIXELS_GLSL
+// Final shading of the surfaces that pixels see, each contribution to its own picture.
+#include "params.glsl"
+#define READ_SEEN
+#include "common/gbuffer.glsl"
+#include "shade/shade.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+uniform writeonly image2D radiance; // everything, emission included
+uniform writeonly image2D direct;
+uniform writeonly image2D diffuseIndirect;
+uniform writeonly image2D specularIndirect;
+uniform writeonly image2D occlusion; // 1: open
+uniform writeonly image2D surfaceNormal; // * .5 + .5
+
+vec2 pixelCentre() {
+    return vec2(gl_GlobalInvocationID.xy) + 0.5;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
+    Seen seen = seenAt(pixel);
+    vec3 total = sceneInfo.sky, normal = vec3(-1.0);
+    Shading light = Shading(vec3(0.0), vec3(0.0), vec3(0.0), 1.0);
+    if (seen.any) {
+        light = shade(seen.surface, seen.position, seen.face, seen.to_viewer);
+        total = light.direct + light.diffuse + light.specular + seen.emission;
+        normal = seen.surface.normal;
+    }
+    float covered = seen.any ? 1.0 : 0.0;
+    imageStore(radiance, pixel, vec4(total, 1.0));
+    imageStore(direct, pixel, vec4(light.direct, covered));
+    imageStore(diffuseIndirect, pixel, vec4(light.diffuse, covered));
+    imageStore(specularIndirect, pixel, vec4(light.specular, covered));
+    imageStore(occlusion, pixel, vec4(vec3(light.open), 1.0));
+    imageStore(surfaceNormal, pixel, vec4(normal * 0.5 + 0.5, covered));
+}
+
+#endif

@@ -1,0 +1,28 @@
+// Final shading (thesis, Algorithm 3). Indirect diffuse light is albedo * sum_c w_c L_c with L_c the mean radiance of a
+// cone, sky included where it escapes.
+#ifndef SHADE_GLSL
+#define SHADE_GLSL
+#include "modules/trace.glsl"
+#include "common/shadow.glsl"
+#include "common/direct.glsl"
+
+// Radiance towards the viewer by contribution, without emission.
+struct Shading {
+    vec3 direct;
+    vec3 diffuse; // indirect
+    vec3 specular; // indirect
+    float open; // share of the hemisphere that is, cosine-weighted
+};
+
+float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
+    return shadowVisibility(light, p, face, to_light);
+}
+
+// face: the geometric normal, v: to the viewer; both on one side.
+Shading shade(Surface s, vec3 p, vec3 face, vec3 v) {
+    vec3 direct = directLight(s, p, face, v);
+    Gathered light = gather(coneOrigin(p, face, s.normal), s, face, v);
+    return Shading(direct, s.albedo * light.hemisphere.rgb, light.specular, light.hemisphere.a);
+}
+
+#endif

@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Depth from a light (thesis, Section 4.2); pass.index is the shadow view.
+#include "params.glsl"
+#include "common/scene.glsl"
+#include "common/shadow_views.glsl"
+
+layout(location = 0) out vec2 uv;
+layout(location = 1) flat out uint material;
+
+void main() {
+    Draw draw = draws.draws[gl_InstanceIndex];
+    vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
+    gl_Position = shadowViews.views[pass.index].view_projection * vec4(p, 1.0);
+    uv = loadAttributes(gl_VertexIndex).uv;
+    material = draw.material;
+}

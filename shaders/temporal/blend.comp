@@ -1,0 +1,40 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Blends last frame's radiance into this frame's (thesis, Section 4.7.2), looked up where the cell was last
+// frame, so that a moving volume does not smear. The history is rgba16f: in 8 bits the decay would stick.
+#include "params.glsl"
+#include "common/volume.glsl"
+#include "common/voxels.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+
+uniform sampler3D voxelLight; // this frame's
+uniform sampler3D lastHistory;
+layout(std430) readonly buffer LastVolume { VolumeMap maps[MAX_CASCADES]; uint frames; uint signature; } lastVolume;
+uniform writeonly image3D voxelHistory;
+uniform writeonly image3D voxelRadiance;
+
+// A camera that jumps has cut: what lies where it is now was not looked at before, or from farther.
+bool isCut(VolumeMap g, VolumeMap last) {
+    return distance(g.seen_from, last.seen_from) > params.temporal_cut;
+}
+
+void main() {
+    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    int cascade = cascadeOf(cell);
+    if (any(greaterThanEqual(cell, imageSize(voxelHistory)))) return;
+    vec4 value = texelFetch(voxelLight, cell, 0);
+    VolumeMap g = volume.maps[cascade], last = lastVolume.maps[cascade];
+    if (lastVolume.frames > 0 && lastVolume.signature == voxelCounter.signature && !isCut(g, last)) {
+        vec3 u = worldToVolume(last, volumeToWorld(g, cellCentre(cell)));
+        // A volume that moved by whole voxels finds its cell's centre again, to rounding.
+        if (inVolume(u)) {
+            float half_cell = 0.5 / float(params.voxel_dim);
+            u.z = (float(cascade) + clamp(u.z, half_cell, 1.0 - half_cell)) / float(CASCADE_COUNT);
+            value = mix(value, textureLod(lastHistory, u, 0.0), params.temporal_factor);
+        }
+    }
+    value = mix(vec4(0.0), value, greaterThan(value, vec4(1e-6))); // let the tail die: halves slow down near 0
+    imageStore(voxelHistory, cell, value);
+    imageStore(voxelRadiance, cell, value);
+}

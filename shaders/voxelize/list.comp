@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Arguments of the passes that run over the voxel list.
+#include "params.glsl"
+#include "common/volume.glsl"
+#include "common/voxels.glsl"
+
+layout(local_size_x = 1) in;
+
+void main() {
+    uint count = min(voxelCounter.allocated, uint(params.voxel_capacity));
+    voxelCounter.count = count;
+    voxelCounter.list_groups = uvec3(min((count + 127) / 128, 65535u), 1, 1);
+    uint fragments = min(voxelCounter.fragments, voxelFragments.list.length());
+    voxelCounter.overflow = voxelCounter.fragments - fragments;
+    voxelCounter.merge_groups = uvec3(min((fragments + 127) / 128 + 1, 32768u), 1, 1);
+}

@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Merges the fragments into their voxels (thesis, Section 4.1.1, last paragraphs) under one of several rules: modules/merge.
+#include "params.glsl"
+#include "common/volume.glsl"
+#include "common/voxels.glsl"
+
+layout(local_size_x = 128) in;
+
+layout(r32ui) uniform readonly uimage3D voxelIndex;
+
+// Neighbours in the list mostly hit the same voxel: neighbouring threads take fragments that lie far apart, so that
+// their atomics do not queue.
+const uint SHARES = 1u << 16;
+
+#include "modules/merge.glsl"
+
+void merge(uint base, vec3 color, vec3 normal, uint emission) {
+    mergeInto(base, color, normal);
+    atomicAdd(voxelSlots.words[base + 3], 1);
+    if (emission != 0) {
+        uvec3 e = uvec3(min(unpackRadiance(emission), EMISSION_MAX) * EMISSION_SCALE + 0.5);
+        for (uint i = 0; i < 3; i++) atomicAdd(voxelSlots.words[base + 7 + i], e[i]);
+    }
+}
+
+void main() {
+    uint count = min(voxelCounter.fragments, voxelFragments.list.length());
+    uint share = (count + SHARES - 1) / SHARES;
+    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    for (uint t = gl_GlobalInvocationID.x; t < share * SHARES; t += stride) {
+        uint i = t % SHARES * share + t / SHARES;
+        if (i >= count) continue;
+        uvec4 fragment = voxelFragments.list[i];
+        uint found = imageLoad(voxelIndex, unpackCell(fragment.x)).r;
+        if (found == CELL_FULL) atomicAdd(voxelCounter.overflow, 1);
+        else merge((found - 1) * SLOT_WORDS, unpackColor(fragment.y), unpackNormal(fragment.z), fragment.w);
+    }
+}

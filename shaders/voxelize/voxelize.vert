@@ -1,0 +1,18 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// World-space triangles for both voxelizers.
+#include "common/scene.glsl"
+
+layout(location = 0) out vec3 position;
+layout(location = 1) out vec3 normal;
+layout(location = 2) out vec2 uv;
+layout(location = 3) flat out uint material;
+
+void main() {
+    Draw draw = draws.draws[gl_InstanceIndex];
+    VertexAttributes a = loadAttributes(gl_VertexIndex);
+    position = toWorld(draw.instance, loadPosition(gl_VertexIndex));
+    normal = normalize(normalToWorld(draw.instance, a.normal));
+    uv = a.uv;
+    material = draw.material;
+}
