@@ -108,9 +108,10 @@ impl Record {
         if self.schema != RECORD_SCHEMA {
             return Err(format!("its schema is '{}', this program reads '{RECORD_SCHEMA}'", self.schema));
         }
-        let counts = [self.rounds, self.frames.count, self.frames.warmup + 1];
-        if let Some(n) = counts.iter().find(|n| **n == 0 || **n > MAX_FRAMES + 1) {
-            return Err(format!("{n} rounds or frames: they must be 1 to {MAX_FRAMES}"));
+        let Frames { warmup, count } = self.frames;
+        let most = self.rounds.max(count).max(warmup);
+        if self.rounds == 0 || count == 0 || most > MAX_FRAMES {
+            return Err(format!("rounds and frames must be 1 to {MAX_FRAMES}, and no more of warm-up"));
         }
         if self.configurations.is_empty() || self.configurations.len() > MAX_CONFIGURATIONS {
             let found = self.configurations.len();
@@ -252,7 +253,7 @@ impl Recorded {
         let said = |name: &str| self.settings.get(name).map(|t| t.trim_matches('"'));
         let mut parts = vec![stem(&self.experiment)];
         parts.extend(said("scene").map(stem));
-        parts.extend(said("size").map(|s| s.trim_matches(['(', ')']).replace(", ", "x")));
+        parts.extend(said("size").map(|s| s.replace(['(', ')', ' '], "").replace(',', "x")));
         let others = self.settings.iter().filter(|(name, _)| !FIXED.contains(&name.as_str()));
         parts.extend(others.map(|(name, value)| format!("{name} {value}")));
         parts.join(", ")

@@ -224,7 +224,7 @@ fn again<'r>(home: &Home, warm: &mut Warm, chosen: Vec<&'r Recorded>, frames: Fr
             recorded.experiment(home).and_then(|experiment| lister.point(warm, experiment, recorded.labels(), frames));
         match point {
             Ok(point) => out.found.push((recorded, point)),
-            Err(LabError::Scene(why @ (SceneError::NotFound { .. } | SceneError::Read { .. }))) => {
+            Err(LabError::Scene(why @ (SceneError::NoModel { .. } | SceneError::Read { .. }))) => {
                 out.skipped.push((recorded.title(), why.to_string()));
             }
             Err(why) => out.broken.push((recorded.title(), why.to_string())),

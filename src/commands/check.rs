@@ -108,7 +108,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
             FileKind::Scene => {
                 match crate::scene::Scene::open(&name, &|_, _| ControlFlow::Continue(())) {
                     // Models are no part of the program; asked for by name, they must be there.
-                    Err(SceneError::SceneFile { message, .. }) if all && message.starts_with("model file") => {
+                    Err(SceneError::NoModel { message, .. }) if all => {
                         say!("{name}: not checked: {message}");
                     }
                     Err(e) => {
