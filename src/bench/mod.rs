@@ -8,7 +8,7 @@ mod tables;
 
 pub use against::{Compared, FLOOR_MS, Row, Verdict, against_text, compare, judge, percent, slower};
 pub use charts::charts;
-pub use record::{RECORD_SCHEMA, Record, Recorded, record_file};
+pub use record::{RECORD_SCHEMA, Record, Recorded, check_record, record_file};
 pub use tables::{csv, text};
 
 use crate::graph::run::FrameTimes;

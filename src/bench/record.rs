@@ -3,9 +3,9 @@
 
 use super::{Bench, Times};
 use crate::experiment::Experiment;
-use crate::graph::source::{At, Loc};
+use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::{Home, LabError};
-use crate::measure::Frames;
+use crate::measure::{Frames, Warm};
 use crate::stats::DeviceStats;
 use crate::sweep::{Labels, Listed, Setting, read_json};
 use indexmap::IndexMap;
@@ -64,6 +64,32 @@ pub fn record_file(path: &Path, device: &str) -> PathBuf {
     }
     let letters: String = device.to_lowercase().chars().map(|c| if c.is_alphanumeric() { c } else { ' ' }).collect();
     path.join(letters.split_whitespace().collect::<Vec<_>>().join("-") + ".json")
+}
+
+/// Checks that what a record holds can be run: experiments, graphs, parameters. Scenes are not opened.
+///
+/// # Errors
+/// No record; all mistakes, each once.
+pub fn check_record(home: &Home, path: &Path) -> Result<(), LabError> {
+    let mut warm = Warm::default();
+    let mut errors: Vec<Diagnostic> = Vec::new();
+    for recorded in Record::read(path)?.configurations {
+        let checked = recorded.experiment(home).map_err(LabError::Input).and_then(|experiment| {
+            let graph = &warm.graph(home, &experiment.graph)?.graph;
+            experiment.params_over(&graph.params)
+        });
+        match checked {
+            Err(LabError::Input(list)) => {
+                for diagnostic in list {
+                    if !errors.contains(&diagnostic) {
+                        errors.push(diagnostic);
+                    }
+                }
+            }
+            other => drop(other?),
+        }
+    }
+    if errors.is_empty() { Ok(()) } else { Err(LabError::Input(errors)) }
 }
 
 impl Record {
@@ -275,10 +301,10 @@ impl Recorded {
     ///
     /// # Errors
     /// Mistakes of the file, and settings that are none; unknown parameters are found with the graph.
-    pub fn experiment(&self, home: &Home) -> Result<Experiment, LabError> {
-        let mut experiment = Experiment::read(&self.file(home)).map_err(LabError::Input)?;
+    pub fn experiment(&self, home: &Home) -> Result<Experiment, Vec<Diagnostic>> {
+        let mut experiment = Experiment::read(&self.file(home))?;
         let lines: Vec<String> = self.settings.iter().map(|(name, text)| format!("{name}: {text}")).collect();
-        let file = experiment.sources.add("recorded settings".as_ref(), lines.join("\n"));
+        let file = experiment.sources.add(format!("settings of {}", self.title()).as_ref(), lines.join("\n"));
         let (mut offset, mut errors) = (0, Vec::new());
         for ((name, text), line) in self.settings.iter().zip(&lines) {
             let at = At { file, offset };
@@ -288,7 +314,7 @@ impl Recorded {
             }
             offset += u32::try_from(line.len() + 1).unwrap_or(0);
         }
-        if errors.is_empty() { Ok(experiment) } else { Err(LabError::Input(errors)) }
+        if errors.is_empty() { Ok(experiment) } else { Err(errors) }
     }
 }
 

@@ -220,8 +220,10 @@ fn again<'r>(home: &Home, warm: &mut Warm, chosen: Vec<&'r Recorded>, frames: Fr
     let mut lister = Lister::new(home, &super::open_scene);
     let mut out = Again::default();
     for recorded in chosen {
-        let point =
-            recorded.experiment(home).and_then(|experiment| lister.point(warm, experiment, recorded.labels(), frames));
+        let point = recorded
+            .experiment(home)
+            .map_err(LabError::Input)
+            .and_then(|experiment| lister.point(warm, experiment, recorded.labels(), frames));
         match point {
             Ok(point) => out.found.push((recorded, point)),
             Err(LabError::Scene(why @ (SceneError::NoModel { .. } | SceneError::Read { .. }))) => {
