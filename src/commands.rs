@@ -60,7 +60,8 @@ enum Command {
     Capture(capture::CaptureArgs),
     /// Render a capture again from its own sources and compare every texel; exit 1 on any difference.
     Replay(replay::ReplayArgs),
-    /// Time configurations in turn and print tables of their stages and totals; exit 1 if one failed.
+    /// Time configurations in turn and print tables of their stages and totals, or compare with recorded times; exit 1 if
+    /// one failed or became slower.
     Bench(bench::BenchArgs),
     /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
     Sweep(sweep::SweepArgs),

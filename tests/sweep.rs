@@ -294,3 +294,161 @@ fn a_benchmark_prints_stages_by_grid_and_totals_by_size() {
         assert!(out.join(file).is_file(), "no {file}");
     }
 }
+
+/// Records times of two small configurations, and reads them back as JSON.
+fn recorded(home: &Path) -> (PathBuf, serde_json::Value) {
+    let mut command = conelab(home);
+    command.args(["bench", "configs/default.ron", "configs/thesis.ron", "--scene", "cornell", "--sizes", "64x48"]);
+    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256", "--rounds", "2", "--frames", "2"]);
+    command.args(["--warmup", "1", "-o", "out", "--record", "times"]);
+    let said = succeeds(&mut command);
+    let names: Vec<String> = files(&home.join("times")).into_keys().collect();
+    assert!(names.len() == 1 && names[0].ends_with(".json"), "{names:?}");
+    assert!(said.ends_with(&format!("recorded 2 configurations in times/{}\n", names[0])), "{said}");
+    let path = home.join("times").join(&names[0]);
+    let json = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    (path, json)
+}
+
+fn against(home: &Path, record: &Path, more: &[&str]) -> std::process::Command {
+    let mut command = conelab(home);
+    command.arg("bench").args(more).arg("--against").arg(record).args(["-o", "out"]);
+    command
+}
+
+/// Divides every number of a list.
+fn divide(list: &mut serde_json::Value, by: f64) {
+    for ms in list.as_array_mut().unwrap() {
+        *ms = (ms.as_f64().unwrap() / by).into();
+    }
+}
+
+#[test]
+fn recorded_times_are_measured_again_and_what_became_slower_fails() {
+    let home = home();
+    let (_, json) = recorded(home.path());
+    let edited = home.path().join("edited.json");
+    let write = |json: &serde_json::Value| std::fs::write(&edited, json.to_string()).unwrap();
+
+    // A program beside itself: a folder finds the device's file; the tolerance is for machines that do other things.
+    let said = succeeds(&mut against(home.path(), &home.path().join("times"), &["--tolerance", "20"]));
+    for title in ["default", "thesis"] {
+        assert!(said.contains(&format!("\n{title}, cornell, 64x48, voxel_dim 32, shadow_dim 256\n")), "{said}");
+    }
+    assert_eq!(said.lines().filter(|l| l.starts_with("total ")).count(), 2, "{said}");
+    assert!(said.ends_with("no stage is more than 2000 % slower\n"), "{said}");
+    // Its bench.json is that of the recorded configurations.
+    let out: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(home.path().join("out/bench.json")).unwrap()).unwrap();
+    for (recorded, now) in
+        json["configurations"].as_array().unwrap().iter().zip(out["configurations"].as_array().unwrap())
+    {
+        let names = |v: &serde_json::Value| v.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+        assert_eq!(names(&recorded["stages"]), names(&now["times"]["stages"]));
+        for (name, value) in recorded["params"].as_object().unwrap() {
+            let now = &now["times"]["stats"]["params"][name];
+            assert_eq!(value.as_str().unwrap(), now.as_str().map_or(now.to_string(), String::from), "{name}");
+        }
+    }
+
+    // One stage that was recorded a hundred times faster; the other configuration is not named.
+    let mut fast = json.clone();
+    divide(&mut fast["configurations"][1]["stages"]["final shading"], 100.0);
+    write(&fast);
+    let said = fails(&mut against(home.path(), &edited, &["--tolerance", "20"]));
+    let expected = "error: more than 2000 % slower than recorded: final shading ";
+    assert!(said.starts_with(expected) && said.contains("(thesis, cornell"), "{said}");
+    assert!(!said.contains("total") && !said.contains("default"), "{said}");
+    // Only the experiment that is named is measured.
+    succeeds(&mut against(home.path(), &edited, &["configs/default.ron", "--tolerance", "20"]));
+    let said = fails(&mut against(home.path(), &edited, &["configs/nothing.ron"]));
+    assert!(said.contains("the record has no times of 'configs/nothing.ron'"), "{said}");
+
+    // Stages with other names: the total is compared still. Settings, scene and driver that differ are told.
+    let mut renamed = json.clone();
+    renamed["device"]["driver"] = "another".into();
+    let first = &mut renamed["configurations"][0];
+    first["stages"] = serde_json::json!({ "everything": [1.0, 1.0] });
+    first["params"]["bias"] = "3.0".into();
+    first["scene_sha256"] = "0".into();
+    divide(&mut first["total"], 100.0);
+    write(&renamed);
+    let output = against(home.path(), &edited, &["--tolerance", "20"]).output().unwrap();
+    let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!(output.status.code(), Some(1), "{out}{err}");
+    assert!(err.contains("slower than recorded: total "), "{err}");
+    let ends = |name: &str, end: &str| out.lines().any(|l| l.starts_with(name) && l.ends_with(end));
+    assert!(ends("everything ", " gone") && ends("final shading ", " new"), "{out}");
+    for note in ["the driver was another, is ", "bias was 3.0, is ", "the scene is not the recorded one"] {
+        assert!(out.contains(&format!("note: {note}")), "{note}:\n{out}");
+    }
+}
+
+#[test]
+fn a_record_that_does_not_fit_says_why() {
+    let home = home();
+    let (path, json) = recorded(home.path());
+    let edited = home.path().join("edited.json");
+    let edit = |pointer: &str, value: serde_json::Value| {
+        let mut json = json.clone();
+        *json.pointer_mut(pointer).unwrap() = value;
+        json.to_string()
+    };
+    let whole = std::fs::read_to_string(&path).unwrap();
+    let many = vec![json["configurations"][0].clone(); 1001];
+    let cases = [
+        (edit("/device/name", "NVIDIA H100".into()), "the record is of 'NVIDIA H100' and this device is '"),
+        (edit("/schema", "conelab-times-9".into()), "its schema is 'conelab-times-9'"),
+        (edit("/rounds", 0.into()), "rounds and frames must be 1 to"),
+        (edit("/frames/count", 4_000_000_000_u64.into()), "rounds and frames must be 1 to"),
+        (edit("/frames/warmup", u64::MAX.into()), "rounds and frames must be 1 to"),
+        (edit("/configurations", serde_json::json!([])), "it has 0 configurations"),
+        (edit("/configurations", many.into()), "it has 1001 configurations"),
+        (edit("/configurations/0/total", serde_json::json!([])), "configuration 1: 'total' has no times"),
+        (edit("/configurations/0/total/0", 0.into()), "configuration 1: 'total' took 0 ms"),
+        (edit("/configurations/1/stages/display/0", (-1).into()), "configuration 2: 'display' took -1 ms"),
+        (edit("/configurations/0/experiment", "\u{1b}[2J".into()), "characters that cannot be printed"),
+        (whole.replacen("[", "[1e999,", 1), "it is damaged: "),
+        (whole[..whole.len() / 2].to_string(), "it is damaged: EOF"),
+        ("[".repeat(100_000), "it is damaged: "),
+        (" ".repeat(5 << 20), "bytes are more than the"),
+    ];
+    for (text, message) in cases {
+        std::fs::write(&edited, &text).unwrap();
+        let said = fails(&mut against(home.path(), &edited, &[]));
+        assert!(said.contains(message), "{}\n{said}", &text[..text.len().min(300)]);
+    }
+    let said = fails(&mut against(home.path(), &home.path().join("nowhere"), &[]));
+    assert!(said.contains("nothing to compare") && said.contains("--record"), "{said}");
+
+    // What no longer fits is told, what fits is compared, and the run fails.
+    let mut unknown = json.clone();
+    unknown["configurations"][0]["settings"]["voxel_dimm"] = "32".into();
+    std::fs::write(&edited, unknown.to_string()).unwrap();
+    let output = against(home.path(), &edited, &["--tolerance", "20"]).output().unwrap();
+    let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!(output.status.code(), Some(1), "{out}{err}");
+    assert!(out.contains("\nthesis, cornell, 64x48"), "{out}");
+    assert!(out.contains("cannot be measured again: default, cornell, 64x48"), "{out}");
+    assert!(out.contains("error: no parameter 'voxel_dimm' (did you mean 'voxel_dim'?)"), "{out}");
+    assert!(err.contains("1 configurations cannot be measured again"), "{err}");
+    // The check needs no device for that.
+    let check = |path: &Path| {
+        let output = conelab(home.path()).arg("check").arg(path).output().unwrap();
+        (output.status.success(), String::from_utf8(output.stdout).unwrap())
+    };
+    let (ok, said) = check(&edited);
+    assert!(!ok && said.contains("error: no parameter 'voxel_dimm'") && said.ends_with(" 1 errors\n"), "{said}");
+    assert!(check(&path).0);
+
+    // A scene that is not on this machine is told and is no failure; nothing but such scenes is one.
+    let mut missing = json.clone();
+    let scene = r#"(models: [(file: "nowhere/nothing.obj")])"#;
+    std::fs::write(home.path().join("missing.ron"), scene).unwrap();
+    missing["configurations"][0]["settings"]["scene"] = "\"missing.ron\"".into();
+    std::fs::write(&edited, missing.to_string()).unwrap();
+    let said = succeeds(&mut against(home.path(), &edited, &["--tolerance", "20"]));
+    assert!(said.contains("skipped: default, missing, 64x48") && said.contains("set CONELAB_SCENES"), "{said}");
+    let said = fails(&mut against(home.path(), &edited, &["configs/default.ron"]));
+    assert!(said.contains("nothing of '"), "{said}");
+}

@@ -1,10 +1,14 @@
 //! Benchmarks: configurations measured in turn, round after round, so that what drifts (clocks, heat, other programs)
 //! meets all of them alike, and each round compares like with like.
 
+mod against;
 mod charts;
+mod record;
 mod tables;
 
+pub use against::{Compared, FLOOR_MS, Row, Verdict, against_text, compare, judge, percent, slower};
 pub use charts::charts;
+pub use record::{RECORD_SCHEMA, Record, Recorded, check_record, record_file};
 pub use tables::{csv, text};
 
 use crate::graph::run::FrameTimes;
@@ -59,20 +63,19 @@ pub struct Times {
     pub stages: IndexMap<String, Spread>,
     /// Median of the total in every round, ms: pairs with those of other configurations.
     pub rounds: Vec<f64>,
+    /// Median of every stage in every round, ms.
+    pub stage_rounds: IndexMap<String, Vec<f64>>,
 }
-
-/// What the frames of all rounds say: every pass, and every stage.
-type Summary = (Stats, IndexMap<String, Spread>);
 
 /// What a configuration has gathered so far.
 #[derive(Default)]
 struct Gathered {
     seed: Option<Seed>,
-    times: Vec<FrameTimes>,
-    rounds: Vec<f64>,
+    /// Frames of every round.
+    rounds: Vec<Vec<FrameTimes>>,
     /// Frames before those measured, in the round with the fewest.
     warmup: Option<usize>,
-    result: Option<Result<Summary, String>>,
+    result: Option<Result<Times, String>>,
 }
 
 /// Measures every configuration `rounds` times in turn. `tick` is called after every turn. Textures are made anew for
@@ -100,14 +103,14 @@ pub fn bench(
                 match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], seed) {
                     Ok(Timed { mut session, times, warmup }) => {
                         gathered.warmup = gathered.warmup.map_or(Some(warmup), |least| Some(least.min(warmup)));
-                        gathered.rounds.push(spread(times.iter().map(|t| t.gpu_ms).collect()).median);
-                        gathered.times.extend(times);
+                        gathered.rounds.push(times);
                         if round + 1 == rounds {
                             let warnings = session.failed_checks()?;
-                            let (times, name) = (&gathered.times, &point.experiment.name);
+                            let all = gathered.rounds.concat();
+                            let name = &point.experiment.name;
                             let warmup = gathered.warmup.unwrap_or(warmup);
-                            let stats = stats::collect(&lab.gpu.info, name, &session, times, warmup, warnings);
-                            gathered.result = Some(Ok((stats, stages(&session, times))));
+                            let stats = stats::collect(&lab.gpu.info, name, &session, &all, warmup, warnings);
+                            gathered.result = Some(Ok(times_of(&session, stats, &all, &gathered.rounds)));
                         }
                         // The next configuration's first turn starts from this one's pipelines and scene.
                         last = (round == 0).then(|| session.lend());
@@ -121,7 +124,7 @@ pub fn bench(
     }
     let configurations = points.iter().zip(all).map(|(point, gathered)| {
         let (times, error) = match gathered.result {
-            Some(Ok((stats, stages))) => (Some(Times { stats, stages, rounds: gathered.rounds }), None),
+            Some(Ok(times)) => (Some(times), None),
             Some(Err(error)) => (None, Some(error)),
             None => (None, None),
         };
@@ -137,6 +140,18 @@ pub fn bench(
         names,
         configurations: configurations.collect(),
     })
+}
+
+/// What the frames of all rounds, and of each, say.
+fn times_of(session: &Session, stats: Stats, all: &[FrameTimes], rounds: &[Vec<FrameTimes>]) -> Times {
+    let mut stage_rounds: IndexMap<String, Vec<f64>> = IndexMap::new();
+    for times in rounds {
+        for (stage, spread) in stages(session, times) {
+            stage_rounds.entry(stage).or_default().push(spread.median);
+        }
+    }
+    let total = |times: &Vec<FrameTimes>| spread(times.iter().map(|t| t.gpu_ms).collect()).median;
+    Times { stats, stages: stages(session, all), rounds: rounds.iter().map(total).collect(), stage_rounds }
 }
 
 /// Times of the stages, in the order of the graph.

@@ -2,19 +2,23 @@
 
 use super::DeviceArgs;
 use super::adapt::{check_frames, parse_size};
-use crate::bench::{bench, charts, csv, text};
+use crate::bench::{
+    Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, percent, record_file, slower, text,
+};
 use crate::experiment::Experiment;
 use crate::lab::{Home, Lab, LabError};
 use crate::measure::{Frames, Warm};
-use crate::sweep::{Lister, Sweep, list, write_file};
+use crate::scene::SceneError;
+use crate::stats::DeviceStats;
+use crate::sweep::{Listed, Lister, Sweep, list, write_file};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// Experiment files.
-    #[arg(required = true)]
+    /// Experiment files. With --against only these of the record, all when none is given.
+    #[arg(required_unless_present = "against")]
     experiments: Vec<PathBuf>,
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long)]
@@ -28,15 +32,24 @@ pub struct BenchArgs {
     /// A setting and its values; may be given many times. The first makes the columns of the tables.
     #[arg(long, value_name = "NAME=V1,V2")]
     axis: Vec<String>,
-    /// How often every configuration has its turn.
-    #[arg(long, default_value_t = 5)]
-    rounds: usize,
-    /// Frames of every turn.
-    #[arg(long, default_value_t = 40)]
-    frames: usize,
-    /// Frames before those of every turn; on a GPU more, until it has worked for 100 ms.
-    #[arg(long, default_value_t = 10)]
-    warmup: usize,
+    /// How often every configuration has its turn; 5 or as recorded when absent.
+    #[arg(long)]
+    rounds: Option<usize>,
+    /// Frames of every turn; 40 or as recorded when absent.
+    #[arg(long)]
+    frames: Option<usize>,
+    /// Frames before those of every turn; on a GPU more, until it has worked for 100 ms. 10 or as recorded when absent.
+    #[arg(long)]
+    warmup: Option<usize>,
+    /// Record the times of this device: a .json file, or a folder with one file for each device.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Measure again what was recorded on this device, and compare; exit 1 if a stage became slower.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["scene", "sizes", "set", "axis", "record"])]
+    against: Option<PathBuf>,
+    /// How much slower a stage may be, as a part of the recorded time.
+    #[arg(long, default_value_t = 0.1, requires = "against")]
+    tolerance: f64,
     /// Where bench.json, bench.csv and the charts go; captures/bench/NAME when absent.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -44,11 +57,117 @@ pub struct BenchArgs {
     device: DeviceArgs,
 }
 
-/// Measures and prints tables; an error if a configuration failed.
+/// Rounds and frames when nothing is said.
+const ROUNDS: usize = 5;
+const FRAMES: Frames = Frames { warmup: 10, count: 40 };
+
+/// Measures and prints tables; an error if a configuration failed, or became slower than recorded.
 pub fn run(args: &BenchArgs) -> Result<(), LabError> {
-    check_frames(args.frames, args.warmup, 0.0)?;
-    check_frames(args.rounds, 0, 0.0).map_err(|_| LabError::Request("--rounds must be 1 to 1000000".into()))?;
-    let frames = Frames { warmup: args.warmup, count: args.frames };
+    if !(args.tolerance.is_finite() && args.tolerance >= 0.0) {
+        return Err(LabError::Request("--tolerance must be 0 or more, for example 0.1 for 10 %".into()));
+    }
+    match &args.against {
+        Some(path) => run_against(args, path),
+        None => run_asked(args),
+    }
+}
+
+/// What the command line asks for.
+fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
+    let (rounds, frames) = counts(args, ROUNDS, FRAMES)?;
+    let sweep = sweep_of(args, frames)?;
+    let lab = Lab::open(Home::find()?, args.device.options())?;
+    let record = args.record.as_deref().map(|path| record_file(path, &lab.gpu.info.name));
+    record.as_ref().map(|path| super::writable(path, &["json"])).transpose()?;
+    let mut warm = Warm::default();
+    let (points, _) = list(&mut Lister::new(&lab.home, &super::open_scene), &mut warm, &sweep, frames)?;
+    let result = measured(&lab, &mut warm, sweep.names, &points, rounds, frames)?;
+    say_part!("{}", text(&result));
+    write_files(args, &lab.home, &sweep.name, &result)?;
+    super::validated(&lab)?;
+    let failed = result.configurations.iter().filter(|c| c.error.is_some()).count();
+    if failed > 0 {
+        return Err(LabError::Request(format!("{failed} configurations failed")));
+    }
+    if let Some(path) = record {
+        write_file(&path, Record::of(&result, &points, &lab.home)?.text()?.as_bytes())?;
+        say!("recorded {} configurations in {}", points.len(), super::shown(&path).display());
+    }
+    Ok(())
+}
+
+/// What a record of this device holds.
+fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
+    let lab = Lab::open(Home::find()?, args.device.options())?;
+    let device = DeviceStats::of(&lab.gpu.info);
+    let path = record_file(path, &device.name);
+    if !path.exists() {
+        return Err(LabError::Request(format!(
+            "there is no '{}', so nothing to compare '{}' with: record its times with `conelab bench EXPERIMENT... \
+             --record {}` at a state of the program that is fast enough",
+            path.display(),
+            device.name,
+            path.display()
+        )));
+    }
+    let record = Record::read(&path)?;
+    record.check_device(&device)?;
+    let (rounds, frames) = counts(args, record.rounds, record.frames)?;
+    let chosen = chosen(args, &lab.home, &record)?;
+    let mut warm = Warm::default();
+    let Again { found, skipped, mut broken } = again(&lab.home, &mut warm, chosen, frames);
+    let (recorded, points): (Vec<&Recorded>, Vec<Listed>) = found.into_iter().unzip();
+    let mut names: Vec<String> = Vec::new();
+    for (name, _) in points.iter().flat_map(|p| &p.labels) {
+        if !names.contains(name) {
+            names.push(name.clone());
+        }
+    }
+    let result = measured(&lab, &mut warm, names, &points, rounds, frames)?;
+    let mut compared: Vec<Compared> = Vec::new();
+    for ((recorded, point), now) in recorded.iter().zip(&points).zip(&result.configurations) {
+        match &now.times {
+            Some(times) => compared.push(compare(recorded, times, &point.subject.sha256, args.tolerance)),
+            None => broken.push((recorded.title(), now.error.clone().unwrap_or_default())),
+        }
+    }
+    say_part!("{}", against_text(&record, &result, &compared));
+    for (title, why) in &skipped {
+        say!("\nskipped: {title}\n{why}");
+    }
+    for (title, why) in &broken {
+        say!("\ncannot be measured again: {title}\n{why}");
+    }
+    if compared.is_empty() {
+        return Err(LabError::Request(format!("nothing of '{}' could be measured again (see above)", path.display())));
+    }
+    let stem = path.file_stem().map_or("against".into(), |s| s.to_string_lossy());
+    write_files(args, &lab.home, &stem, &result)?;
+    super::validated(&lab)?;
+    let most = percent(args.tolerance);
+    let mut wrong: Vec<String> = Vec::new();
+    if !broken.is_empty() {
+        wrong.push(format!("{} configurations cannot be measured again: record them anew", broken.len()));
+    }
+    wrong.extend(slower(&compared).map(|list| format!("more than {most} slower than recorded: {list}")));
+    if !wrong.is_empty() {
+        return Err(LabError::Request(wrong.join("\n")));
+    }
+    say!("no stage is more than {most} slower");
+    Ok(())
+}
+
+/// Rounds and frames: those of the command line, else these.
+fn counts(args: &BenchArgs, rounds: usize, frames: Frames) -> Result<(usize, Frames), LabError> {
+    let rounds = args.rounds.unwrap_or(rounds);
+    let frames = Frames { warmup: args.warmup.unwrap_or(frames.warmup), count: args.frames.unwrap_or(frames.count) };
+    check_frames(frames.count, frames.warmup, 0.0)?;
+    check_frames(rounds, 0, 0.0).map_err(|_| LabError::Request("--rounds must be 1 to 1000000".into()))?;
+    Ok((rounds, frames))
+}
+
+/// Every experiment with every combination of what the command line varies.
+fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     let mut experiments = Vec::new();
     for path in &args.experiments {
         let mut experiment = Experiment::read(path).map_err(LabError::Input)?;
@@ -66,31 +185,84 @@ pub fn run(args: &BenchArgs) -> Result<(), LabError> {
         let (name, values) = text.split_once('=').ok_or_else(wrong)?;
         axes.push((name.trim().to_string(), split(values)));
     }
-    let sweep = Sweep::of(experiments, &axes, frames)?;
-    let home = Home::find()?;
-    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/bench").join(&sweep.name));
-    let lab = Lab::open(home.clone(), args.device.options())?;
-    let mut warm = Warm::default();
-    let (points, _) = list(&mut Lister::new(&home, &super::open_scene), &mut warm, &sweep, frames)?;
-    let bar = indicatif::ProgressBar::new((points.len() * args.rounds) as u64).with_style(
+    Sweep::of(experiments, &axes, frames)
+}
+
+/// The configurations of a record whose experiments the command line names; all if it names none.
+fn chosen<'r>(args: &BenchArgs, home: &Home, record: &'r Record) -> Result<Vec<&'r Recorded>, LabError> {
+    let same = |path: &Path, recorded: &Recorded| {
+        let real = path.canonicalize();
+        real.is_ok_and(|real| recorded.file(home).canonicalize().is_ok_and(|file| file == real))
+    };
+    for path in &args.experiments {
+        if !record.configurations.iter().any(|c| same(path, c)) {
+            let mut files: Vec<&str> = record.configurations.iter().map(|c| c.experiment.as_str()).collect();
+            files.dedup();
+            let message = format!("the record has no times of '{}'; it has {}", path.display(), files.join(", "));
+            return Err(LabError::Request(message));
+        }
+    }
+    let named = |c: &&Recorded| args.experiments.is_empty() || args.experiments.iter().any(|path| same(path, c));
+    Ok(record.configurations.iter().filter(named).collect())
+}
+
+/// What can be measured of a record, and what cannot: title and reason.
+#[derive(Default)]
+struct Again<'r> {
+    found: Vec<(&'r Recorded, Listed)>,
+    /// Their scene's files are not on this machine.
+    skipped: Vec<(String, String)>,
+    /// They no longer fit the program.
+    broken: Vec<(String, String)>,
+}
+
+fn again<'r>(home: &Home, warm: &mut Warm, chosen: Vec<&'r Recorded>, frames: Frames) -> Again<'r> {
+    let mut lister = Lister::new(home, &super::open_scene);
+    let mut out = Again::default();
+    for recorded in chosen {
+        let point = recorded
+            .experiment(home)
+            .map_err(LabError::Input)
+            .and_then(|experiment| lister.point(warm, experiment, recorded.labels(), frames));
+        match point {
+            Ok(point) => out.found.push((recorded, point)),
+            Err(LabError::Scene(why @ (SceneError::NoModel { .. } | SceneError::Read { .. }))) => {
+                out.skipped.push((recorded.title(), why.to_string()));
+            }
+            Err(why) => out.broken.push((recorded.title(), why.to_string())),
+        }
+    }
+    out
+}
+
+fn measured(
+    lab: &Lab,
+    warm: &mut Warm,
+    names: Vec<String>,
+    points: &[Listed],
+    rounds: usize,
+    frames: Frames,
+) -> Result<Bench, LabError> {
+    let bar = indicatif::ProgressBar::new((points.len() * rounds) as u64).with_style(
         indicatif::ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left")
             .unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()),
     );
-    let result = bench(&lab, &mut warm, sweep.names.clone(), &points, args.rounds, frames, &|| bar.inc(1))?;
+    let result = bench(lab, warm, names, points, rounds, frames, &|| bar.inc(1));
     bar.finish_and_clear();
-    say_part!("{}", text(&result));
-    let json = serde_json::to_vec_pretty(&result).map_err(|e| LabError::Request(e.to_string()))?;
-    let mut files = vec![("bench.json".to_string(), json), ("bench.csv".to_string(), csv(&result)?.into_bytes())];
-    files.extend(charts(&result)?.into_iter().map(|(name, svg)| (format!("{name}.svg"), svg.into_bytes())));
+    result
+}
+
+/// Writes numbers and charts.
+fn write_files(args: &BenchArgs, home: &Home, name: &str, result: &Bench) -> Result<(), LabError> {
+    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/bench").join(name));
+    let json = serde_json::to_vec_pretty(result).map_err(|e| LabError::Request(e.to_string()))?;
+    let mut files = vec![("bench.json".to_string(), json), ("bench.csv".to_string(), csv(result)?.into_bytes())];
+    files.extend(charts(result)?.into_iter().map(|(name, svg)| (format!("{name}.svg"), svg.into_bytes())));
     for (name, bytes) in &files {
         write_file(&folder.join(name), bytes)?;
     }
     say!("wrote {} files to {}", files.len(), super::shown(&folder).display());
-    super::validated(&lab)?;
-    match result.configurations.iter().filter(|c| c.error.is_some()).count() {
-        0 => Ok(()),
-        n => Err(LabError::Request(format!("{n} configurations failed"))),
-    }
+    Ok(())
 }
 
 /// A picture's size by its usual name, or written out.

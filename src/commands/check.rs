@@ -1,5 +1,6 @@
 //! `conelab check`.
 
+use crate::bench::check_record;
 use crate::experiment::Experiment;
 use crate::graph::file::GraphFile;
 use crate::graph::source::{Severity, Sources};
@@ -31,11 +32,16 @@ pub enum FileKind {
     Sweep,
     /// A suite of stability.
     Stability,
+    /// Recorded times, JSON.
+    Times,
 }
 
 /// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights,
-/// camera paths hold keys, sweeps name experiments, suites of stability name methods.
+/// camera paths hold keys, sweeps name experiments, suites of stability name methods. Recorded times end in `.json`.
 pub fn kind(path: &str) -> FileKind {
+    if path.ends_with(".json") {
+        return FileKind::Times;
+    }
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let has = |field: &str| {
         text.lines().any(|l| l.trim_start().trim_start_matches('(').trim_start().starts_with(&format!("{field}:")))
@@ -55,10 +61,10 @@ pub fn kind(path: &str) -> FileKind {
     }
 }
 
-fn ron_files(folder: &Path) -> Vec<PathBuf> {
+fn files_of(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let mut list: Vec<PathBuf> = std::fs::read_dir(folder)
         .map(|entries| {
-            entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "ron")).collect()
+            entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == ending)).collect()
         })
         .unwrap_or_default();
     list.sort();
@@ -67,7 +73,7 @@ fn ron_files(folder: &Path) -> Vec<PathBuf> {
 
 /// The program's own files. Graphs that others include are checked there: alone they lack what they build on.
 fn own_files(home: &Home) -> Vec<PathBuf> {
-    let graphs = ron_files(&home.root.join("passes"));
+    let graphs = files_of(&home.root.join("passes"), "ron");
     let mut included: Vec<PathBuf> = Vec::new();
     for path in &graphs {
         let mut sources = Sources::default();
@@ -80,8 +86,9 @@ fn own_files(home: &Home) -> Vec<PathBuf> {
     files.extend(
         ["configs", "configs/scenes", "configs/paths", "configs/sweeps", "configs/stability"]
             .iter()
-            .flat_map(|f| ron_files(&home.root.join(f))),
+            .flat_map(|f| files_of(&home.root.join(f), "ron")),
     );
+    files.extend(files_of(&home.root.join("configs/times"), "json"));
     files
 }
 
@@ -102,10 +109,19 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
             FileKind::Sweep => crate::sweep::check(&home, file).err().unwrap_or_default(),
             FileKind::Stability => crate::stability::check(&home, file).err().unwrap_or_default(),
             FileKind::Experiment => check_experiment(&home, file),
+            FileKind::Times => match check_record(&home, file) {
+                Err(LabError::Input(errors)) => errors,
+                Err(e) => {
+                    wrong += 1;
+                    say!("{e}");
+                    Vec::new()
+                }
+                Ok(()) => Vec::new(),
+            },
             FileKind::Scene => {
                 match crate::scene::Scene::open(&name, &|_, _| ControlFlow::Continue(())) {
                     // Models are no part of the program; asked for by name, they must be there.
-                    Err(SceneError::SceneFile { message, .. }) if all && message.starts_with("model file") => {
+                    Err(SceneError::NoModel { message, .. }) if all => {
                         say!("{name}: not checked: {message}");
                     }
                     Err(e) => {

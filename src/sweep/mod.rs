@@ -14,8 +14,8 @@ mod table;
 
 pub use list::{Listed, Lister, check, list};
 pub use points::{Labels, MAX_POINTS, Sweep};
-pub(crate) use record::write_file;
 pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
+pub(crate) use record::{read_json, write_file};
 pub use run::{Options, Progress, Shard, Tally, run};
 pub use settings::Setting;
 pub use table::{csv, numbers, parts_of};

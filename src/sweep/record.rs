@@ -217,7 +217,8 @@ pub fn collect(folders: &[PathBuf]) -> Result<Collected, LabError> {
     Ok(out)
 }
 
-fn read_json<T: DeserializeOwned>(path: &Path, most: u64) -> Result<T, String> {
+/// Reads a JSON file of at most so many bytes; the error is what is wrong with it.
+pub(crate) fn read_json<T: DeserializeOwned>(path: &Path, most: u64) -> Result<T, String> {
     let size = std::fs::metadata(path).map_err(|e| format!("cannot read it: {e}"))?.len();
     if size > most {
         return Err(format!("{size} bytes are more than the {most} allowed"));

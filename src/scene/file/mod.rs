@@ -55,7 +55,7 @@ fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progr
             "model file '{file}' is in none of: {}. Correct the path, or set CONELAB_SCENES to the folder that holds it",
             tried.join(", ")
         );
-        return Err(SceneError::SceneFile { path: scene_file.into(), line, column, message });
+        return Err(SceneError::NoModel { path: scene_file.into(), line, column, message });
     };
     let mut model = open::load_model(found, progress)?;
     model.sky = defaults::SKY;
