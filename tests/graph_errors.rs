@@ -420,6 +420,71 @@ fn expressions() {
     "#);
 }
 
+#[test]
+fn choices_in_expressions() {
+    let when = |text: &str| {
+        let other = "help: \"How fragments are found.\"),\n        Choice(name: \"order\", options: [\"rows\", \"slices\"], help: \"Which first.\")";
+        let bench = bench().edit("passes/graph.ron", "help: \"How fragments are found.\")", other);
+        bench.edit("passes/graph.ron", "when: \"method == fast\"", &format!("when: \"{text}\"")).findings()
+    };
+    assert_eq!(when("method == fast && order != slices"), "");
+    assert_eq!(when("exact != method && order == select(bright, rows, slices)"), "");
+    // An option of another choice: such a comparison never holds.
+    assert_snapshot!(when("method == slices"), @r#"
+    passes/graph.ron:26:31: error: 'method' has no option 'slices', in 'method == slices'
+        |         (name: "paint", when: "method == slices", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: known: exact, fast; 'slices' is an option of 'order'
+    "#);
+    assert_snapshot!(when("cells > 4 && !(order != select(bright, rows, fast))"), @r#"
+    passes/graph.ron:26:31: error: 'order' has no option 'fast', in 'cells > 4 && !(order != select(bright, rows, fast))'
+        |         (name: "paint", when: "cells > 4 && !(order != select(bright, rows, fast))", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: known: rows, slices; 'fast' is an option of 'method'
+    "#);
+    // Two choices, two options, a number, a truth value.
+    assert_snapshot!(when("method == order"), @r#"
+    passes/graph.ron:26:31: error: 'method' and 'order' are two choices, which never compare, in 'method == order'
+        |         (name: "paint", when: "method == order", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    assert_snapshot!(when("fast == exact"), @r#"
+    passes/graph.ron:26:31: error: 'fast' is an option of 'method', compared with another option, in 'fast == exact'
+        |         (name: "paint", when: "fast == exact", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    assert_snapshot!(when("method == 1"), @r#"
+    passes/graph.ron:26:31: error: 'method' is a choice, no number, in 'method == 1'
+        |         (name: "paint", when: "method == 1", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    assert_snapshot!(when("rows != bright"), @r#"
+    passes/graph.ron:26:31: error: 'rows' is an option of 'order', no number, in 'rows != bright'
+        |         (name: "paint", when: "rows != bright", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: order == rows
+    "#);
+    // Where a number or a truth value belongs.
+    assert_snapshot!(when("method"), @r#"
+    passes/graph.ron:26:31: error: 'method' is a choice, no number, in 'method'
+        |         (name: "paint", when: "method", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    assert_snapshot!(when("bright || max(cells, exact) > 2"), @r#"
+    passes/graph.ron:26:31: error: 'exact' is an option of 'method', no number, in 'bright || max(cells, exact) > 2'
+        |         (name: "paint", when: "bright || max(cells, exact) > 2", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == exact
+    "#);
+    assert_snapshot!(when("select(bright, method, 1) > 0"), @r#"
+    passes/graph.ron:26:31: error: 'method' is a choice, no number, in 'select(bright, method, 1) > 0'
+        |         (name: "paint", when: "select(bright, method, 1) > 0", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    // A choice that could not be read is told, and nothing about who uses it.
+    assert_snapshot!(graph("options: [\"fast\", \"exact\"], help", "options: [\"fast\", \"exact\"], halp"), @r#"
+    passes/graph.ron:5:60: error: unknown field 'halp'
+        |         Choice(name: "method", options: ["fast", "exact"], halp: "How fragments are found."),
+        = help: did you mean 'help'?
+    "#);
+}
+
 /// Named values in the graph, one of which is used.
 #[track_caller]
 fn values(text: &str) -> String {
