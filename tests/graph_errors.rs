@@ -959,7 +959,7 @@ fn what_shaders_bind() {
     assert_snapshot!(
         bench().add("shaders/prepare.comp", &PREPARE.replace("work", "count")).findings(),
         @r"
-        shaders/prepare.comp:2: error: 'count' is a texture, and the shader declares a writeonly buffer (pass 'prepare')
+        shaders/prepare.comp:2: error: 'count' is a texture, and the shader declares a buffer that it writes (pass 'prepare')
             | layout(std430) writeonly buffer Work { uint words[]; } count;
         "
     );
@@ -969,7 +969,7 @@ fn what_shaders_bind() {
             .edit("shaders/fill.comp", "{ imageStore", "{ lights.n = 1; imageStore")
             .findings(),
         @r"
-        shaders/fill.comp:6: error: 'lights' is a readonly buffer of the scene, and the shader declares a buffer (pass 'fill')
+        shaders/fill.comp:6: error: 'lights' is a read-only buffer of the scene, and the shader declares a buffer that it writes (pass 'fill')
             | layout(std430) buffer Lights { uint n; } lights;
         "
     );
@@ -1187,6 +1187,22 @@ fn what_this_device_lacks() {
         |         (name: "reduce", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
     passes/graph.ron:23:16: error: pass 'scatter' needs stores from fragment shaders, which Test GPU does not have
         |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+    "#);
+
+    // A buffer without a qualifier is read as long as nothing stores into it.
+    let reads = |statement: &str| {
+        let buffer = "layout(std430) buffer Work { uint words[]; } work;\nvoid main() { ";
+        let mut bench = bench().edit("shaders/full.vert", "void main() { ", &format!("{buffer}{statement} "));
+        bench.device.features.vertex_stores = false;
+        bench.findings()
+    };
+    assert_eq!(reads("if (work.words[gl_VertexIndex] == 7u) return;"), "");
+    assert_snapshot!(reads("if (atomicMax(work.words[gl_VertexIndex], 1u) == 7u) return;"), @r#"
+    passes/graph.ron:23:16: error: pass 'scatter' needs stores from vertex, tessellation or geometry shaders, which Test GPU does not have
+        |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+    passes/graph.ron:25:16: error: pass 'paint' needs stores from vertex, tessellation or geometry shaders, which Test GPU does not have (it runs because method is fast)
+        |         (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: use --set method=exact
     "#);
 }
 

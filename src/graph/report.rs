@@ -38,7 +38,8 @@ pub fn text(graph: &Graph, plan: &Plan) -> String {
                 (true, true) => "reads and writes",
                 (false, true) if u.overwrite => "replaces",
                 (false, true) => "writes",
-                _ => "reads",
+                (false, false) => "asks for the size of",
+                (true, false) => "reads",
             };
             let mips = if u.mips.1 == 1 {
                 format!("mip {}", u.mips.0)

@@ -1,5 +1,6 @@
 //! GLSL to SPIR-V at run time, with includes, a cache on disk, and reflection by name.
 
+mod access;
 mod compile;
 mod reflect;
 mod strip;

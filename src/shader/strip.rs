@@ -1,5 +1,8 @@
 //! Takes outputs that nobody needs out of a fragment shader, so that the driver drops the work behind them too.
 
+/// Words before the first instruction of a module.
+pub(super) const HEADER: usize = 5;
+
 /// The module with the outputs at these locations made private variables.
 ///
 /// SPIR-V 1.6: sections 2.16 (interfaces list all global variables since 1.4, so the entry point stays as it is) and 3.7
@@ -12,7 +15,6 @@ pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
     const LOCATION: u32 = 30;
     const OUTPUT: u32 = 3;
     const PRIVATE: u32 = 6;
-    const HEADER: usize = 5;
     let outputs: Vec<u32> = instructions(words)
         .filter_map(|i| match i {
             [_, _, id, OUTPUT, ..] if opcode(i) == VARIABLE => Some(*id),
@@ -63,13 +65,14 @@ pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
     out
 }
 
-fn opcode(instruction: &[u32]) -> u32 {
+/// Number of an instruction's operation.
+pub(super) fn opcode(instruction: &[u32]) -> u32 {
     instruction.first().map_or(0, |w| w & 0xffff)
 }
 
 /// The instructions of a module, after its header.
 pub(super) fn instructions(words: &[u32]) -> impl Iterator<Item = &[u32]> {
-    let mut rest = words.get(5..).unwrap_or(&[]);
+    let mut rest = words.get(HEADER..).unwrap_or(&[]);
     std::iter::from_fn(move || {
         let first = *rest.first()?;
         let count = ((first >> 16) as usize).clamp(1, rest.len());
