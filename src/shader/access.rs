@@ -10,7 +10,7 @@ pub struct Access {
     pub read: bool,
     /// Stores, atomics.
     pub write: bool,
-    /// Asks for the size of an image.
+    /// Asks for the size of an image, or hands it on.
     pub size: bool,
 }
 
@@ -19,9 +19,10 @@ const WRITE: Access = Access { read: false, write: true, size: false };
 const BOTH: Access = Access { read: true, write: true, size: false };
 const SIZE: Access = Access { read: false, write: false, size: true };
 
-const LOAD: u32 = 61;
-const VARIABLE: u32 = 59;
-const DECORATE: u32 = 71;
+const FUNCTION_CALL: u32 = 57;
+pub(super) const LOAD: u32 = 61;
+pub(super) const VARIABLE: u32 = 59;
+pub(super) const DECORATE: u32 = 71;
 const MEMBER_DECORATE: u32 = 72;
 const UNIFORM_CONSTANT: u32 = 0;
 const STORAGE_BUFFER: u32 = 12;
@@ -43,7 +44,10 @@ pub(super) fn accesses(words: &[u32]) -> BTreeMap<u32, Access> {
     let mut found: BTreeMap<u32, Access> = variables.values().map(|v| (v.binding, Access::default())).collect();
     for i in instructions(words) {
         for (id, access) in touched(i) {
-            for variable in origins.get(&id).into_iter().flatten().filter_map(|v| variables.get(v)) {
+            let origin = origins.get(&id);
+            // A store that goes to one of several images cannot be taken out for one of them: no mere write.
+            let access = if origin.is_some_and(|o| o.len() > 1) && access == WRITE { BOTH } else { access };
+            for variable in origin.into_iter().flatten().filter_map(|v| variables.get(v)) {
                 // Loading an image gives a handle; it counts where that is used.
                 if (variable.buffer || opcode(i) != LOAD)
                     && let Some(known) = found.get_mut(&variable.binding)
@@ -108,6 +112,13 @@ fn variables(words: &[u32]) -> BTreeMap<u32, Variable> {
     bound.collect()
 }
 
+/// The storage images with these binding numbers.
+pub(super) fn images_at(words: &[u32], bindings: &[u32]) -> BTreeSet<u32> {
+    let images = storage_images(words);
+    let bound = variables(words).into_iter().filter(|(id, v)| images.contains(id) && bindings.contains(&v.binding));
+    bound.map(|(id, _)| id).collect()
+}
+
 /// The variables that are storage images: pointers to an OpTypeImage, which samplers combine into another type.
 fn storage_images(words: &[u32]) -> BTreeSet<u32> {
     const TYPE_IMAGE: u32 = 25;
@@ -155,7 +166,6 @@ fn parameters(words: &[u32]) -> BTreeMap<u32, Vec<u32>> {
 
 /// Follows pointers and images through one reading of the module; whether anything was learnt.
 fn follow(words: &[u32], parameters: &BTreeMap<u32, Vec<u32>>, origins: &mut Origins) -> bool {
-    const FUNCTION_CALL: u32 = 57;
     let mut learnt = false;
     let mut join = |to: u32, from: &[u32]| {
         for id in from {
@@ -200,6 +210,8 @@ fn touched(i: &[u32]) -> Vec<(u32, Access)> {
         (99, [_, image, ..]) => vec![(*image, WRITE)],
         // OpImageQuerySizeLod, OpImageQuerySize, other queries.
         (103..=107, [_, _, _, image, ..]) => vec![(*image, SIZE)],
+        // A function that was not inlined needs its argument, whatever it does to it.
+        (FUNCTION_CALL, [_, _, _, _, arguments @ ..]) => arguments.iter().map(|id| (*id, SIZE)).collect(),
         // Atomics that change a value and give the old one: integers, flags, float minimum, maximum and sum.
         (229..=242 | 318 | 5614 | 5615 | 6035, [_, _, _, pointer, ..]) => vec![(*pointer, BOTH)],
         // OpAtomicFlagClear.

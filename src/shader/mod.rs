@@ -7,4 +7,4 @@ mod strip;
 
 pub use compile::{Compiled, ShaderCompiler, Source};
 pub use reflect::{Binding, Interface, Resource, Shape};
-pub use strip::strip_outputs;
+pub use strip::{strip_images, strip_outputs};
