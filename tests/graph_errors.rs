@@ -420,6 +420,71 @@ fn expressions() {
     "#);
 }
 
+#[test]
+fn choices_in_expressions() {
+    let when = |text: &str| {
+        let other = "help: \"How fragments are found.\"),\n        Choice(name: \"order\", options: [\"rows\", \"slices\"], help: \"Which first.\")";
+        let bench = bench().edit("passes/graph.ron", "help: \"How fragments are found.\")", other);
+        bench.edit("passes/graph.ron", "when: \"method == fast\"", &format!("when: \"{text}\"")).findings()
+    };
+    assert_eq!(when("method == fast && order != slices"), "");
+    assert_eq!(when("exact != method && order == select(bright, rows, slices)"), "");
+    // An option of another choice: such a comparison never holds.
+    assert_snapshot!(when("method == slices"), @r#"
+    passes/graph.ron:26:31: error: 'method' has no option 'slices', in 'method == slices'
+        |         (name: "paint", when: "method == slices", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: known: exact, fast; 'slices' is an option of 'order'
+    "#);
+    assert_snapshot!(when("cells > 4 && !(order != select(bright, rows, fast))"), @r#"
+    passes/graph.ron:26:31: error: 'order' has no option 'fast', in 'cells > 4 && !(order != select(bright, rows, fast))'
+        |         (name: "paint", when: "cells > 4 && !(order != select(bright, rows, fast))", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: known: rows, slices; 'fast' is an option of 'method'
+    "#);
+    // Two choices, two options, a number, a truth value.
+    assert_snapshot!(when("method == order"), @r#"
+    passes/graph.ron:26:31: error: 'method' and 'order' are two choices, which never compare, in 'method == order'
+        |         (name: "paint", when: "method == order", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    assert_snapshot!(when("fast == exact"), @r#"
+    passes/graph.ron:26:31: error: 'fast' is an option of 'method', compared with another option, in 'fast == exact'
+        |         (name: "paint", when: "fast == exact", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    assert_snapshot!(when("method == 1"), @r#"
+    passes/graph.ron:26:31: error: 'method' is a choice, no number, in 'method == 1'
+        |         (name: "paint", when: "method == 1", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    assert_snapshot!(when("rows != bright"), @r#"
+    passes/graph.ron:26:31: error: 'rows' is an option of 'order', no number, in 'rows != bright'
+        |         (name: "paint", when: "rows != bright", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: order == rows
+    "#);
+    // Where a number or a truth value belongs.
+    assert_snapshot!(when("method"), @r#"
+    passes/graph.ron:26:31: error: 'method' is a choice, no number, in 'method'
+        |         (name: "paint", when: "method", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    assert_snapshot!(when("bright || max(cells, exact) > 2"), @r#"
+    passes/graph.ron:26:31: error: 'exact' is an option of 'method', no number, in 'bright || max(cells, exact) > 2'
+        |         (name: "paint", when: "bright || max(cells, exact) > 2", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == exact
+    "#);
+    assert_snapshot!(when("select(bright, method, 1) > 0"), @r#"
+    passes/graph.ron:26:31: error: 'method' is a choice, no number, in 'select(bright, method, 1) > 0'
+        |         (name: "paint", when: "select(bright, method, 1) > 0", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: compare a choice with its options: method == fast
+    "#);
+    // A choice that could not be read is told, and nothing about who uses it.
+    assert_snapshot!(graph("options: [\"fast\", \"exact\"], help", "options: [\"fast\", \"exact\"], halp"), @r#"
+    passes/graph.ron:5:60: error: unknown field 'halp'
+        |         Choice(name: "method", options: ["fast", "exact"], halp: "How fragments are found."),
+        = help: did you mean 'help'?
+    "#);
+}
+
 /// Named values in the graph, one of which is used.
 #[track_caller]
 fn values(text: &str) -> String {
@@ -894,7 +959,7 @@ fn what_shaders_bind() {
     assert_snapshot!(
         bench().add("shaders/prepare.comp", &PREPARE.replace("work", "count")).findings(),
         @r"
-        shaders/prepare.comp:2: error: 'count' is a texture, and the shader declares a writeonly buffer (pass 'prepare')
+        shaders/prepare.comp:2: error: 'count' is a texture, and the shader declares a buffer that it writes (pass 'prepare')
             | layout(std430) writeonly buffer Work { uint words[]; } count;
         "
     );
@@ -904,7 +969,7 @@ fn what_shaders_bind() {
             .edit("shaders/fill.comp", "{ imageStore", "{ lights.n = 1; imageStore")
             .findings(),
         @r"
-        shaders/fill.comp:6: error: 'lights' is a readonly buffer of the scene, and the shader declares a buffer (pass 'fill')
+        shaders/fill.comp:6: error: 'lights' is a read-only buffer of the scene, and the shader declares a buffer that it writes (pass 'fill')
             | layout(std430) buffer Lights { uint n; } lights;
         "
     );
@@ -1122,6 +1187,22 @@ fn what_this_device_lacks() {
         |         (name: "reduce", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
     passes/graph.ron:23:16: error: pass 'scatter' needs stores from fragment shaders, which Test GPU does not have
         |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+    "#);
+
+    // A buffer without a qualifier is read as long as nothing stores into it.
+    let reads = |statement: &str| {
+        let buffer = "layout(std430) buffer Work { uint words[]; } work;\nvoid main() { ";
+        let mut bench = bench().edit("shaders/full.vert", "void main() { ", &format!("{buffer}{statement} "));
+        bench.device.features.vertex_stores = false;
+        bench.findings()
+    };
+    assert_eq!(reads("if (work.words[gl_VertexIndex] == 7u) return;"), "");
+    assert_snapshot!(reads("if (atomicMax(work.words[gl_VertexIndex], 1u) == 7u) return;"), @r#"
+    passes/graph.ron:23:16: error: pass 'scatter' needs stores from vertex, tessellation or geometry shaders, which Test GPU does not have
+        |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+    passes/graph.ron:25:16: error: pass 'paint' needs stores from vertex, tessellation or geometry shaders, which Test GPU does not have (it runs because method is fast)
+        |         (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+        = help: use --set method=exact
     "#);
 }
 

@@ -402,6 +402,96 @@ fn what_nobody_needs_is_neither_run_nor_made() {
 }
 
 #[test]
+fn stores_that_nobody_needs_are_taken_out_of_compute_shaders() {
+    // Three images that are only written, one that keeps what it held, and one whose size decides what is done.
+    let bench = Bench::new(
+        r#"(
+            textures: {
+                "first": (size: (16, 8), format: "rgba32f"),
+                "second": (size: (16, 8), format: "rgba32f"),
+                "sized": (size: (16, 8), format: "rgba32f"),
+                "sum": (size: (16, 8), format: "r32f", history: true),
+                "left": (size: (16, 8), format: "rgba32f"),
+            },
+            buffers: { "count": (size: 4) },
+            passes: [
+                (name: "forget", clear: "count"),
+                (name: "ground", clear: "left", value: (7, 7, 7, 7)),
+                (name: "many", shaders: ["many.comp"], dispatch: Cover("first"), bind: { "before": (of: "sum", history: true) }),
+                (name: "again", shaders: ["again.comp"], dispatch: Cover("second")),
+            ],
+            outputs: ["first", "second", "sized", "sum", "left"],
+        )"#,
+        &[
+            (
+                "many.comp",
+                "layout(local_size_x = 8, local_size_y = 8) in;
+                uniform writeonly image2D first;
+                uniform writeonly image2D second;
+                layout(rgba32f) uniform image2D sized;
+                layout(r32f) uniform image2D sum;
+                layout(rgba32f) uniform image2D left;
+                uniform sampler2D before;
+                layout(std430) buffer Count { uint n; } count;
+                void main() {
+                    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+                    if (any(greaterThanEqual(p, imageSize(sized)))) return;
+                    atomicAdd(count.n, 1u);
+                    imageStore(first, p, vec4(1.0, p, 0.5));
+                    imageStore(second, p, vec4(2.0, p, 0.5));
+                    for (int i = 0; i < 2; i++) imageStore(sized, p, vec4(3.0 + i, p, 0.5));
+                    imageStore(sum, p, texelFetch(before, p, 0) + 1.0);
+                    if (p.x < 8) imageStore(left, p, vec4(5.0));
+                }",
+            ),
+            (
+                "again.comp",
+                "layout(local_size_x = 8, local_size_y = 8) in;
+                uniform sampler2D first;
+                layout(rgba32f) uniform image2D second;
+                void main() {
+                    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+                    imageStore(second, p, imageLoad(second, p) + texelFetch(first, p, 0));
+                }",
+            ),
+        ],
+    );
+    let lab = bench.lab();
+    let made = |session: &Session| -> Vec<String> {
+        session.program.memory(&session.graph).into_iter().map(|m| m.0).collect()
+    };
+    // The image that is asked for its size is there and stays as it was; the sum of the frame before is read.
+    let mut session = bench.run(&lab, &["count"], 1);
+    assert_eq!(made(&session), ["sized", "sum", "count"]);
+    assert_eq!(words(&mut session, "count"), [16 * 8]);
+    assert_eq!(reds(&mut session, "sized", 0), [0.0; 128]);
+    let mut session = bench.run(&lab, &["first"], 1);
+    assert_eq!(made(&session), ["first", "sized", "sum", "count"]);
+    assert_eq!(floats(&mut session, "first", 0)[17], [1.0, 1.0, 1.0, 0.5]);
+    // A later pass needs both.
+    let mut session = bench.run(&lab, &["second"], 1);
+    assert_eq!(made(&session), ["first", "second", "sized", "sum", "count"]);
+    assert_eq!(floats(&mut session, "second", 0)[17], [3.0, 2.0, 2.0, 1.0]);
+    let mut session = bench.run(&lab, &["sized"], 1);
+    assert_eq!(made(&session), ["sized", "sum", "count"]);
+    assert_eq!(reds(&mut session, "sized", 0), [4.0; 128]);
+    // What this frame stores is what the next one reads.
+    let mut session = bench.run(&lab, &["sum"], 5);
+    assert_eq!(made(&session), ["sized", "sum", "count"]);
+    assert_eq!(reds(&mut session, "sum", 0), [5.0; 128]);
+    // A part is stored; the rest is what was there.
+    let mut session = bench.run(&lab, &["left"], 2);
+    assert_eq!(made(&session), ["sized", "sum", "left", "count"]);
+    let expected: Vec<f32> = (0..128).map(|i| if i % 16 < 8 { 5.0 } else { 7.0 }).collect();
+    assert_eq!(reds(&mut session, "left", 0), expected);
+    // All together are the same.
+    let mut session = bench.run(&lab, &["first", "second", "sized", "sum", "left"], 5);
+    assert_eq!(reds(&mut session, "sum", 0), [5.0; 128]);
+    assert_eq!(reds(&mut session, "left", 0), expected);
+    assert_eq!(floats(&mut session, "second", 0)[17], [3.0, 2.0, 2.0, 1.0]);
+}
+
+#[test]
 fn pixels_of_a_triangle_by_samples() {
     // A triangle drawn without attachments: with several samples a fragment runs where any of them is inside.
     let bench = Bench::new(

@@ -66,6 +66,26 @@ fn the_furnace_keeps_its_energy() {
 }
 
 #[test]
+fn a_picture_stores_one_image_and_each_is_the_same_alone() {
+    let lab = lab(root());
+    let all = ["radiance", "direct", "diffuseIndirect", "specularIndirect", "occlusion", "surfaceNormal"];
+    let e = experiment("cornell", (64, 48), &[("voxel_dim", "32"), ("shade_stage", "compute"), QUICK]);
+    let mut together = frames(&lab, &e, &all, 1);
+    let made = |session: &Session| -> Vec<&str> {
+        let memory: Vec<String> = session.program.memory(&session.graph).into_iter().map(|m| m.0).collect();
+        all.into_iter().filter(|name| memory.iter().any(|m| m == name)).collect()
+    };
+    assert_eq!(made(&together), all);
+    assert_eq!(made(&frames(&lab, &e, &["display"], 1)), ["radiance"]);
+    for name in all {
+        let mut alone = frames(&lab, &e, &[name], 1);
+        assert_eq!(made(&alone), [name]);
+        let bytes = |session: &mut Session| session.texels(name, 0, 0).unwrap().bytes;
+        assert_eq!(bytes(&mut alone), bytes(&mut together), "{name}");
+    }
+}
+
+#[test]
 fn a_white_sphere_vanishes_under_a_white_sky() {
     let lab = lab(root());
     let mut wrong = Vec::new();

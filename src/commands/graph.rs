@@ -85,6 +85,6 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     let device = any_device();
     let input = PlanInput { params: &params, env, wanted, device: &device };
     let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
-    say_part!("{}", if args.dot { report::dot(&graph, &linked, &plan) } else { report::text(&graph, &plan) });
+    say_part!("{}", if args.dot { report::dot(&graph, &linked, &plan) } else { report::text(&graph, &linked, &plan) });
     Ok(())
 }

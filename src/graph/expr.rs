@@ -122,6 +122,11 @@ impl Expr {
         self.compiled.as_ref().err().map(String::as_str)
     }
 
+    /// What it was compiled to; nothing where it is no expression.
+    pub(super) fn statements(&self) -> &[rhai::Stmt] {
+        self.compiled.as_ref().map_or(&[], |ast| ast.statements())
+    }
+
     /// The variables it reads.
     pub fn variables(&self) -> &[String] {
         &self.variables

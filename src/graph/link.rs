@@ -302,7 +302,7 @@ impl Linker<'_> {
                 if !fits {
                     let expected = match EXTERNALS[i].kind {
                         ExternalKind::Uniform => "a uniform block",
-                        ExternalKind::Storage => "a readonly buffer",
+                        ExternalKind::Storage => "a read-only buffer",
                         ExternalKind::TextureArray => "a sampler2DArray",
                     };
                     return fail(
@@ -358,8 +358,7 @@ pub(super) fn has_word(text: &str, name: &str) -> bool {
 pub fn describe(resource: &Resource) -> String {
     match resource {
         Resource::Uniform => "a uniform block".into(),
-        Resource::Buffer { read: true, write: false } => "a readonly buffer".into(),
-        Resource::Buffer { read: false, write: true } => "a writeonly buffer".into(),
+        Resource::Buffer { write: true, .. } => "a buffer that it writes".into(),
         Resource::Buffer { .. } => "a buffer".into(),
         Resource::Sampled { shape, compare, integer } => format!(
             "a {}sampler{}{}",

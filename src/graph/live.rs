@@ -1,8 +1,10 @@
-//! Leaves out what nobody needs: passes, attachments, textures.
+//! Leaves out what nobody needs: passes, attachments, stores to images, textures.
 
+use super::link::Linked;
 use super::load::Graph;
-use super::plan::{Plan, Step};
-use super::usage::{Res, Use};
+use super::plan::{Plan, Step, Work};
+use super::usage::{Res, Use, UseKind};
+use crate::shader::Resource;
 use std::collections::BTreeSet;
 
 /// A subresource: (is a buffer, index, mip). The history of a texture is needed as its content at the end of a frame.
@@ -23,7 +25,7 @@ fn is_history(u: &Use) -> bool {
 /// Keeps the steps that the wanted resources depend on, over frames too, and tells why the others were left out.
 ///
 /// Stores of shaders count as partial, so what they write stays needed before them; clears replace everything.
-pub(super) fn prune(graph: &Graph, plan: &mut Plan, wanted: &[String]) {
+pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &[String]) {
     let mut at_end: BTreeSet<Part> = BTreeSet::new();
     for name in wanted {
         if let Some(t) = graph.textures.iter().position(|x| x.0 == *name) {
@@ -46,14 +48,17 @@ pub(super) fn prune(graph: &Graph, plan: &mut Plan, wanted: &[String]) {
     let mut unneeded: Vec<usize> = Vec::new();
     for (step, keep) in std::mem::take(&mut plan.steps).into_iter().zip(kept) {
         match keep {
-            Some(color) => {
+            Some(needed) => {
                 let mut step = step;
-                for (slot, needed) in step.color.iter_mut().zip(color) {
+                for image in &needed.unneeded_images {
+                    leave_out(&linked[step.pass], &mut step, image);
+                }
+                for (slot, needed) in step.color.iter_mut().zip(needed.color) {
                     if !needed && let Some(target) = slot.take() {
                         let gone = |u: &Use| {
                             u.res == Res::Texture(target.texture, false)
                                 && u.mips.0 == target.mip
-                                && u.kind == super::usage::UseKind::Color
+                                && u.kind == UseKind::Color
                         };
                         step.uses.retain(|u| !gone(u));
                     }
@@ -73,14 +78,52 @@ pub(super) fn prune(graph: &Graph, plan: &mut Plan, wanted: &[String]) {
     plan.dropped.sort_unstable();
 }
 
-/// For each step from the last: `None` when it can go, else which colour attachments are needed; and what must be there
-/// at the start, and as history.
-fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Vec<bool>>>, BTreeSet<Part>, BTreeSet<Part>) {
+/// Leaves the stores to an image out of a step. Of an image that the shader asks for its size, the binding stays.
+fn leave_out(link: &Linked, step: &mut Step, image: &Use) {
+    let mut sized = false;
+    let stored = |b: &super::plan::BindingPlan| {
+        Res::Texture(b.texture, b.history) == image.res
+            && b.mips == image.mips
+            && matches!(link.bound[b.bound].resource, Resource::Storage { .. })
+    };
+    for binding in std::mem::take(&mut step.bindings) {
+        let is_stored = stored(&binding);
+        if is_stored {
+            step.stripped.push(binding.bound);
+        }
+        let asked = matches!(link.bound[binding.bound].resource, Resource::Storage { sized: true, .. });
+        sized |= is_stored && asked;
+        if !is_stored || asked {
+            step.bindings.push(binding);
+        }
+    }
+    if sized {
+        for u in step.uses.iter_mut().filter(|u| *u == image) {
+            (u.write, u.access) = (false, crate::vulkan::vk::AccessFlags2::empty());
+        }
+    } else {
+        step.uses.retain(|u| u != image);
+    }
+}
+
+/// What is needed of a step that stays.
+#[derive(Clone)]
+struct Needed {
+    /// Whether each colour attachment is.
+    color: Vec<bool>,
+    /// Images that a compute shader writes for nobody.
+    unneeded_images: Vec<Use>,
+}
+
+/// For each step from the last: `None` when it can go, else what is needed of it; and what must be there at the start,
+/// and as history.
+fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Needed>>, BTreeSet<Part>, BTreeSet<Part>) {
     let mut live = at_end.clone();
     let mut history = BTreeSet::new();
-    let mut kept: Vec<Option<Vec<bool>>> = vec![None; steps.len()];
+    let mut kept: Vec<Option<Needed>> = vec![None; steps.len()];
     for (i, step) in steps.iter().enumerate().rev() {
-        let needed = step.uses.iter().any(|u| u.write && parts(u).any(|p| live.contains(&p)));
+        let for_nobody = |u: &Use| parts(u).all(|p| !live.contains(&p));
+        let needed = step.uses.iter().any(|u| u.write && !for_nobody(u));
         if !needed {
             continue;
         }
@@ -89,7 +132,10 @@ fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Vec<bool>>>,
             .iter()
             .map(|slot| slot.as_ref().is_some_and(|t| live.contains(&(false, t.texture, t.mip))))
             .collect();
-        let unneeded_color = |u: &Use| u.kind == super::usage::UseKind::Color && parts(u).all(|p| !live.contains(&p));
+        let dispatch = matches!(step.work, Work::Dispatch(_) | Work::DispatchIndirect(..));
+        let only_stored = |u: &Use| dispatch && u.kind == UseKind::Storage && u.write && !u.read;
+        let unneeded_images: Vec<Use> = step.uses.iter().filter(|u| only_stored(u) && for_nobody(u)).cloned().collect();
+        let unneeded_color = |u: &Use| u.kind == UseKind::Color && for_nobody(u);
         let uses: Vec<&Use> = step.uses.iter().filter(|u| !unneeded_color(u)).collect();
         for u in uses.iter().filter(|u| u.overwrite) {
             for part in parts(u) {
@@ -100,7 +146,7 @@ fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Vec<bool>>>,
             let target = if is_history(u) { &mut history } else { &mut live };
             target.extend(parts(u));
         }
-        kept[i] = Some(color);
+        kept[i] = Some(Needed { color, unneeded_images });
     }
     (kept, live, history)
 }

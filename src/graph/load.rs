@@ -518,6 +518,12 @@ impl Check<'_> {
             let found = self.graph.sources.error(ex.at, format!("unknown variable '{name}' in '{}'", ex.value.text));
             self.errors.push(found.nearest(&name, self.variables.iter().map(String::as_str)));
         }
+        // A choice that could not be read may have had the option.
+        for (message, help) in super::choices::misuses(&ex.value, &self.graph.params) {
+            if self.whole && !ex.value.variables().iter().any(|v| self.broken.contains(v)) {
+                self.errors.push(self.graph.sources.error(ex.at, message).help(help));
+            }
+        }
     }
 
     fn exprs<'a>(&mut self, list: impl IntoIterator<Item = &'a Ex>) {

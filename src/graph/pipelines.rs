@@ -1,11 +1,11 @@
 //! What the graph's words mean to Vulkan: pipelines with their fixed state, descriptors, samplers, clear values.
 
 use super::file::{AddressMode, BlendMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology};
-use super::link::Linked;
+use super::link::{Linked, Target};
 use super::load::Graph;
 use super::param::Params;
 use super::plan::{Plan, Step};
-use crate::shader::{Resource, strip_outputs};
+use crate::shader::{Resource, strip_images, strip_outputs};
 use crate::vulkan::{
     Attachments, BindingDesc, Blend, DescriptorPool, DrawState, Gpu, Pipeline, PipelineDesc, Result, SamplerDesc,
     Stage, StageDesc, format::Channels, vk,
@@ -52,7 +52,7 @@ pub(super) fn make_pipelines(
     params: &Params,
     kept: &[(PipelineDesc, Arc<Pipeline>)],
 ) -> Result<Made> {
-    let mut descs: Vec<(usize, PipelineDesc)> = Vec::new();
+    let mut descs: Vec<(&Step, PipelineDesc)> = Vec::new();
     let mut keys = Vec::new();
     for step in &plan.steps {
         let link = &linked[step.pass];
@@ -62,9 +62,10 @@ pub(super) fn make_pipelines(
         }
         let pass = &graph.passes[step.pass].value;
         let draw = pass.draw.is_some().then(|| draw_state(pass, step, plan));
-        let known = descs.iter().position(|(p, d)| *p == step.pass && d.draw == draw);
+        let same = |s: &Step| s.pass == step.pass && s.stripped == step.stripped;
+        let known = descs.iter().position(|(s, d)| same(s) && d.draw == draw);
         keys.push(Some(known.unwrap_or_else(|| {
-            descs.push((step.pass, pipeline_desc(pass, link, params, draw)));
+            descs.push((step, pipeline_desc(pass, link, step, params, draw)));
             descs.len() - 1
         })));
     }
@@ -82,10 +83,17 @@ pub(super) fn make_pipelines(
 fn pipeline_desc(
     pass: &PassDecl,
     link: &Linked,
+    step: &Step,
     params: &Params,
     draw: Option<(DrawState, Attachments)>,
 ) -> PipelineDesc {
     let constants = params.constants();
+    let stripped: Vec<u32> = step.stripped.iter().map(|i| link.bound[*i].binding).collect();
+    // A texture without a binding in the step is one that the stripped shader does not know.
+    let bound =
+        link.bound.iter().enumerate().filter(|(i, b)| {
+            !matches!(b.target, Target::Texture(_)) || step.bindings.iter().any(|plan| plan.bound == *i)
+        });
     let stages: Vec<StageDesc> = link
         .stages
         .iter()
@@ -93,6 +101,7 @@ fn pipeline_desc(
             stage: s.stage,
             spirv: match &draw {
                 Some((_, attachments)) if s.stage == Stage::Fragment => needed_outputs(&s.words, attachments),
+                None if !stripped.is_empty() => Arc::new(strip_images(&s.words, &stripped)),
                 _ => s.words.clone(),
             },
             constants: constants.iter().filter(|(id, _)| s.interface.constants.contains(id)).copied().collect(),
@@ -100,10 +109,8 @@ fn pipeline_desc(
         .collect();
     PipelineDesc {
         name: pass.name.value.clone(),
-        bindings: link
-            .bound
-            .iter()
-            .map(|b| BindingDesc { binding: b.binding, kind: descriptor_type(&b.resource), stage: b.stage })
+        bindings: bound
+            .map(|(_, b)| BindingDesc { binding: b.binding, kind: descriptor_type(&b.resource), stage: b.stage })
             .collect(),
         push_bytes: if link.stages.iter().any(|s| s.interface.push) { 4 } else { 0 },
         stages,

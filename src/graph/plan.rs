@@ -127,6 +127,9 @@ pub struct Step {
     pub work: Work,
     /// Textures behind its bindings.
     pub bindings: Vec<BindingPlan>,
+    /// Bindings, by index in the pass's bindings, whose stores nobody needs: they are taken out of the shader. Those that
+    /// are not among `bindings` either are not bound at all.
+    pub stripped: Vec<usize>,
     /// Colour attachments; those nobody needs are `None`.
     pub color: Vec<Option<AttachmentPlan>>,
     /// Depth attachment.
@@ -225,7 +228,7 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     }
     let mut errors = Vec::new();
     let mut plan = Plan { textures: planner.textures, buffers, steps, dropped, max_edge };
-    super::live::prune(graph, &mut plan, &input.wanted);
+    super::live::prune(graph, linked, &mut plan, &input.wanted);
     super::usage::layouts(graph, &mut plan, &mut errors);
     let features = super::needs::check(graph, linked, &plan, input);
     errors.extend(features);
@@ -412,6 +415,7 @@ impl Planner<'_> {
             index,
             work: Work::Vertices(0),
             bindings: Vec::new(),
+            stripped: Vec::new(),
             color: Vec::new(),
             depth: None,
             viewport: [0; 2],

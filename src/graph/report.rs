@@ -22,7 +22,7 @@ fn texture_bytes(plan: &Plan, t: usize) -> u64 {
 }
 
 /// Order, lifetimes, barriers, memory, what was left out and why.
-pub fn text(graph: &Graph, plan: &Plan) -> String {
+pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "graph {}: {} of {} passes run\n", graph.name, ran(plan).len(), graph.passes.len());
     let schedule = schedule(plan);
@@ -38,7 +38,8 @@ pub fn text(graph: &Graph, plan: &Plan) -> String {
                 (true, true) => "reads and writes",
                 (false, true) if u.overwrite => "replaces",
                 (false, true) => "writes",
-                _ => "reads",
+                (false, false) => "asks for the size of",
+                (true, false) => "reads",
             };
             let mips = if u.mips.1 == 1 {
                 format!("mip {}", u.mips.0)
@@ -47,6 +48,9 @@ pub fn text(graph: &Graph, plan: &Plan) -> String {
             };
             let mips = if matches!(u.res, Res::Texture(..)) { mips } else { String::new() };
             let _ = writeln!(out, "         {how} {} {mips}", resource_name(graph, u.res));
+        }
+        for i in &step.stripped {
+            let _ = writeln!(out, "         leaves out its stores to {}", linked[step.pass].bound[*i].name);
         }
     }
     let _ = writeln!(out, "\nresources                        size                 format       MiB  lifetime (steps)");

@@ -277,14 +277,16 @@ impl Program {
         let mut views: Vec<Option<View>> = Vec::new();
         let mut samplers: Vec<Option<SamplerDesc>> = Vec::new();
         for (i, bound) in link.bound.iter().enumerate() {
-            let Target::Texture(t) = bound.target else {
+            // Images whose stores were taken out of the shader have no binding.
+            let binding = step.bindings.iter().find(|b| b.bound == i);
+            let (Target::Texture(t), Some(plan)) = (&bound.target, binding) else {
                 views.push(None);
                 samplers.push(None);
                 continue;
             };
+            let t = *t;
             let decl = bound.bind.map(|b| &pass.bind.0[b].1.value);
             let texture = &graph.textures[t].1.value;
-            let Some(plan) = step.bindings.iter().find(|b| b.bound == i) else { continue };
             let format = plan.format.unwrap_or(self.plan.textures[t].format);
             let desc = ViewDesc {
                 kind: match bound_shape(texture, decl) {

@@ -344,7 +344,8 @@ fn advance(state: &mut State, u: &Use) -> Option<((Stages, Access), Layout)> {
     } else {
         let seen = state.seen.iter().any(|s| s.0.contains(u.stages) && s.1.contains(u.access));
         state.reads |= u.stages;
-        let waits = state.write.0 != Stages::empty() && !seen;
+        // One that is only asked for its size waits for nobody.
+        let waits = u.read && state.write.0 != Stages::empty() && !seen;
         if waits {
             state.seen.push((u.stages, u.access));
         }

@@ -1,5 +1,6 @@
 //! GLSL to SPIR-V through shaderc. Compiled modules are kept on disk by the content of everything that went into them.
 
+use super::access::decorated;
 use super::reflect::{Interface, MAX_BINDINGS, reflect};
 use crate::graph::source::{Diagnostic, Place, nearest};
 use crate::vulkan::Stage;
@@ -108,7 +109,7 @@ impl ShaderCompiler {
         let compiled = Compiled {
             file: source.file.clone(),
             stage: source.stage,
-            words: Arc::new(words),
+            words: Arc::new(decorated(&words)),
             interface,
             texts: Arc::new(texts),
         };
@@ -303,4 +304,73 @@ fn to_words(bytes: &[u8]) -> Option<Vec<u32>> {
     }
     let words: Vec<u32> = bytes.chunks_exact(4).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
     (words.first() == Some(&MAGIC)).then_some(words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::access::{Access, accesses};
+    use super::super::reflect::without_constant_operations;
+    use super::*;
+    use crate::graph::load::{Folders, load};
+    use rayon::prelude::*;
+    use spirq::prelude::*;
+
+    /// The qualifiers of storage buffers and images, by binding number.
+    fn qualifiers(words: &[u32]) -> BTreeMap<u32, AccessType> {
+        let entries =
+            ReflectConfig::new().spv(without_constant_operations(words)).ref_all_rscs(true).reflect().unwrap();
+        let access = |var: &Variable| match var {
+            Variable::Descriptor {
+                desc_bind,
+                desc_ty: DescriptorType::StorageBuffer(access) | DescriptorType::StorageImage(access),
+                ..
+            } => Some((desc_bind.bind(), *access)),
+            _ => None,
+        };
+        entries[0].vars.iter().filter_map(access).collect()
+    }
+
+    #[test]
+    fn instructions_do_what_the_qualifiers_of_every_shader_say() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let folders = Folders { passes: root.join("passes"), shaders: root.join("shaders") };
+        let graph = load(&folders.passes.join("vct.ron"), &folders).unwrap();
+        let params = graph.params.glsl(&graph.values);
+        let mut files: Vec<&String> = graph.passes.iter().flat_map(|p| &p.value.shaders.0).map(|s| &s.value).collect();
+        files.sort();
+        files.dedup();
+        let compiler = ShaderCompiler::new(&folders.shaders, None);
+        let checked: usize = files
+            .par_iter()
+            .map(|file| {
+                let source = Source { file: (*file).clone(), stage: Stage::of_file(file).unwrap() };
+                let words = compiler.run(&source, &compiler.texts(file, &params).unwrap()).unwrap();
+                let found = accesses(&words);
+                let qualifiers = qualifiers(&words);
+                for (binding, qualifier) in &qualifiers {
+                    let Access { read, write, size } = found[binding];
+                    let agrees = match qualifier {
+                        // A buffer may be there for its length alone.
+                        AccessType::ReadOnly => !write,
+                        AccessType::WriteOnly => !read && (write || size),
+                        AccessType::ReadWrite => read || write || size,
+                    };
+                    assert!(agrees, "{file}: binding {binding}: {qualifier:?}, {:?}", found[binding]);
+                }
+                // What was derived says the same of the module as it goes to the device.
+                assert_eq!(accesses(&decorated(&words)), found);
+                for (binding, access) in self::qualifiers(&decorated(&words)) {
+                    let Access { read, write, .. } = found[&binding];
+                    let expected = match (read, write) {
+                        (true, true) => AccessType::ReadWrite,
+                        (false, true) => AccessType::WriteOnly,
+                        _ => AccessType::ReadOnly,
+                    };
+                    assert_eq!(access, expected, "{file}: binding {binding}");
+                }
+                qualifiers.len()
+            })
+            .sum();
+        assert!(checked > 100, "{checked}");
+    }
 }

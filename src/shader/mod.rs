@@ -1,9 +1,10 @@
 //! GLSL to SPIR-V at run time, with includes, a cache on disk, and reflection by name.
 
+mod access;
 mod compile;
 mod reflect;
 mod strip;
 
 pub use compile::{Compiled, Generated, ShaderCompiler, Source, find, module_include};
 pub use reflect::{Binding, Interface, Resource, Shape};
-pub use strip::strip_outputs;
+pub use strip::{strip_images, strip_outputs};

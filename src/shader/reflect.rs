@@ -1,5 +1,6 @@
 //! What a compiled shader binds, by name.
 
+use super::access::{Access, accesses};
 use super::strip::instructions;
 use crate::vulkan::Stage;
 use spirq::prelude::*;
@@ -59,6 +60,8 @@ pub enum Resource {
         read: bool,
         /// Written.
         write: bool,
+        /// Asked for its size.
+        sized: bool,
     },
 }
 
@@ -104,6 +107,7 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
         .ref_all_rscs(true)
         .reflect()
         .map_err(|e| format!("reflection failed: {e}"))?;
+    let accesses = accesses(words);
     let entry = entries.first().ok_or("the shader has no entry point")?;
     let mut interface = Interface {
         bindings: vec![],
@@ -128,7 +132,9 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
                 if interface.bindings.len() >= MAX_BINDINGS {
                     return Err(format!("a shader binds at most {MAX_BINDINGS} resources"));
                 }
-                let resource = resource(desc_ty, ty).ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
+                let access = accesses.get(&desc_bind.bind()).copied().unwrap_or_default();
+                let resource =
+                    resource(desc_ty, ty, access).ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
                 interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource });
             }
             Variable::PushConstant { ty, .. } if ty.nbyte().is_some_and(|n| n > 4) => {
@@ -159,7 +165,7 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
 
 /// The module with every OpSpecConstantOp made a null constant (SPIR-V 1.6, section 3.52.7): the reflector does not know
 /// all of the operations, and no interface depends on their values.
-fn without_constant_operations(words: &[u32]) -> Vec<u32> {
+pub(super) fn without_constant_operations(words: &[u32]) -> Vec<u32> {
     const OP_CONSTANT_NULL: u32 = 46;
     const OP_SPEC_CONSTANT_OP: u32 = 52;
     let mut out = words[..words.len().min(5)].to_vec();
@@ -188,21 +194,11 @@ fn block_name(ty: &Type) -> Option<String> {
     ty.as_struct().and_then(|s| s.name.clone())
 }
 
-fn resource(kind: &DescriptorType, ty: &Type) -> Option<Resource> {
-    let access = |a: &AccessType| {
-        let (read, write) = match a {
-            AccessType::ReadOnly => (true, false),
-            AccessType::WriteOnly => (false, true),
-            AccessType::ReadWrite => (true, true),
-        };
-        (read, write)
-    };
+fn resource(kind: &DescriptorType, ty: &Type, access: Access) -> Option<Resource> {
+    let Access { read, write, size: sized } = access;
     match kind {
         DescriptorType::UniformBuffer() => Some(Resource::Uniform),
-        DescriptorType::StorageBuffer(a) => {
-            let (read, write) = access(a);
-            Some(Resource::Buffer { read, write })
-        }
+        DescriptorType::StorageBuffer(_) => Some(Resource::Buffer { read, write }),
         DescriptorType::CombinedImageSampler() => {
             let image = &ty.as_combined_image_sampler()?.sampled_image_ty;
             Some(Resource::Sampled {
@@ -211,14 +207,14 @@ fn resource(kind: &DescriptorType, ty: &Type) -> Option<Resource> {
                 integer: matches!(image.scalar_ty, ScalarType::Integer { .. }),
             })
         }
-        DescriptorType::StorageImage(a) => {
+        DescriptorType::StorageImage(_) => {
             let image = ty.as_storage_image()?;
-            let (read, write) = access(a);
             Some(Resource::Storage {
                 shape: shape(image.dim, image.is_array)?,
                 format: format(image.fmt)?,
                 read,
                 write,
+                sized,
             })
         }
         _ => None,

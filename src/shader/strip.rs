@@ -1,18 +1,21 @@
-//! Takes outputs that nobody needs out of a fragment shader, so that the driver drops the work behind them too.
+//! Takes outputs that nobody needs out of a shader, so that the driver drops the work behind them too.
+
+use super::access::{DECORATE, LOAD, VARIABLE, accesses, images_at, origins};
+use std::collections::BTreeSet;
+
+/// Words before the first instruction of a module.
+pub(super) const HEADER: usize = 5;
 
 /// The module with the outputs at these locations made private variables.
 ///
 /// SPIR-V 1.6: sections 2.16 (interfaces list all global variables since 1.4, so the entry point stays as it is) and 3.7
 /// (storage classes).
 pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
-    const DECORATE: u32 = 71;
     const TYPE_POINTER: u32 = 32;
-    const VARIABLE: u32 = 59;
     const ACCESS_CHAINS: [u32; 2] = [65, 66];
     const LOCATION: u32 = 30;
     const OUTPUT: u32 = 3;
     const PRIVATE: u32 = 6;
-    const HEADER: usize = 5;
     let outputs: Vec<u32> = instructions(words)
         .filter_map(|i| match i {
             [_, _, id, OUTPUT, ..] if opcode(i) == VARIABLE => Some(*id),
@@ -63,13 +66,53 @@ pub fn strip_outputs(words: &[u32], locations: &[u32]) -> Vec<u32> {
     out
 }
 
-fn opcode(instruction: &[u32]) -> u32 {
+/// The module without its stores to the storage images at these binding numbers, which it never reads, and without those
+/// images; one that it asks for its size stays.
+///
+/// SPIR-V 1.6, sections 2.16 (the entry point lists all global variables) and 3.52.10 (images).
+pub fn strip_images(words: &[u32], bindings: &[u32]) -> Vec<u32> {
+    const NAME: u32 = 5;
+    const ENTRY_POINT: u32 = 15;
+    const COPY_OBJECT: u32 = 83;
+    const IMAGE_WRITE: u32 = 99;
+    let accesses = accesses(words);
+    let unsized_bindings: Vec<u32> =
+        bindings.iter().copied().filter(|b| accesses.get(b).is_some_and(|a| !a.size)).collect();
+    let stored = images_at(words, bindings);
+    let gone = images_at(words, &unsized_bindings);
+    let origins = origins(words, stored.iter().copied());
+    let comes_from = |id: &u32, of: &BTreeSet<u32>| origins.get(id).is_some_and(|o| o.is_subset(of));
+    let mut out = words[..words.len().min(HEADER)].to_vec();
+    for i in instructions(words) {
+        match (opcode(i), i) {
+            (IMAGE_WRITE, [_, image, ..]) if comes_from(image, &stored) => {}
+            // Handles of an image that is only written have no other use.
+            (LOAD | COPY_OBJECT | VARIABLE, [_, _, id, ..]) if comes_from(id, &gone) => {}
+            (NAME | DECORATE, [_, id, ..]) if comes_from(id, &gone) => {}
+            (ENTRY_POINT, [_, model, function, rest @ ..]) => {
+                // The name is a text that ends in a zero byte; the variables follow.
+                let name = rest.iter().position(|w| w.to_le_bytes().contains(&0)).map_or(rest.len(), |n| n + 1);
+                let (name, listed) = rest.split_at(name);
+                let listed: Vec<u32> = listed.iter().copied().filter(|id| !gone.contains(id)).collect();
+                let count = u32::try_from(3 + name.len() + listed.len()).unwrap_or(u32::MAX);
+                out.extend([count << 16 | ENTRY_POINT, *model, *function]);
+                out.extend(name);
+                out.extend(listed);
+            }
+            (_, other) => out.extend(other),
+        }
+    }
+    out
+}
+
+/// Number of an instruction's operation.
+pub(super) fn opcode(instruction: &[u32]) -> u32 {
     instruction.first().map_or(0, |w| w & 0xffff)
 }
 
 /// The instructions of a module, after its header.
 pub(super) fn instructions(words: &[u32]) -> impl Iterator<Item = &[u32]> {
-    let mut rest = words.get(5..).unwrap_or(&[]);
+    let mut rest = words.get(HEADER..).unwrap_or(&[]);
     std::iter::from_fn(move || {
         let first = *rest.first()?;
         let count = ((first >> 16) as usize).clamp(1, rest.len());

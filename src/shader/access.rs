@@ -1,0 +1,221 @@
+//! What a module does with its storage buffers and images: told by its instructions, not by the qualifiers of GLSL.
+
+use super::strip::{HEADER, instructions, opcode};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What a shader does with the content of a resource.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Access {
+    /// Loads, atomics that give the old value.
+    pub read: bool,
+    /// Stores, atomics.
+    pub write: bool,
+    /// Asks for the size of an image, or hands it on.
+    pub size: bool,
+}
+
+const READ: Access = Access { read: true, write: false, size: false };
+const WRITE: Access = Access { read: false, write: true, size: false };
+const BOTH: Access = Access { read: true, write: true, size: false };
+const SIZE: Access = Access { read: false, write: false, size: true };
+
+const FUNCTION_CALL: u32 = 57;
+pub(super) const LOAD: u32 = 61;
+pub(super) const VARIABLE: u32 = 59;
+pub(super) const DECORATE: u32 = 71;
+const MEMBER_DECORATE: u32 = 72;
+const UNIFORM_CONSTANT: u32 = 0;
+const STORAGE_BUFFER: u32 = 12;
+const BINDING: u32 = 33;
+const NON_WRITABLE: u32 = 24;
+const NON_READABLE: u32 = 25;
+
+/// A storage buffer, image or sampler of a module.
+struct Variable {
+    binding: u32,
+    buffer: bool,
+}
+
+/// What a module does with each of its storage buffers and images, by binding number: SPIR-V 1.6, sections 3.52.8 (memory),
+/// 3.52.10 (images) and 3.52.18 (atomics).
+pub(super) fn accesses(words: &[u32]) -> BTreeMap<u32, Access> {
+    let variables = variables(words);
+    let origins = origins(words, variables.keys().copied());
+    let mut found: BTreeMap<u32, Access> = variables.values().map(|v| (v.binding, Access::default())).collect();
+    for i in instructions(words) {
+        for (id, access) in touched(i) {
+            let origin = origins.get(&id);
+            // A store that goes to one of several images cannot be taken out for one of them: no mere write.
+            let access = if origin.is_some_and(|o| o.len() > 1) && access == WRITE { BOTH } else { access };
+            for variable in origin.into_iter().flatten().filter_map(|v| variables.get(v)) {
+                // Loading an image gives a handle; it counts where that is used.
+                if (variable.buffer || opcode(i) != LOAD)
+                    && let Some(known) = found.get_mut(&variable.binding)
+                {
+                    known.read |= access.read;
+                    known.write |= access.write;
+                    known.size |= access.size;
+                }
+            }
+        }
+    }
+    found
+}
+
+/// The module with what it never writes decorated NonWritable, and what it never reads NonReadable: devices without
+/// stores from vertex or fragment stages insist on the first (VUID-RuntimeSpirv-NonWritable), drivers make use of both.
+pub(super) fn decorated(words: &[u32]) -> Vec<u32> {
+    let (accesses, images) = (accesses(words), storage_images(words));
+    let is_decoration = |i: &[u32]| [DECORATE, MEMBER_DECORATE].contains(&opcode(i));
+    let there: BTreeSet<&[u32]> =
+        instructions(words).filter(|i| opcode(i) == DECORATE).filter_map(|i| i.get(1..3)).collect();
+    let mut added = Vec::new();
+    // Samplers are never written and take no such decoration.
+    for (id, variable) in variables(words).into_iter().filter(|(id, v)| v.buffer || images.contains(id)) {
+        let access = accesses.get(&variable.binding).copied().unwrap_or(BOTH);
+        for (decoration, holds) in [(NON_WRITABLE, !access.write), (NON_READABLE, access.write && !access.read)] {
+            if holds && !there.contains([id, decoration].as_slice()) {
+                added.extend([3 << 16 | DECORATE, id, decoration]);
+            }
+        }
+    }
+    let last = instructions(words).filter(|i| is_decoration(i)).count();
+    let mut out = words[..words.len().min(HEADER)].to_vec();
+    let mut seen = 0;
+    for i in instructions(words) {
+        out.extend(i);
+        if is_decoration(i) {
+            seen += 1;
+            if seen == last {
+                out.extend(&added);
+            }
+        }
+    }
+    out
+}
+
+fn variables(words: &[u32]) -> BTreeMap<u32, Variable> {
+    let classes: BTreeMap<u32, bool> = instructions(words)
+        .filter_map(|i| match i {
+            [_, _, id, class @ (UNIFORM_CONSTANT | STORAGE_BUFFER), ..] if opcode(i) == VARIABLE => {
+                Some((*id, *class == STORAGE_BUFFER))
+            }
+            _ => None,
+        })
+        .collect();
+    let bound = instructions(words).filter_map(|i| match i {
+        [_, id, BINDING, binding] if opcode(i) == DECORATE => {
+            classes.get(id).map(|buffer| (*id, Variable { binding: *binding, buffer: *buffer }))
+        }
+        _ => None,
+    });
+    bound.collect()
+}
+
+/// The storage images with these binding numbers.
+pub(super) fn images_at(words: &[u32], bindings: &[u32]) -> BTreeSet<u32> {
+    let images = storage_images(words);
+    let bound = variables(words).into_iter().filter(|(id, v)| images.contains(id) && bindings.contains(&v.binding));
+    bound.map(|(id, _)| id).collect()
+}
+
+/// The variables that are storage images: pointers to an OpTypeImage, which samplers combine into another type.
+fn storage_images(words: &[u32]) -> BTreeSet<u32> {
+    const TYPE_IMAGE: u32 = 25;
+    const TYPE_POINTER: u32 = 32;
+    let mut types = BTreeSet::new();
+    let mut images = BTreeSet::new();
+    for i in instructions(words) {
+        match (opcode(i), i) {
+            (TYPE_IMAGE, [_, id, ..]) => drop(types.insert(*id)),
+            (TYPE_POINTER, [_, id, _, pointee]) if types.contains(pointee) => drop(types.insert(*id)),
+            (VARIABLE, [_, ty, id, ..]) if types.contains(ty) => drop(images.insert(*id)),
+            _ => {}
+        }
+    }
+    images
+}
+
+/// The variables that a pointer or a loaded image may come from.
+pub(super) type Origins = BTreeMap<u32, BTreeSet<u32>>;
+
+/// Where pointers and images come from.
+pub(super) fn origins(words: &[u32], variables: impl Iterator<Item = u32>) -> Origins {
+    let mut origins: Origins = variables.map(|id| (id, BTreeSet::from([id]))).collect();
+    let parameters = parameters(words);
+    // A pointer may be handed to a function that stands earlier in the module.
+    while follow(words, &parameters, &mut origins) {}
+    origins
+}
+
+/// The parameters of each function.
+fn parameters(words: &[u32]) -> BTreeMap<u32, Vec<u32>> {
+    const FUNCTION: u32 = 54;
+    const FUNCTION_PARAMETER: u32 = 55;
+    let mut parameters: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    let mut function = 0;
+    for i in instructions(words) {
+        match (opcode(i), i) {
+            (FUNCTION, [_, _, id, ..]) => function = *id,
+            (FUNCTION_PARAMETER, [_, _, id]) => parameters.entry(function).or_default().push(*id),
+            _ => {}
+        }
+    }
+    parameters
+}
+
+/// Follows pointers and images through one reading of the module; whether anything was learnt.
+fn follow(words: &[u32], parameters: &BTreeMap<u32, Vec<u32>>, origins: &mut Origins) -> bool {
+    let mut learnt = false;
+    let mut join = |to: u32, from: &[u32]| {
+        for id in from {
+            let variables = origins.get(id).cloned().unwrap_or_default();
+            if !variables.is_empty() {
+                let known = origins.entry(to).or_default();
+                let before = known.len();
+                known.extend(variables);
+                learnt |= known.len() > before;
+            }
+        }
+    };
+    for i in instructions(words) {
+        match (opcode(i), i) {
+            // Access chains, copies, texel pointers; a loaded image is as good as its variable.
+            (60 | LOAD | 65..=67 | 70 | 83, [_, _, id, base, ..]) => join(*id, &[*base]),
+            // OpSelect, OpPhi.
+            (169, [_, _, id, _, a, b]) => join(*id, &[*a, *b]),
+            (245, [_, _, id, rest @ ..]) => join(*id, &rest.iter().step_by(2).copied().collect::<Vec<_>>()),
+            (FUNCTION_CALL, [_, _, _, callee, arguments @ ..]) => {
+                for (parameter, argument) in parameters.get(callee).into_iter().flatten().zip(arguments) {
+                    join(*parameter, &[*argument]);
+                }
+            }
+            _ => {}
+        }
+    }
+    learnt
+}
+
+/// What an instruction does, by the pointer or image that it does it to.
+fn touched(i: &[u32]) -> Vec<(u32, Access)> {
+    match (opcode(i), i) {
+        (LOAD, [_, _, _, pointer, ..]) => vec![(*pointer, READ)],
+        // OpStore, OpAtomicStore.
+        (62 | 228, [_, pointer, ..]) => vec![(*pointer, WRITE)],
+        // OpCopyMemory, OpCopyMemorySized.
+        (63 | 64, [_, target, source, ..]) => vec![(*target, WRITE), (*source, READ)],
+        // OpImageRead, OpImageSparseRead, OpAtomicLoad.
+        (98 | 320 | 227, [_, _, _, image, ..]) => vec![(*image, READ)],
+        // OpImageWrite.
+        (99, [_, image, ..]) => vec![(*image, WRITE)],
+        // OpImageQuerySizeLod, OpImageQuerySize, other queries.
+        (103..=107, [_, _, _, image, ..]) => vec![(*image, SIZE)],
+        // A function that was not inlined needs its argument, whatever it does to it.
+        (FUNCTION_CALL, [_, _, _, _, arguments @ ..]) => arguments.iter().map(|id| (*id, SIZE)).collect(),
+        // Atomics that change a value and give the old one: integers, flags, float minimum, maximum and sum.
+        (229..=242 | 318 | 5614 | 5615 | 6035, [_, _, _, pointer, ..]) => vec![(*pointer, BOTH)],
+        // OpAtomicFlagClear.
+        (319, [_, pointer, ..]) => vec![(*pointer, WRITE)],
+        _ => vec![],
+    }
+}
