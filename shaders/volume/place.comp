@@ -59,13 +59,7 @@ void main() {
     VolumeMap g;
     g.curved = 0;
     g.eye = g.seen_from = position;
-    vec3 ahead = followedDirection();
-    vec3 right = normalize(cross(ahead, camera.up));
-    float half_height = tan(0.5 * camera.fov_y);
-    g.axis_x = right * half_height * float(camera.size.x) / float(camera.size.y);
-    g.axis_y = cross(ahead, right) * half_height;
-    g.axis_z = ahead;
-    g.range = vec2(params.warp_near, max(params.warp_far, params.warp_near + 0.1));
+    aimCurved(g);
     g.last = coarsestLevel(false);
 
     // The last cascade is the volume itself.

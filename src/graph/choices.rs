@@ -90,6 +90,13 @@ impl<'a> Walk<'a> {
                     }
                 }
             }
+            ("hash", [a, b]) => {
+                // What a choice is does not matter there, only whether it has changed.
+                for part in [a, b] {
+                    self.type_of(part);
+                }
+                Type::Plain
+            }
             _ => {
                 args.iter().for_each(|arg| self.plain(arg));
                 Type::Plain

@@ -143,12 +143,12 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         }
         defaults.extend(file.defaults.0);
         retired.extend(file.retired.0.into_iter().map(|(name, instead)| (name.value, instead.value)));
-        decls.extend(file.params.0);
         // A value or parameter of an including file takes the place of an included one's value.
         values.retain(|(name, _): &(Loc<String>, _)| {
             !file.values.0.iter().any(|(other, _)| other.value == name.value)
                 && !file.params.0.iter().any(|p| p.value.name().value == name.value)
         });
+        decls.extend(file.params.0);
         values.extend(file.values.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
         graph.buffers.extend(file.buffers.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));

@@ -1,8 +1,7 @@
-// A volume that follows goes where the camera goes.
+// A volume that follows goes where the camera goes. No cells are curved.
 vec3 followedPosition() {
     return camera.position;
 }
 
-vec3 followedDirection() {
-    return camera.direction;
+void aimCurved(inout VolumeMap map) {
 }

@@ -14,6 +14,7 @@ struct Cone {
 };
 
 #include "cones/sample.glsl"
+#include "cones/clearance.glsl"
 
 // Starts outside the voxels of the cone's own surface: `bias` cell extents off it.
 ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {

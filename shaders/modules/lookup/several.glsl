@@ -16,6 +16,7 @@ struct Cone {
 };
 
 #include "cones/sample.glsl"
+#include "cones/clearance.glsl"
 
 // Towards a cascade's border, over so many cells of a level, lookups turn into the next one's.
 const float BLEND_CELLS = 6.0;

@@ -1,6 +1,7 @@
 // Rays through every voxel that fill the same cones evenly: what filtering and steps cost.
 #include "modules/lookup.glsl"
 #include "cones/rays.glsl"
+#include "common/frame.glsl"
 
 vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number) {
     mat3 frame = frameOf(d);
