@@ -13,15 +13,16 @@ ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
 
 // Radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
-    float voxel = cellLength(volume.maps[0], o.position, d);
+    VolumeMap map = volume.maps[0];
+    float voxel = cellLength(map, o.position, d);
     float along = params.cone_height * voxel;
     vec3 color = vec3(0.0);
     float alpha = 0.0;
     for (int i = 0; i < steps; i++) {
         float radius = along * tan_half;
-        float level = clamp(coneLevel(voxel, radius), 0.0, volume.maps[0].last);
+        float level = clamp(coneLevel(voxel, radius), 0.0, map.last);
         vec3 p = o.position + along * d;
-        vec3 u = worldToVolume(volume.maps[0], p);
+        vec3 u = worldToVolume(map, p);
         if (!inVolume(u)) break;
         vec4 texel = sampleLevel(u, d, level);
         float a = texel.a > 1e-5 ? (1.0 - alpha) * texel.a : 0.0, advance = max(radius, 0.05 * voxel);

@@ -5,6 +5,7 @@
 
 // A cone on its way.
 struct Cone {
+    VolumeMap map; // loaded once, before the march
     ConeOrigin origin;
     vec3 direction;
     float tan_half; // of half the aperture
@@ -24,8 +25,8 @@ ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
 }
 
 Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {
-    Cone cone = Cone(o, d, tan_half, max(dot(d, o.normal), 0.0), 0.0, vec3(0.0));
-    cellAlong(volume.maps[0], o.position, d, cone.cell, cone.dir);
+    Cone cone = Cone(volume.maps[0], o, d, tan_half, max(dot(d, o.normal), 0.0), 0.0, vec3(0.0));
+    cellAlong(cone.map, o.position, d, cone.cell, cone.dir);
     first_cell = cone.cell;
     return cone;
 }
@@ -34,14 +35,14 @@ ConeSample coneSample(inout Cone cone, int number, float along) {
     ConeSample x;
     x.position = cone.origin.position + along * cone.direction;
     x.radius = along * cone.tan_half;
-    vec3 u = worldToVolume(volume.maps[0], x.position);
+    vec3 u = worldToVolume(cone.map, x.position);
     // Past the border the clamped lookup gives the border cells once more: a coarse cell that holds the outermost wall
     // reaches to the border, and stopping short of it would let light out.
     x.last = !inVolume(u);
     x.outside = x.last && number == 0;
     if (x.outside) return x;
     float height = cone.origin.height + along * cone.rise;
-    x.level = clearLevel(coneLevel(cone.cell, x.radius), height, cone.origin.reach, volume.maps[0].last);
+    x.level = clearLevel(coneLevel(cone.cell, x.radius), height, cone.origin.reach, cone.map.last);
     x.voxel = cone.cell;
     x.cell = cone.cell * exp2(x.level);
     x.advance = max(params.step_factor * x.cell, 0.05 * x.voxel);
