@@ -1485,3 +1485,196 @@ fn voxels_that_are_not_there() {
     assert!(found.contains("passes/graph.ron:29:") && found.contains("slow"), "{found}");
     assert_eq!(mode("\"method\": exact"), "");
 }
+
+#[test]
+fn members_that_are_not_there() {
+    let block =
+        "buffer Work { uvec3 groups; uint count; uint four[4]; vec2 place; uint one, two, three; uint words[]; } work;";
+    let right = |bench: Bench| bench.edit("shaders/prepare.comp", "buffer Work { uint words[]; } work;", block);
+    let with = |old: &str, new: &str| right(bench()).edit("passes/graph.ron", old, new).findings();
+    let dispatch = |path: &str| with("Indirect(\"work\", 0)", &format!("Indirect({path})"));
+    assert_eq!(dispatch("\"work.groups\""), "");
+    assert_eq!(dispatch("\"work.one\""), "");
+    assert_snapshot!(dispatch("\"work\""), @r#"
+    passes/graph.ron:20:67: error: say where: Indirect("work.member"), or Indirect("work", byte)
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work")),
+    "#);
+    assert_snapshot!(dispatch("\"work.groups\", 16"), @r#"
+    passes/graph.ron:20:67: error: say where: Indirect("work.member"), or Indirect("work", byte)
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.groups", 16)),
+    "#);
+    assert_snapshot!(dispatch("\"wrok.groups\""), @r#"
+    passes/graph.ron:20:67: error: no buffer is named 'wrok'
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("wrok.groups")),
+        = help: did you mean 'work'?
+    "#);
+    assert_snapshot!(dispatch("\"work.group\""), @r#"
+    passes/graph.ron:20:67: error: 'work' has no member 'group'
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.group")),
+        = help: did you mean 'groups'?
+    "#);
+    assert_snapshot!(dispatch("\"work.groups.u\""), @r#"
+    passes/graph.ron:20:67: error: 'work.groups' has no member 'u'
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.groups.u")),
+        = help: known: x, y, z
+    "#);
+    assert_snapshot!(dispatch("\"work.four[4]\""), @r#"
+    passes/graph.ron:20:67: error: 'work' has no member 'four[4]'
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.four[4]")),
+        = help: did you mean 'four[3]'?
+    "#);
+    assert_snapshot!(dispatch("\"work.place\""), @r#"
+    passes/graph.ron:20:67: error: 'work.place' is a vec2; a dispatch takes its groups from a uvec3 or 3 uints
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.place")),
+    "#);
+    assert_snapshot!(dispatch("\"work.count\""), @r#"
+    passes/graph.ron:20:67: error: 'work.count' is a uint; a dispatch takes its groups from a uvec3 or 3 uints
+        |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.count")),
+    "#);
+    // A draw needs four.
+    let draw = |path: &str| {
+        with("draw: Fullscreen,\n            raster", &format!("draw: Indirect({path}),\n            raster"))
+    };
+    assert_eq!(draw("\"work.four\""), "");
+    assert_snapshot!(draw("\"work.groups\""), @r#"
+    passes/graph.ron:23:82: error: 'work.groups' is a uvec3; a draw takes its counts from a uvec4 or 4 uints
+        |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Indirect("work.groups"),
+    "#);
+    // Checks.
+    let check = |text: &str| {
+        with("output: \"picture\",", &format!("checks: [({text}, message: \"m\")],\n    output: \"picture\","))
+    };
+    assert_eq!(check("field: \"work.four[3]\""), "");
+    assert_snapshot!(check("field: \"work.place.x\""), @r#"
+    passes/graph.ron:29:22: error: 'work.place.x' is a float; a check needs a uint or an int
+        |     checks: [(field: "work.place.x", message: "m")],
+    "#);
+    assert_snapshot!(check("field: \"work\""), @r#"
+    passes/graph.ron:29:22: error: name a member of 'work': "work.member"
+        |     checks: [(field: "work", message: "m")],
+    "#);
+    assert_snapshot!(check("field: \"work.count\", word: 3"), @r#"
+    passes/graph.ron:29:14: error: a check needs either field, or buffer and word
+        |     checks: [(field: "work.count", word: 3, message: "m")],
+    "#);
+    assert_snapshot!(check("buffer: \"work\""), @r#"
+    passes/graph.ron:29:14: error: a check needs either field, or buffer and word
+        |     checks: [(buffer: "work", message: "m")],
+    "#);
+    // Sizes.
+    let size = |text: &str| with("\"cells * 16\"", text);
+    assert_eq!(size("Struct(of: \"cells * 2\")"), "");
+    assert_snapshot!(size("Struct"), @r#"
+    passes/graph.ron:16:24: error: 'work' ends in 'words[]', whose length is the buffer's
+        |         "work": (size: Struct, indirect: true),
+        = help: say how many: Struct(of: "...")
+    "#);
+    assert_snapshot!(size("Struct(off: \"cells * 2\")"), @r#"
+    passes/graph.ron:16:31: error: unknown field 'off'
+        |         "work": (size: Struct(off: "cells * 2"), indirect: true),
+        = help: did you mean 'of'?
+    "#);
+    assert_snapshot!(size("Strict"), @r#"
+    passes/graph.ron:16:24: error: unknown name 'Strict'
+        |         "work": (size: Strict, indirect: true),
+        = help: did you mean 'Struct'?
+    "#);
+    assert_snapshot!(size("Struct(of: \"cells - 64\")"), @r#"
+    passes/graph.ron:16:35: error: count 'cells - 64' is 0, and must be at least 1
+        |         "work": (size: Struct(of: "cells - 64"), indirect: true),
+    "#);
+    let fixed = right(bench()).edit("shaders/prepare.comp", " uint words[]; }", " uint words[7]; }");
+    assert_eq!(fixed.edit("passes/graph.ron", "\"cells * 16\"", "Struct").findings(), "");
+    let fixed = right(bench()).edit("shaders/prepare.comp", " uint words[]; }", " uint words[7]; }");
+    assert_snapshot!(fixed.edit("passes/graph.ron", "\"cells * 16\"", "Struct(of: 4)").findings(), @r#"
+    passes/graph.ron:16:24: error: 'work' does not end in an array without a length: `Struct` is its size
+        |         "work": (size: Struct(of: 4), indirect: true),
+    "#);
+    // Nobody declares it.
+    let unknown = "\"work\": (size: \"cells * 16\", indirect: true),\n        \"other\": (size: Struct),";
+    assert_snapshot!(with("\"work\": (size: \"cells * 16\", indirect: true),", unknown), @r#"
+    passes/graph.ron:17:25: error: no shader declares 'other', so its struct has no size
+        |         "other": (size: Struct),
+    passes/graph.ron:17:9: warning: 'other' is declared and never used
+        |         "other": (size: Struct),
+    "#);
+    // Two shaders that disagree.
+    let twice = right(bench())
+        .edit("passes/graph.ron", "Indirect(\"work\", 0)", "Indirect(\"work.groups\")")
+        .edit(
+            "shaders/fill.comp",
+            "uniform writeonly",
+            "layout(std430) buffer Work {\n    uvec3 groups;\n    uint number;\n} work;\nuniform writeonly",
+        )
+        .edit("shaders/fill.comp", "{ imageStore", "{ if (work.number == 7u) return; imageStore");
+    assert_snapshot!(twice.findings(), @r"
+    shaders/fill.comp:8: error: 'work' is declared otherwise than in shaders/prepare.comp:2
+        | } work;
+        = help: here `uint number` at byte 12, there `uint count` at byte 12
+    ");
+    // As long as nothing names a member, they may see it as they like.
+    assert_eq!(twice.edit("passes/graph.ron", "Indirect(\"work.groups\")", "Indirect(\"work\", 0)").findings(), "");
+}
+
+#[test]
+fn tables_by_name_that_cannot_be_read() {
+    let block = "struct Row { vec3 place; uint number; uvec2 pair; };
+layout(std430) writeonly buffer Work { uint count; Row list[8]; Row one; uint words[]; } work;";
+    let table = |old: &str, new: &str| {
+        let right = "(rows: \"work.count\", list: \"work.list\", title: \"Work\", help: \"Rows.\",
+            columns: [
+                (name: \"number\"),
+                (name: \"where\", of: \"place\", unit: \"m\"),
+            ])";
+        assert_eq!(right.matches(old).count(), 1, "'{old}' stands once in the table");
+        bench()
+            .edit("shaders/prepare.comp", "layout(std430) writeonly buffer Work { uint words[]; } work;", block)
+            .edit(
+                "passes/graph.ron",
+                "output: \"picture\",",
+                &format!("tables: [{}],\n    output: \"picture\",", right.replace(old, new)),
+            )
+            .findings()
+    };
+    assert_eq!(table("title", "title"), "");
+    assert_eq!(table("\"work.list\"", "\"work.words\"").matches("a row has no member").count(), 1);
+    assert_snapshot!(table("\"work.list\"", "\"work.lost\""), @r#"
+    passes/graph.ron:29:41: error: 'work' has no member 'lost'
+        |     tables: [(rows: "work.count", list: "work.lost", title: "Work", help: "Rows.",
+        = help: did you mean 'list'?
+    "#);
+    assert_snapshot!(table("\"work.list\"", "\"work.one\""), @r#"
+    passes/graph.ron:29:41: error: 'work.one' is a struct { place, number, pair }; the rows of a table are an array's
+        |     tables: [(rows: "work.count", list: "work.one", title: "Work", help: "Rows.",
+    "#);
+    assert_snapshot!(table("\"work.list\"", "\"work\""), @r#"
+    passes/graph.ron:29:41: error: name a member of 'work': "work.member"
+        |     tables: [(rows: "work.count", list: "work", title: "Work", help: "Rows.",
+    "#);
+    assert_snapshot!(table("\"work.count\"", "\"work.one.place\""), @r#"
+    passes/graph.ron:29:21: error: 'work.one.place' is a vec3; rows are counted by a uint
+        |     tables: [(rows: "work.one.place", list: "work.list", title: "Work", help: "Rows.",
+    "#);
+    assert_snapshot!(table("\"work.count\"", "\"wrok.count\""), @r#"
+    passes/graph.ron:29:21: error: 'wrok.count' is not in 'work', which holds the rows
+        |     tables: [(rows: "wrok.count", list: "work.list", title: "Work", help: "Rows.",
+    "#);
+    assert_snapshot!(table("\"place\"", "\"palce\""), @r#"
+    passes/graph.ron:32:17: error: column 'where': a row has no member 'palce'
+        |                 (name: "where", of: "palce", unit: "m"),
+        = help: did you mean 'place'?
+    "#);
+    assert_snapshot!(table("\"place\"", "\"pair\""), @r#"
+    passes/graph.ron:32:17: error: column 'where': 'pair' is a uvec2, which no table shows
+        |                 (name: "where", of: "pair", unit: "m"),
+        = help: tables show uint, int, float, vec2, vec3 and vec4
+    "#);
+    assert_snapshot!(table("of: \"place\"", "at: 0, as: vec3"), @r#"
+    passes/graph.ron:29:14: error: table 'Work' needs either list and rows by names, or buffer, rows, start, stride and for each column at and as
+        |     tables: [(rows: "work.count", list: "work.list", title: "Work", help: "Rows.",
+    "#);
+    assert_snapshot!(table("list: \"work.list\"", "list: \"work.list\", start: 16"), @r#"
+    passes/graph.ron:29:14: error: table 'Work' needs either list and rows by names, or buffer, rows, start, stride and for each column at and as
+        |     tables: [(rows: "work.count", list: "work.list", start: 16, title: "Work", help: "Rows.",
+    "#);
+}

@@ -1142,5 +1142,83 @@ fn a_table_is_filled_only_for_who_asks() {
     let mut session = bench.run(&lab, &["picture", "rows"], 1);
     let bytes = session.program.read_buffer(0).unwrap();
     let row = |square, x, half| vec![Cell::Uint(square), Cell::Vector(vec![x, x]), Cell::Float(half)];
-    assert_eq!(decode(&session.graph.tables[0], &bytes), [row(0, -1.0, 0.0), row(1, 0.0, 0.5), row(4, 1.0, 1.0)]);
+    assert_eq!(decode(&session.table(0).unwrap(), &bytes), [row(0, -1.0, 0.0), row(1, 0.0, 0.5), row(4, 1.0, 1.0)]);
+}
+
+#[test]
+fn members_of_buffers_by_name() {
+    // Sizes of dispatch, draw and buffers, a check and a table, none of it in bytes.
+    let common = "struct Row { vec2 place; float half_number; uint square; };
+        layout(std430) buffer Rows {
+            uint spare;
+            uvec3 groups;
+            uint vertices, instances, first_vertex, first_instance;
+            uint lost;
+            uvec2 found;
+            Row list[];
+        } rows;";
+    let fixed = "struct Point { vec3 at; float weight; };
+        layout(std430) buffer Points { Point points[3]; vec4 last; } points;";
+    let bench = Bench::new(
+        r#"(
+            params: [Int(name: "count", default: 5, range: (1, 100), help: "Rows.")],
+            textures: { "picture": (size: ("width", "height"), format: "rgba8") },
+            buffers: { "rows": (size: Struct(of: "2 * count"), indirect: true), "points": (size: Struct) },
+            passes: [
+                (name: "size", shaders: ["size.comp"], dispatch: Groups(1, 1, 1)),
+                (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("rows.groups")),
+                (name: "paint", shaders: ["full.vert", "paint.frag"], draw: Indirect("rows.vertices"),
+                    color: [(to: "picture", clear: (0, 0, 0, 0))]),
+            ],
+            checks: [(field: "rows.lost", message: "rows were lost"), (field: "rows.found.y", message: "too many")],
+            tables: [(rows: "rows.found.x", list: "rows.list", title: "Squares", help: "Numbers.", columns: [
+                (name: "square"), (name: "where", of: "place", unit: "px"), (name: "height", of: "place.y"), (name: "half", of: "half_number"),
+            ])],
+            output: "picture",
+        )"#,
+        &[
+            (
+                "size.comp",
+                &format!(
+                    "#include \"params.glsl\"\n{common}\n{fixed}
+                    void main() {{
+                        rows.groups = uvec3(params.count, 2, 1);
+                        rows.vertices = 3; rows.instances = 1; rows.first_vertex = 0; rows.first_instance = 0;
+                        rows.lost = rows.list.length() - 2 * params.count;
+                        rows.found = uvec2(3, params.count > 50 ? 7 : 0);
+                        points.last = vec4(points.points[2].weight);
+                    }}"
+                ),
+            ),
+            (
+                "fill.comp",
+                &format!(
+                    "{common}
+                    void main() {{
+                        uint i = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+                        rows.list[i] = Row(vec2(i, -1.0), 0.5 * float(i), i * i);
+                    }}"
+                ),
+            ),
+            ("full.vert", FULL),
+            ("paint.frag", "layout(location = 0) out vec4 color; void main() { color = vec4(1.0); }"),
+        ],
+    );
+    let lab = bench.lab();
+    let mut session = bench.run(&lab, &["picture", "rows", "points"], 1);
+    let sizes: Vec<u64> = session.program.plan.buffers.iter().map(|b| b.size).collect();
+    assert_eq!(sizes, [56 + 10 * 16, 3 * 16 + 16]);
+    assert_eq!(reds(&mut session, "picture", 0), [1.0; 32 * 24]);
+    let bytes = session.buffer("rows").unwrap();
+    let row = |i: u16| {
+        let x = f32::from(i);
+        vec![Cell::Uint(u32::from(i * i)), Cell::Vector(vec![x, -1.0]), Cell::Float(-1.0), Cell::Float(0.5 * x)]
+    };
+    assert_eq!(decode(&session.table(0).unwrap(), &bytes), [row(0), row(1), row(2)]);
+    // All that was asked for was filled: the word behind the head of the last row is nine squared.
+    assert_eq!(words(&mut session, "rows")[(56 + 9 * 16 + 12) / 4], 81);
+    assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
+    bench.edit("configs/run.ron", "size: (32, 24)", "size: (32, 24), params: { \"count\": 60 }");
+    let mut session = bench.run(&lab, &["picture"], 1);
+    assert_eq!(session.failed_checks().unwrap(), ["too many (7)"]);
 }

@@ -32,10 +32,11 @@ struct Row {
 }
 
 fn rows(session: &mut Session) -> Vec<Row> {
-    let table = session.graph.tables.iter().find(|t| t.title == "Cone samples").unwrap().clone();
-    let buffer = session.graph.buffers.iter().position(|b| b.0 == table.buffer.value).unwrap();
+    let number = session.graph.tables.iter().position(|t| t.value.title == "Cone samples").unwrap();
+    let table = session.table(number).unwrap();
+    let buffer = session.graph.buffers.iter().position(|b| b.0 == "coneSamples").unwrap();
     let cells = decode(&table, &session.program.read_buffer(buffer).unwrap());
-    let column = |name: &str| table.columns.0.iter().position(|c| c.value.name == name).unwrap();
+    let column = |name: &str| table.columns.iter().position(|c| c.name == name).unwrap();
     let uint = |row: &[Cell], name| match row[column(name)] {
         Cell::Uint(v) => v,
         _ => panic!("{name}"),

@@ -2,8 +2,8 @@
 
 use super::expr::Expr;
 use super::param::Decl;
-use super::source::{Entries, Items, Loc, TwoOrThree};
-use super::table::Table;
+use super::source::{Entries, Items, Loc, TwoOrThree, nested};
+use super::table::TableDecl;
 use serde::Deserialize;
 
 /// A graph file.
@@ -43,7 +43,7 @@ pub struct GraphFile {
     /// The `Vec2` parameter that a click on the picture sets.
     pub pointer: Option<Loc<String>>,
     /// Buffers that may be read as tables.
-    pub tables: Items<Table>,
+    pub tables: Items<TableDecl>,
     /// Settings worth comparing.
     pub compare: Items<CompareDecl>,
     /// Settings that show something worth looking into.
@@ -78,16 +78,25 @@ pub struct SceneNeeds {
     pub when: Option<Ex>,
 }
 
-/// A word of a buffer that must be zero.
+/// A word of a buffer that must be zero: `field`, or `buffer` and `word`.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckDecl {
+    /// The member of a buffer's block, `buffer.member`.
+    pub field: Option<Loc<Path>>,
     /// The buffer.
-    pub buffer: Loc<String>,
+    pub buffer: Option<Loc<String>>,
     /// Index of the 32-bit word.
-    pub word: u32,
+    pub word: Option<u32>,
     /// What it means when it is not zero, and what to do.
     pub message: String,
+}
+
+impl CheckDecl {
+    /// The buffer.
+    pub fn buffer(&self) -> &str {
+        self.field.as_ref().map_or_else(|| self.buffer.as_ref().map_or("", |b| &b.value), |f| &f.value.buffer)
+    }
 }
 
 /// A texture.
@@ -169,12 +178,105 @@ pub enum Compare {
     Always,
 }
 
+/// A buffer and, after a point, a member of its block as shaders declare it; after further points what is in that.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Path {
+    /// The buffer.
+    pub buffer: String,
+    /// The member; empty where none is named.
+    pub member: String,
+}
+
+impl std::fmt::Display for Path {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let point = if self.member.is_empty() { "" } else { "." };
+        write!(f, "{}{point}{}", self.buffer, self.member)
+    }
+}
+
+impl<'de> Deserialize<'de> for Path {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(deserializer)?;
+        let (buffer, member) = text.split_once('.').unwrap_or((&text, ""));
+        Ok(Path { buffer: buffer.into(), member: member.into() })
+    }
+}
+
+/// Where the sizes of a dispatch or draw lie: `"buffer.member"`, or `"buffer", byte`.
+#[derive(Clone, Debug)]
+pub struct Command {
+    /// The buffer, and the member.
+    pub path: Loc<Path>,
+    /// The byte, where no member says it.
+    pub offset: Option<u64>,
+}
+
+impl<'de> Deserialize<'de> for Command {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Visitor;
+        impl<'de> serde::de::Visitor<'de> for Visitor {
+            type Value = Command;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("\"buffer.member\", or \"buffer\" and a byte")
+            }
+            fn visit_seq<A: serde::de::SeqAccess<'de>>(self, mut parts: A) -> Result<Command, A::Error> {
+                let path = parts.next_element()?.ok_or_else(|| serde::de::Error::invalid_length(0, &self))?;
+                Ok(Command { path, offset: parts.next_element()? })
+            }
+        }
+        deserializer.deserialize_tuple(2, Visitor)
+    }
+}
+
+/// Size of a buffer.
+#[derive(Clone, Debug)]
+pub enum BufferSize {
+    /// Bytes.
+    Bytes(Ex),
+    /// That of the block as shaders declare it, with so many elements of the array at its end.
+    Struct(Option<Ex>),
+}
+
+impl BufferSize {
+    /// The expression in it.
+    pub fn expression(&self) -> Option<&Ex> {
+        match self {
+            BufferSize::Bytes(ex) => Some(ex),
+            BufferSize::Struct(count) => count.as_ref(),
+        }
+    }
+}
+
+/// The forms of [`BufferSize::Struct`] with a count.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+enum StructSize {
+    Struct {
+        /// Elements of the array at the end.
+        of: Ex,
+    },
+}
+
+impl<'de> Deserialize<'de> for BufferSize {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+        match raw.trim().get_ron() {
+            "Struct" => Ok(BufferSize::Struct(None)),
+            text if text.starts_with(|c: char| c.is_ascii_alphabetic()) && !["true", "false"].contains(&text) => {
+                let StructSize::Struct { of } = nested(raw)?;
+                Ok(BufferSize::Struct(Some(of)))
+            }
+            _ => nested(raw).map(BufferSize::Bytes),
+        }
+    }
+}
+
 /// A buffer.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BufferDecl {
     /// Bytes.
-    pub size: Ex,
+    pub size: Loc<BufferSize>,
     /// Whether dispatches and draws read their size from it.
     #[serde(default)]
     pub indirect: bool,
@@ -245,8 +347,8 @@ pub enum Dispatch {
     Threads(Ex, Ex, Ex),
     /// So many groups.
     Groups(Ex, Ex, Ex),
-    /// Groups read from a buffer at a byte offset (VkDispatchIndirectCommand).
-    Indirect(Loc<String>, u64),
+    /// Groups read from a buffer (VkDispatchIndirectCommand).
+    Indirect(Command),
 }
 
 /// What a raster pass draws.
@@ -262,8 +364,8 @@ pub enum Draw {
     Fullscreen,
     /// So many vertices without a buffer.
     Vertices(Ex),
-    /// Counts read from a buffer at a byte offset (VkDrawIndirectCommand).
-    Indirect(Loc<String>, u64),
+    /// Counts read from a buffer (VkDrawIndirectCommand).
+    Indirect(Command),
 }
 
 /// Which triangles of the scene.

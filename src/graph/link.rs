@@ -2,12 +2,13 @@
 
 use super::externals::{EXTERNALS, ExternalKind};
 use super::file::{Bind, PassDecl, TextureDecl};
+use super::layouts::{Declared, Layouts};
 use super::load::Graph;
 use super::param::Kind;
 use super::runs::Runs;
 use super::source::{Diagnostic, Place, Severity};
 use super::unused::{Texts, unused};
-use crate::shader::{Compiled, Generated, Resource, ShaderCompiler, Shape, Source};
+use crate::shader::{Compiled, Generated, Layout, Resource, ShaderCompiler, Shape, Source};
 use crate::vulkan::Stage;
 use crate::vulkan::format::{Channels, Format};
 use rayon::prelude::*;
@@ -37,6 +38,8 @@ pub struct Bound {
     pub name: String,
     /// What the shader expects.
     pub resource: Resource,
+    /// How the block of a buffer lies in memory.
+    pub layout: Option<Arc<Layout>>,
     /// What it is.
     pub target: Target,
     /// Index in the pass's `bind`, where it is renamed or narrowed there.
@@ -105,7 +108,11 @@ pub fn link(
         });
     }
     texts.extend(linker.options(compiler, generated));
+    let all = (0..graph.passes.len()).all(|i| runs.has(i));
+    let place = |d: &Declared<'_>, message: String| linker.at_declaration(d.shader, d.name, message);
+    let members = Layouts::new(graph, &linked).mistakes(all, place);
     let Linker { mut findings, used, .. } = linker;
+    findings.extend(members);
     findings.extend(unused(graph, &used, &texts));
     if findings.iter().any(|f| f.severity == Severity::Error) { Err(findings) } else { Ok((linked, findings)) }
 }
@@ -152,6 +159,7 @@ impl Linker<'_> {
                         binding: binding.binding,
                         name: binding.name.clone(),
                         resource: binding.resource.clone(),
+                        layout: binding.layout.clone(),
                         target,
                         bind,
                     });
@@ -207,15 +215,15 @@ impl Linker<'_> {
         self.used.extend(names.map(|n| n.value.clone()));
         for indirect in [
             pass.dispatch.as_ref().and_then(|d| match &d.value {
-                super::file::Dispatch::Indirect(name, _) => Some(name),
+                super::file::Dispatch::Indirect(command) => Some(&command.path.value.buffer),
                 _ => None,
             }),
             pass.draw.as_ref().and_then(|d| match &d.value {
-                super::file::Draw::Indirect(name, _) => Some(name),
+                super::file::Draw::Indirect(command) => Some(&command.path.value.buffer),
                 _ => None,
             }),
         ] {
-            self.used.extend(indirect.map(|n| n.value.clone()));
+            self.used.extend(indirect.cloned());
         }
     }
 

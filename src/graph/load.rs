@@ -2,12 +2,12 @@
 
 use super::expr::Expr;
 use super::file::{
-    BufferDecl, CheckDecl, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds, TextureDecl,
-    ViewDecl, VoxelsDecl,
+    BufferDecl, CheckDecl, Command, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds,
+    TextureDecl, ViewDecl, VoxelsDecl,
 };
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
-use super::table::Table;
+use super::table::TableDecl;
 use super::value::{Named, ordered};
 use crate::vulkan::{Format, Stage};
 use std::collections::{HashMap, HashSet};
@@ -57,7 +57,7 @@ pub struct Graph {
     /// where nothing is pointed at.
     pub pointer: Option<String>,
     /// Buffers that may be read as tables; wanted only by who asks for them.
-    pub tables: Vec<Table>,
+    pub tables: Vec<Loc<TableDecl>>,
     /// Settings worth comparing.
     pub compare: Vec<Loc<CompareDecl>>,
     /// Settings that show something worth looking into.
@@ -206,7 +206,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         check.voxels(&voxels.value);
     }
     for item in &checks {
-        check.buffer_name(&item.value.buffer);
+        check.check(&item.value, item.at);
     }
     if let Some(name) = &pointer {
         check.pointer(name);
@@ -220,7 +220,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     graph.modules = modules.into_iter().map(|(name, file)| (name.value, file.value)).collect();
     graph.checks = checks.into_iter().map(|c| c.value).collect();
     graph.pointer = pointer.map(|p| p.value);
-    graph.tables = tables.into_iter().map(|t| t.value).collect();
+    graph.tables = tables;
     if errors.iter().any(|e| e.severity == Severity::Error) {
         errors.sort_by(|a, b| a.place.cmp(&b.place));
         errors.dedup();
@@ -605,9 +605,30 @@ impl Check<'_> {
         }
     }
 
-    fn tables(&mut self, tables: &[Loc<Table>]) {
+    fn check(&mut self, check: &CheckDecl, at: At) {
+        match (&check.field, &check.buffer, check.word) {
+            (Some(field), None, None) => self.member(field),
+            (None, Some(buffer), Some(_)) => drop(self.buffer_name(buffer)),
+            _ => self.error(at, String::from("a check needs either field, or buffer and word")),
+        }
+    }
+
+    /// The buffer of a path, and that a member is named.
+    fn member(&mut self, path: &Loc<super::file::Path>) {
+        let known = self.buffer_name(&Loc { value: path.value.buffer.clone(), at: path.at });
+        if known && path.value.member.is_empty() {
+            self.error(path.at, format!("name a member of '{0}': \"{0}.member\"", path.value.buffer));
+        }
+    }
+
+    fn tables(&mut self, tables: &[Loc<TableDecl>]) {
         for (i, table) in tables.iter().enumerate() {
-            self.buffer_name(&table.value.buffer);
+            if let Some(name) = &table.value.buffer {
+                self.buffer_name(name);
+            }
+            for path in table.value.paths() {
+                self.member(path);
+            }
             if tables[..i].iter().any(|t| t.value.title == table.value.title) {
                 self.error(table.at, format!("two tables have the title '{}'", table.value.title));
             }
@@ -638,7 +659,7 @@ impl Check<'_> {
             }
         }
         for (_, buffer) in &self.graph.buffers {
-            self.expr(&buffer.value.size);
+            self.exprs(buffer.value.size.value.expression());
         }
     }
 
@@ -688,12 +709,12 @@ impl Check<'_> {
             Some(Dispatch::Cover(target)) if pass.bind.0.iter().any(|(key, _)| key.value == target.value) => {}
             Some(Dispatch::Cover(target)) => drop(self.texture_name(target)),
             Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) => self.exprs([x, y, z]),
-            Some(Dispatch::Indirect(buffer, _)) => self.indirect(buffer),
+            Some(Dispatch::Indirect(command)) => self.indirect(command),
             None => {}
         }
         match pass.draw.as_ref().map(|d| &d.value) {
             Some(Draw::Vertices(n)) => self.expr(n),
-            Some(Draw::Indirect(buffer, _)) => self.indirect(buffer),
+            Some(Draw::Indirect(command)) => self.indirect(command),
             _ => {}
         }
         for (_, bind) in &pass.bind.0 {
@@ -783,11 +804,16 @@ impl Check<'_> {
         }
     }
 
-    fn indirect(&mut self, name: &Loc<String>) {
-        if self.buffer_name(name) {
-            let declared = self.graph.buffers.iter().any(|(n, b)| *n == name.value && b.value.indirect);
+    fn indirect(&mut self, command: &Command) {
+        let (path, at) = (&command.path.value, command.path.at);
+        if self.buffer_name(&Loc { value: path.buffer.clone(), at }) {
+            let declared = self.graph.buffers.iter().any(|(n, b)| *n == path.buffer && b.value.indirect);
             if !declared {
-                self.error(name.at, format!("buffer '{}' is not declared with `indirect: true`", name.value));
+                self.error(at, format!("buffer '{}' is not declared with `indirect: true`", path.buffer));
+            }
+            if path.member.is_empty() == command.offset.is_none() {
+                let message = format!("say where: Indirect(\"{0}.member\"), or Indirect(\"{0}\", byte)", path.buffer);
+                self.error(at, message);
             }
         }
     }

@@ -3,6 +3,7 @@ mod choices;
 pub mod expr;
 pub mod externals;
 pub mod file;
+pub mod layouts;
 pub mod link;
 mod live;
 pub mod load;

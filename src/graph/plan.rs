@@ -1,7 +1,8 @@
 //! What runs in a frame: expressions evaluated, passes that nobody needs left out, every use of every subresource listed.
 
 use super::expr::{Env, Var};
-use super::file::{Bind, Dispatch, Draw, Ex, PassDecl, Which};
+use super::file::{Bind, BufferSize, Command, Dispatch, Draw, Ex, PassDecl, Which};
+use super::layouts::{DISPATCH_WORDS, DRAW_WORDS, Layouts};
 use super::link::{Bound, Linked, Target};
 use super::load::Graph;
 use super::param::{Params, Value};
@@ -163,7 +164,7 @@ pub fn all_expressions(graph: &Graph) -> impl Iterator<Item = &Ex> {
         let t = &t.value;
         t.size.0.iter().chain(&t.mips).chain(&t.layers)
     });
-    let buffers = graph.buffers.iter().map(|(_, b)| &b.value.size);
+    let buffers = graph.buffers.iter().flat_map(|(_, b)| b.value.size.value.expression());
     let scene = graph.scene.iter().flat_map(|s| std::iter::once(&s.value.max_edge).chain(&s.value.when));
     let values = graph.values.iter().map(|v| &v.expr);
     textures
@@ -200,7 +201,9 @@ fn pass_expressions(pass: &PassDecl) -> Vec<&Ex> {
 /// # Errors
 /// Sizes that make no sense or that the device cannot make, features that it lacks.
 pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<Plan, Vec<Diagnostic>> {
-    let mut planner = Planner { graph, input, env: input.env.clone(), errors: Vec::new(), textures: Vec::new() };
+    let layouts = Layouts::new(graph, linked);
+    let (env, errors, textures) = (input.env.clone(), Vec::new(), Vec::new());
+    let mut planner = Planner { graph, layouts, input, env, errors, textures, buffers: Vec::new() };
     planner.errors = super::value::fill(graph, input.params, &mut planner.env).1;
     if !planner.errors.is_empty() {
         return Err(planner.errors);
@@ -209,7 +212,7 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     if !planner.errors.is_empty() {
         return Err(planner.errors);
     }
-    let buffers = planner.buffers();
+    planner.buffers = planner.buffers();
     let mut dropped = Vec::new();
     let mut steps = Vec::new();
     for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
@@ -221,13 +224,13 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
         }
         steps.extend(planner.steps(number, &pass.value, link));
     }
-    planner.checks(&buffers);
+    planner.checks();
     let max_edge = planner.max_edge();
     if !planner.errors.is_empty() {
         return Err(planner.errors);
     }
     let mut errors = Vec::new();
-    let mut plan = Plan { textures: planner.textures, buffers, steps, dropped, max_edge };
+    let mut plan = Plan { textures: planner.textures, buffers: planner.buffers, steps, dropped, max_edge };
     super::live::prune(graph, linked, &mut plan, &input.wanted);
     super::usage::layouts(graph, &mut plan, &mut errors);
     let features = super::needs::check(graph, linked, &plan, input);
@@ -237,10 +240,12 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
 
 struct Planner<'a> {
     graph: &'a Graph,
+    layouts: Layouts<'a>,
     input: &'a PlanInput<'a>,
     env: Env,
     errors: Vec<Diagnostic>,
     textures: Vec<TexturePlan>,
+    buffers: Vec<BufferPlan>,
 }
 
 impl Planner<'_> {
@@ -333,7 +338,7 @@ impl Planner<'_> {
             .iter()
             .map(|(name, buffer)| {
                 let before = self.errors.len();
-                let bytes = self.value(&buffer.value.size);
+                let bytes = self.bytes(name, &buffer.value.size.value);
                 let limit = self.input.device.limits.max_storage_buffer_range;
                 if self.errors.len() == before && !(4.0..=f64::from(limit)).contains(&bytes) {
                     self.error(
@@ -341,17 +346,32 @@ impl Planner<'_> {
                         format!("buffer '{name}' is {bytes} bytes; {} allows 4 to {limit}", self.input.device.name),
                     );
                 }
-                BufferPlan { size: bytes.max(4.0) as u64, used: false }
+                // One whose size was told as wrong holds everything.
+                let size = if self.errors.len() == before { bytes as u64 } else { u64::MAX };
+                BufferPlan { size, used: false }
             })
             .collect()
     }
 
-    fn checks(&mut self, buffers: &[BufferPlan]) {
+    fn bytes(&mut self, name: &str, size: &BufferSize) -> f64 {
+        match size {
+            BufferSize::Bytes(ex) => self.value(ex),
+            BufferSize::Struct(count) => {
+                // Mistakes were told with the shaders. Where none declares it, none reads it.
+                let size = self.layouts.struct_size(name, count.is_some()).ok().flatten();
+                let elements = count.as_ref().map_or(0, |ex| self.count(ex, 1, "count"));
+                size.map_or(4.0, |(bytes, stride)| f64::from(bytes) + f64::from(stride) * f64::from(elements)).max(4.0)
+            }
+        }
+    }
+
+    fn checks(&mut self) {
         for check in &self.graph.checks {
-            let size = self.buffer(&check.buffer.value).map_or(0, |b| buffers[b].size);
-            if (u64::from(check.word) + 1) * 4 > size {
-                let message = format!("'{}' has {size} bytes and no word {}", check.buffer.value, check.word);
-                self.error(check.buffer.at, message);
+            let size = self.buffer(check.buffer()).map_or(0, |b| self.buffers[b].size);
+            if let (Some(buffer), Some(word)) = (&check.buffer, check.word)
+                && (u64::from(word) + 1) * 4 > size
+            {
+                self.error(buffer.at, format!("'{}' has {size} bytes and no word {word}", buffer.value));
             }
         }
     }
@@ -568,11 +588,10 @@ impl Planner<'_> {
         let local = link.stages.iter().find(|s| s.stage == Stage::Compute).map_or([1; 3], |s| s.interface.local_size);
         if let Some(dispatch) = &pass.dispatch {
             let threads = match &dispatch.value {
-                Dispatch::Indirect(name, offset) => {
-                    let buffer = self.buffer(&name.value)?;
-                    self.command(name.at, buffer, *offset, 12);
+                Dispatch::Indirect(command) => {
+                    let (buffer, offset) = self.command(command, DISPATCH_WORDS)?;
                     step.uses.push(Use::indirect(buffer));
-                    return Some(Work::DispatchIndirect(buffer, *offset));
+                    return Some(Work::DispatchIndirect(buffer, offset));
                 }
                 Dispatch::Groups(x, y, z) => {
                     let groups = [x, y, z].map(|ex| self.count(ex, 1, "group count"));
@@ -589,11 +608,10 @@ impl Planner<'_> {
                 Draw::Scene { what } => Work::Scene(*what),
                 Draw::Fullscreen => Work::Vertices(3),
                 Draw::Vertices(n) => Work::Vertices(self.count(n, 0, "vertex count")),
-                Draw::Indirect(name, offset) => {
-                    let buffer = self.buffer(&name.value)?;
-                    self.command(name.at, buffer, *offset, 16);
+                Draw::Indirect(command) => {
+                    let (buffer, offset) = self.command(command, DRAW_WORDS)?;
                     step.uses.push(Use::indirect(buffer));
-                    Work::DrawIndirect(buffer, *offset)
+                    Work::DrawIndirect(buffer, offset)
                 }
             });
         }
@@ -631,19 +649,32 @@ impl Planner<'_> {
         Some(Work::CopyTexture(from, to))
     }
 
-    /// Whether a command of that many bytes lies in a buffer.
-    fn command(&mut self, at: At, buffer: usize, offset: u64, bytes: u64) {
-        let (name, decl) = &self.graph.buffers[buffer];
-        // A wrong size was told where it stands.
-        let Some(size) = decl.value.size.value.eval(&self.env).ok().filter(|s| *s >= 4.0) else { return };
+    /// The buffer and byte of a command of so many 32-bit words, which lies in it.
+    fn command(&mut self, command: &Command, words: u32) -> Option<(usize, u64)> {
+        let at = command.path.at;
+        let buffer = self.buffer(&command.path.value.buffer)?;
+        let name = &self.graph.buffers[buffer].0;
+        let offset = match self.layouts.command(command, words) {
+            Ok(Some(offset)) => offset,
+            Ok(None) => {
+                self.error(at, format!("no shader that runs declares '{name}', so its members have no place"));
+                return None;
+            }
+            Err(found) => {
+                self.errors.push(found);
+                return None;
+            }
+        };
+        let (size, bytes) = (self.buffers[buffer].size, u64::from(words) * 4);
         if !offset.is_multiple_of(4) {
             self.error(at, format!("a command begins at a multiple of 4 bytes, which {offset} is not"));
-        } else if offset.checked_add(bytes).is_none_or(|end| end as f64 > size) {
+        } else if offset.checked_add(bytes).is_none_or(|end| end > size) {
             self.error(
                 at,
                 format!("a command of {bytes} bytes at byte {offset} ends outside '{name}', which has {size} bytes"),
             );
         }
+        Some((buffer, offset))
     }
 
     fn covered(&mut self, pass: &PassDecl, link: &Linked, step: &Step, name: &str) -> Option<[u32; 3]> {

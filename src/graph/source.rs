@@ -313,6 +313,11 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Loc<T> {
     }
 }
 
+/// Reads what stands in a raw value; a mistake is reported where it stands.
+pub(super) fn nested<'de, T: Deserialize<'de>, E: serde::de::Error>(raw: &'de ron::value::RawValue) -> Result<T, E> {
+    parse_raw(raw).map(|found| found.value).ok_or_else(|| E::custom(REPORTED))
+}
+
 /// A list whose wrong items are reported and left out.
 #[derive(Clone, Debug)]
 pub struct Items<T>(pub Vec<Loc<T>>);

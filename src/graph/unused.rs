@@ -1,5 +1,6 @@
 //! Warnings for what a graph declares and nobody uses.
 
+use super::file::CheckDecl;
 use super::load::Graph;
 use super::source::{At, Diagnostic, Severity};
 use crate::shader::module_include;
@@ -16,8 +17,8 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
     wanted.extend(graph.output.as_deref());
     wanted.extend(graph.hdr.as_deref());
     wanted.extend(graph.parts.iter().map(|p| p.1.as_str()));
-    wanted.extend(graph.checks.iter().map(|c| c.buffer.value.as_str()));
-    wanted.extend(graph.tables.iter().map(|t| t.buffer.value.as_str()));
+    wanted.extend(graph.checks.iter().map(CheckDecl::buffer));
+    wanted.extend(graph.tables.iter().map(|t| t.value.buffer()));
     for voxels in graph.voxels.iter().map(|v| &v.value) {
         let names = [&voxels.occupied, &voxels.color, &voxels.normal, &voxels.borders];
         wanted.extend(names.map(|n| n.value.as_str()));

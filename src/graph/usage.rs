@@ -282,7 +282,9 @@ fn before(
     buffers: &mut [State],
 ) -> Vec<Barrier> {
     let mut list: Vec<Barrier> = Vec::new();
-    for u in &step.uses {
+    // Reads first: a step that takes its size from a buffer that it writes has not waited for that write.
+    let (writes, reads): (Vec<&Use>, Vec<&Use>) = step.uses.iter().partition(|u| u.write);
+    for u in reads.into_iter().chain(writes) {
         match u.res {
             Res::Buffer(b) => {
                 if let Some((src, _)) = advance(&mut buffers[b], u) {

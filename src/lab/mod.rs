@@ -16,6 +16,7 @@ pub use view::Viewpoint;
 
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
+use crate::graph::layouts::Layouts;
 use crate::graph::link::{Linked, Target};
 use crate::graph::load::Graph;
 use crate::graph::param::{Params, Value};
@@ -24,6 +25,7 @@ use crate::graph::run::{FrameTimes, Program};
 use crate::graph::runs::runs;
 use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::successor::Parts;
+use crate::graph::table::Table;
 use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
 use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
@@ -145,7 +147,7 @@ impl Lab {
     ) -> Result<Session, LabError> {
         let params = params_of(&loaded.graph, experiment)?;
         let Loaded { graph, linked, .. } = self.home.complete(loaded, experiment, &scene).map_err(LabError::Input)?;
-        wanted.extend(graph.checks.iter().map(|c| c.buffer.value.clone()));
+        wanted.extend(graph.checks.iter().map(|c| c.buffer().to_string()));
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
         let rays = traces_rays(&linked, &plan);
@@ -368,6 +370,11 @@ impl Session {
         Ok(self.program.finish_all()?)
     }
 
+    /// A table of the graph with its bytes; nothing where no shader that runs declares its buffer.
+    pub fn table(&self, number: usize) -> Option<Table> {
+        Layouts::new(&self.graph, &self.linked).table(number)
+    }
+
     /// Messages of the graph's checks that failed in the last frame.
     ///
     /// # Errors
@@ -375,9 +382,11 @@ impl Session {
     pub fn failed_checks(&mut self) -> Result<Vec<String>, LabError> {
         let mut failed = Vec::new();
         for check in &self.graph.checks {
-            let Some(buffer) = self.graph.buffers.iter().position(|b| b.0 == check.buffer.value) else { continue };
+            let Some(buffer) = self.graph.buffers.iter().position(|b| b.0 == check.buffer()) else { continue };
+            // Mistakes were told with the shaders; what none of them declares none of them writes.
+            let Ok(Some(word)) = Layouts::new(&self.graph, &self.linked).check(check) else { continue };
             let bytes = self.program.read_buffer(buffer)?;
-            let start = check.word as usize * 4;
+            let start = word as usize * 4;
             let value = bytes.get(start..start + 4).map_or(0, |b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]));
             if value != 0 {
                 failed.push(format!("{} ({value})", check.message));

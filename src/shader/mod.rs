@@ -2,9 +2,11 @@
 
 mod access;
 mod compile;
+pub mod layout;
 mod reflect;
 mod strip;
 
 pub use compile::{Compiled, Generated, ShaderCompiler, Source, find, module_include};
+pub use layout::Layout;
 pub use reflect::{Binding, Interface, Resource, Shape};
 pub use strip::{strip_images, strip_outputs};

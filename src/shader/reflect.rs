@@ -1,11 +1,13 @@
 //! What a compiled shader binds, by name.
 
 use super::access::{Access, accesses};
+use super::layout::Layout;
 use super::strip::instructions;
 use crate::vulkan::Stage;
 use spirq::prelude::*;
 use spirq::spirv::{Dim, ExecutionMode as Mode, ImageFormat};
 use spirq::ty::ScalarType;
+use std::sync::Arc;
 
 /// How many dimensions an image has for the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,6 +76,8 @@ pub struct Binding {
     pub binding: u32,
     /// What it is.
     pub resource: Resource,
+    /// How the block of a buffer or uniform lies in memory.
+    pub layout: Option<Arc<Layout>>,
 }
 
 /// What one shader stage touches.
@@ -135,7 +139,8 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
                 let access = accesses.get(&desc_bind.bind()).copied().unwrap_or_default();
                 let resource =
                     resource(desc_ty, ty, access).ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
-                interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource });
+                let layout = Layout::of(ty).map(Arc::new);
+                interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource, layout });
             }
             Variable::PushConstant { ty, .. } if ty.nbyte().is_some_and(|n| n > 4) => {
                 return Err(String::from("the only push constant is pass.index of params.glsl"));

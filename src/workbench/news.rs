@@ -79,7 +79,7 @@ impl Workbench {
                 self.trouble = Some(why);
             }
             Report::Texels(look, texels) => self.inspector.note(look, *texels, &self.wake),
-            Report::Table(table, bytes) => self.tables.note(table, bytes),
+            Report::Table(number, table, bytes) => self.tables.note(number, table, bytes),
             Report::Checks(slot, failed) => self.slots[slot].checks = failed,
             Report::Captured(result) => {
                 let ok = result.is_ok();

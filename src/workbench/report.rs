@@ -5,6 +5,7 @@ use crate::graph::param::Params;
 use crate::graph::plan::TexturePlan;
 use crate::graph::source::Diagnostic;
 use crate::graph::successor::Change;
+use crate::graph::table::Table;
 use crate::lab::Texels;
 use crate::scene::Scene;
 use crate::workbench::judge::Judged;
@@ -115,7 +116,7 @@ pub enum Report {
     /// Texels that were looked for.
     Texels(Look, Box<Texels>),
     /// Bytes of a table's buffer, of slot A.
-    Table(usize, Vec<u8>),
+    Table(usize, Table, Vec<u8>),
     /// Messages of the graph's checks that failed.
     Checks(usize, Vec<String>),
     /// A capture was made, or why not.

@@ -18,13 +18,15 @@ pub struct Tables {
 
 /// Bytes as they came, of the table of that number.
 struct Came {
-    table: usize,
+    number: usize,
+    table: Table,
     bytes: Vec<u8>,
 }
 
-/// Decoded rows of a table.
+/// Decoded rows of the table of that number.
 struct Rows {
-    table: usize,
+    number: usize,
+    table: Table,
     cells: Vec<Vec<Cell>>,
     /// Values of the first column, each once, in the order they come.
     kinds: Vec<String>,
@@ -34,18 +36,18 @@ struct Rows {
 
 impl Tables {
     /// Takes in the content of a table's buffer.
-    pub fn note(&mut self, table: usize, bytes: Vec<u8>) {
-        self.came = Some(Came { table, bytes });
+    pub fn note(&mut self, number: usize, table: Table, bytes: Vec<u8>) {
+        self.came = Some(Came { number, table, bytes });
     }
 
     /// Decodes what came, when it is of the table shown.
-    fn refresh(&mut self, table: &Table) {
-        if let Some(came) = self.came.take().filter(|c| c.table == self.chosen) {
-            let cells = decode(table, &came.bytes);
-            self.rows = Some(Rows { table: came.table, kinds: kinds(&cells), shown: Vec::new(), cells });
+    fn refresh(&mut self) {
+        if let Some(Came { number, table, bytes }) = self.came.take().filter(|c| c.number == self.chosen) {
+            let cells = decode(&table, &bytes);
+            self.rows = Some(Rows { number, table, kinds: kinds(&cells), shown: Vec::new(), cells });
             self.sift();
         }
-        if self.rows.as_ref().is_some_and(|r| r.table != self.chosen) {
+        if self.rows.as_ref().is_some_and(|r| r.number != self.chosen) {
             self.rows = None;
         }
     }
@@ -90,7 +92,7 @@ fn csv<'r>(table: &Table, rows: impl Iterator<Item = &'r Vec<Cell>>) -> std::io:
             ["x", "y", "z", "w"].iter().take(kind.bytes() / 4).map(|p| format!("{}.{p}{}", c.name, unit(c))).collect()
         }
     };
-    out.write_record(table.columns.0.iter().flat_map(|c| parts(&c.value)))?;
+    out.write_record(table.columns.iter().flat_map(parts))?;
     for row in rows {
         let exact = row.iter().flat_map(|cell| match cell {
             Cell::Uint(v) => vec![v.to_string()],
@@ -140,12 +142,12 @@ impl Workbench {
         };
         let list = &outline.graph.tables;
         self.tables.chosen = self.tables.chosen.min(list.len().saturating_sub(1));
-        let Some(mut table) = list.get(self.tables.chosen) else {
+        let Some(mut table) = list.get(self.tables.chosen).map(|t| &t.value) else {
             ui.weak("The graph has no tables");
             return;
         };
         egui::ComboBox::from_id_salt("table").selected_text(&table.title).show_ui(ui, |ui| {
-            for (i, t) in list.iter().enumerate() {
+            for (i, t) in list.iter().map(|t| &t.value).enumerate() {
                 if ui.selectable_label(i == self.tables.chosen, &t.title).on_hover_text(&t.help).clicked() {
                     (self.tables.chosen, self.tables.filter) = (i, None);
                     table = t;
@@ -154,8 +156,8 @@ impl Workbench {
         });
         self.wish.table = Some(self.tables.chosen);
         ui.weak(&table.help);
-        self.tables.refresh(table);
-        self.table_bar(ui, table);
+        self.tables.refresh();
+        self.table_bar(ui, &table.title);
         let shown = self.tables.rows.as_ref().map_or(0, |r| r.shown.len());
         if shown == 0 {
             ui.weak(match (&outline.graph.pointer, &self.tables.rows) {
@@ -165,14 +167,14 @@ impl Workbench {
             });
             return;
         }
-        egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| self.table_body(ui, table));
+        egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| self.table_body(ui, &table.help));
     }
 
-    fn table_bar(&mut self, ui: &mut Ui, table: &Table) {
+    fn table_bar(&mut self, ui: &mut Ui, title: &str) {
         let mut export = false;
         ui.horizontal(|ui| {
             let Some(rows) = &self.tables.rows else { return };
-            let name = table.columns.0.first().map_or("", |c| c.value.name.as_str());
+            let name = rows.table.columns.first().map_or("", |c| c.name.as_str());
             let mut filter = self.tables.filter.clone();
             if rows.kinds.len() > 1 || filter.is_some() {
                 let text = filter.as_ref().map_or(format!("every {name}"), |f| format!("{name} {f}"));
@@ -196,24 +198,23 @@ impl Workbench {
             return;
         }
         let Some(rows) = &self.tables.rows else { return };
-        let bytes = csv(table, rows.shown.iter().filter_map(|i| rows.cells.get(*i)));
-        let name = format!("table-{}-{}", self.name, table.title);
+        let bytes = csv(&rows.table, rows.shown.iter().filter_map(|i| rows.cells.get(*i)));
+        let name = format!("table-{}-{title}", self.name);
         self.export(&name, "csv", bytes);
     }
 
-    fn table_body(&mut self, ui: &mut Ui, table: &Table) {
+    fn table_body(&mut self, ui: &mut Ui, help: &str) {
         let Some(rows) = &self.tables.rows else { return };
         let mut builder = TableBuilder::new(ui).striped(true).auto_shrink(false);
-        for c in &table.columns.0 {
-            let heading = 8.0 * heading(&c.value).len() as f32 + 4.0;
-            builder = builder.column(Width::initial(width(c.value.kind).max(heading)).resizable(true).clip(true));
+        for c in &rows.table.columns {
+            let heading = 8.0 * heading(c).len() as f32 + 4.0;
+            builder = builder.column(Width::initial(width(c.kind).max(heading)).resizable(true).clip(true));
         }
         let head = |mut row: egui_extras::TableRow<'_, '_>| {
-            for c in &table.columns.0 {
-                let c = &c.value;
+            for c in &rows.table.columns {
                 let kind = ABOUT.iter().find(|a| a.0 == c.kind).map_or("", |a| a.1);
                 row.col(|ui| {
-                    let about = format!("{}: {kind}{}\n{}", c.name, unit(c), table.help);
+                    let about = format!("{}: {kind}{}\n{help}", c.name, unit(c));
                     ui.strong(heading(c)).on_hover_text(about);
                 });
             }
@@ -250,7 +251,8 @@ mod tests {
     fn table() -> (Table, Vec<Vec<Cell>>) {
         let text = r#"(buffer: "b", rows: 0, start: 4, stride: 16, title: "t", help: "h", columns: [
             (name: "cone", at: 0, as: uint), (name: "at", at: 4, as: vec3, unit: "m")])"#;
-        let table = crate::graph::source::options().from_str(text).unwrap();
+        let decl: crate::graph::table::TableDecl = crate::graph::source::options().from_str(text).unwrap();
+        let table = decl.by_bytes().unwrap();
         let rows: [(u32, [f32; 3]); 3] = [(2, [0.1, 1.0, 2.0]), (0, [3.0, 1e-7, -4.0]), (2, [f32::NAN, 0.0, 7.0])];
         let mut bytes = 3_u32.to_ne_bytes().to_vec();
         for (cone, at) in rows {
@@ -269,8 +271,8 @@ mod tests {
         assert!(sift(&cells, Some("9")).is_empty());
         let mut tables = Tables { filter: Some("2".into()), ..Tables::default() };
         // Bytes of a table that is not shown are dropped.
-        tables.note(4, vec![0; 4]);
-        tables.refresh(&table);
+        tables.note(4, table, vec![0; 4]);
+        tables.refresh();
         assert!(tables.rows.is_none());
     }
 

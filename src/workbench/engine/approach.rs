@@ -21,7 +21,7 @@ impl Run<'_> {
             && let (Some(table), Some(loaded)) = (self.wish.table, &self.slots[0].loaded)
             && let Some(table) = loaded.graph.tables.get(table)
         {
-            wanted.push(table.buffer.value.clone());
+            wanted.push(table.value.buffer().to_string());
         }
         Key {
             graph: slot.graph.clone(),

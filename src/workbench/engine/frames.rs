@@ -126,11 +126,12 @@ impl Run<'_> {
             }
         }
         if number == 0
-            && let Some(table) = self.wish.table
-            && let Some(name) = session.graph.tables.get(table).map(|t| t.buffer.value.clone())
+            && let Some(number) = self.wish.table
+            && let Some(name) = session.graph.tables.get(number).map(|t| t.value.buffer().to_string())
+            && let Some(table) = session.table(number)
         {
             let bytes = session.buffer(&name)?;
-            self.out.send(Report::Table(table, bytes));
+            self.out.send(Report::Table(number, table, bytes));
         }
         Ok(())
     }

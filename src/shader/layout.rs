@@ -1,0 +1,255 @@
+//! How the blocks of buffers lie in memory, as the SPIR-V of a shader says: names, offsets, strides.
+
+use spirq::prelude::Type;
+use spirq::ty::ScalarType;
+use std::fmt;
+
+/// Kinds of 32-bit numbers, and the rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "named after GLSL's types")]
+pub enum Scalar {
+    Float,
+    Int,
+    Uint,
+    /// Of another width, in bits.
+    Other(u32),
+}
+
+/// A type with its layout.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// A number.
+    Scalar(Scalar),
+    /// 2 to 4 numbers.
+    Vector(Scalar, u32),
+    /// Columns of so many numbers.
+    Matrix {
+        /// Number of columns.
+        columns: u32,
+        /// Numbers of a column.
+        rows: u32,
+        /// Bytes from column to column.
+        stride: u32,
+    },
+    /// Elements one after another; no count where the buffer's length decides.
+    Array {
+        /// An element.
+        of: Box<Layout>,
+        /// How many.
+        count: Option<u32>,
+        /// Bytes from one to the next.
+        stride: u32,
+    },
+    /// A struct, or the block of a buffer.
+    Struct(Vec<Member>),
+}
+
+/// A member of a struct.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Member {
+    /// Name in GLSL.
+    pub name: String,
+    /// Bytes from the start of the struct.
+    pub offset: u32,
+    /// What it is.
+    pub layout: Layout,
+}
+
+/// A name in a path that is not there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing {
+    /// The path before it.
+    pub of: String,
+    /// The name.
+    pub name: String,
+    /// What there is instead.
+    pub known: Vec<String>,
+}
+
+impl Layout {
+    /// Of a reflected type; nothing for one without a layout.
+    pub(super) fn of(ty: &Type) -> Option<Layout> {
+        let narrow = |n: usize| u32::try_from(n).ok();
+        Some(match ty {
+            Type::Scalar(s) => Layout::Scalar(scalar(s)),
+            Type::Vector(v) => Layout::Vector(scalar(&v.scalar_ty), v.nscalar),
+            Type::Matrix(m) => {
+                Layout::Matrix { columns: m.nvector, rows: m.vector_ty.nscalar, stride: narrow(m.stride?)? }
+            }
+            Type::Array(a) => Layout::Array {
+                of: Box::new(Layout::of(&a.element_ty)?),
+                count: a.nelement,
+                stride: narrow(a.stride?)?,
+            },
+            Type::Struct(s) => {
+                let member = |m: &spirq::ty::StructMember| {
+                    Some(Member {
+                        name: m.name.clone().unwrap_or_default(),
+                        offset: narrow(m.offset?)?,
+                        layout: Layout::of(&m.ty)?,
+                    })
+                };
+                Layout::Struct(s.members.iter().map(member).collect::<Option<_>>()?)
+            }
+            _ => return None,
+        })
+    }
+
+    /// Its members, if it is a struct.
+    pub fn members(&self) -> &[Member] {
+        match self {
+            Layout::Struct(members) => members,
+            _ => &[],
+        }
+    }
+
+    /// Bytes from its start to the end of what has a fixed place: all of it, but for an array without a count at the end.
+    pub fn bytes(&self) -> u32 {
+        match self {
+            Layout::Scalar(s) => s.bytes(),
+            Layout::Vector(s, n) => s.bytes() * n,
+            Layout::Matrix { columns, rows, stride } => {
+                stride.saturating_mul(columns.saturating_sub(1)).saturating_add(4 * rows)
+            }
+            Layout::Array { count, stride, .. } => stride.saturating_mul(count.unwrap_or(0)),
+            Layout::Struct(members) => {
+                members.iter().map(|m| m.offset.saturating_add(m.layout.bytes())).max().unwrap_or(0)
+            }
+        }
+    }
+
+    /// The array at the end of a block whose length is the buffer's.
+    pub fn endless(&self) -> Option<(&Member, u32)> {
+        let last = self.members().last()?;
+        match &last.layout {
+            Layout::Array { count: None, stride, .. } => Some((last, *stride)),
+            _ => None,
+        }
+    }
+
+    /// What a path names, and its byte: members by name, components of vectors by x y z w, elements by `[number]`.
+    ///
+    /// # Errors
+    /// The first name that is not there.
+    pub fn find(&self, path: &str) -> Result<(u32, Layout), Missing> {
+        let mut at = (0, self.clone());
+        let mut walked = String::new();
+        for part in path.split('.') {
+            let (name, indices) = part.split_once('[').map_or((part, ""), |(name, rest)| (name, rest));
+            at = step(&at, name).map_err(|known| Missing { of: walked.clone(), name: name.into(), known })?;
+            for index in indices.split('[').filter(|i| !i.is_empty()) {
+                let missing = |known: String| Missing { of: walked.clone(), name: part.into(), known: vec![known] };
+                let number: u32 = index.trim_end_matches(']').parse().map_err(|_| missing(format!("{name}[0]")))?;
+                at = match &at.1 {
+                    Layout::Array { of, count, stride } if count.is_none_or(|n| number < n) => {
+                        (at.0.saturating_add(stride.saturating_mul(number)), (**of).clone())
+                    }
+                    Layout::Array { count, .. } => {
+                        return Err(missing(format!("{name}[{}]", count.unwrap_or(1).saturating_sub(1))));
+                    }
+                    _ => return Err(missing(name.into())),
+                };
+            }
+            if !walked.is_empty() {
+                walked.push('.');
+            }
+            walked.push_str(part);
+        }
+        Ok(at)
+    }
+
+    /// Its 32-bit numbers and their bytes, where it has no array without a count; at most 64.
+    fn words(&self, start: u32) -> Vec<(u32, Scalar)> {
+        let all: Vec<(u32, Scalar)> = match self {
+            Layout::Scalar(s) => vec![(start, *s)],
+            Layout::Vector(s, n) => (0..*n).map(|i| (start + 4 * i, *s)).collect(),
+            Layout::Matrix { .. } => vec![],
+            Layout::Array { of, count, stride } => {
+                (0..count.unwrap_or(0).min(64)).flat_map(|i| of.words(start.saturating_add(stride * i))).collect()
+            }
+            Layout::Struct(members) => {
+                members.iter().flat_map(|m| m.layout.words(start.saturating_add(m.offset))).collect()
+            }
+        };
+        all.into_iter().take(64).collect()
+    }
+
+    /// The members that are single numbers, those of structs in it too, with their bytes.
+    fn scalars(&self, start: u32) -> Vec<(u32, Scalar)> {
+        let of = |m: &Member| match &m.layout {
+            Layout::Scalar(s) => vec![(start.saturating_add(m.offset), *s)],
+            inner => inner.scalars(start.saturating_add(m.offset)),
+        };
+        self.members().iter().flat_map(of).collect()
+    }
+
+    /// Whether `count` `uint`s in a row begin at what a path found: a vector, array or struct of as many, or the first of
+    /// as many members that follow one another.
+    pub fn has_uints(&self, (offset, found): &(u32, Layout), count: u32) -> bool {
+        let words = match found {
+            Layout::Scalar(_) => self.scalars(0),
+            _ => Some(found.words(*offset)).filter(|w| w.len() == count as usize).unwrap_or_default(),
+        };
+        (0..count).all(|i| words.contains(&(offset.saturating_add(4 * i), Scalar::Uint)))
+    }
+}
+
+/// One name further; the names that there are where it is not there.
+fn step((offset, layout): &(u32, Layout), name: &str) -> Result<(u32, Layout), Vec<String>> {
+    match layout {
+        Layout::Struct(members) => match members.iter().find(|m| m.name == name) {
+            Some(m) => Ok((offset.saturating_add(m.offset), m.layout.clone())),
+            None => Err(members.iter().map(|m| m.name.clone()).collect()),
+        },
+        Layout::Vector(s, n) => {
+            let names: Vec<&str> = ["x", "y", "z", "w"].into_iter().take(*n as usize).collect();
+            match (0..).zip(&names).find(|(_, c)| **c == name) {
+                Some((i, _)) => Ok((offset + s.bytes() * i, Layout::Scalar(*s))),
+                None => Err(names.into_iter().map(String::from).collect()),
+            }
+        }
+        _ => Err(vec![]),
+    }
+}
+
+fn scalar(ty: &ScalarType) -> Scalar {
+    match ty {
+        ScalarType::Float { bits: 32, .. } => Scalar::Float,
+        ScalarType::Integer { bits: 32, is_signed: true } => Scalar::Int,
+        ScalarType::Integer { bits: 32, is_signed: false } => Scalar::Uint,
+        ScalarType::Float { bits, .. } | ScalarType::Integer { bits, .. } => Scalar::Other(*bits),
+        _ => Scalar::Other(32),
+    }
+}
+
+impl Scalar {
+    fn bytes(self) -> u32 {
+        match self {
+            Scalar::Other(bits) => bits / 8,
+            _ => 4,
+        }
+    }
+}
+
+impl fmt::Display for Layout {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Layout::Scalar(Scalar::Float) => write!(f, "float"),
+            Layout::Scalar(Scalar::Int) => write!(f, "int"),
+            Layout::Scalar(Scalar::Uint) => write!(f, "uint"),
+            Layout::Scalar(Scalar::Other(bits)) => write!(f, "number of {bits} bits"),
+            Layout::Vector(Scalar::Float, n) => write!(f, "vec{n}"),
+            Layout::Vector(Scalar::Int, n) => write!(f, "ivec{n}"),
+            Layout::Vector(Scalar::Uint, n) => write!(f, "uvec{n}"),
+            Layout::Vector(Scalar::Other(bits), n) => write!(f, "vector of {n} numbers of {bits} bits"),
+            Layout::Matrix { columns, rows, .. } if columns == rows => write!(f, "mat{columns}"),
+            Layout::Matrix { columns, rows, .. } => write!(f, "mat{columns}x{rows}"),
+            Layout::Array { of, count: Some(n), .. } => write!(f, "{of}[{n}]"),
+            Layout::Array { of, count: None, .. } => write!(f, "{of}[]"),
+            Layout::Struct(members) => {
+                let names: Vec<&str> = members.iter().map(|m| m.name.as_str()).collect();
+                write!(f, "struct {{ {} }}", names.join(", "))
+            }
+        }
+    }
+}
