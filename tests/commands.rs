@@ -122,7 +122,7 @@ fn render_writes_a_png_and_its_measurements() {
     assert!(["name", "driver", "api"].iter().all(|f| stats["device"][f].as_str().is_some_and(|s| !s.is_empty())));
     // Every parameter is there, in its own JSON type.
     assert_eq!(stats["params"]["voxel_dim"], 32);
-    assert_eq!(stats["params"]["temporal"], false);
+    assert_eq!(stats["params"]["specular_cone"], true);
     assert_eq!(stats["params"]["voxelizer"], "raster");
     assert_eq!(stats["params"]["volume_size"], serde_json::json!([32.0, 32.0, 32.0]));
     for pass in stats["passes"].as_array().unwrap() {
@@ -297,7 +297,7 @@ fn graph_explains_itself() {
         "{params}"
     );
     assert!(params.contains("  voxelizer = raster  (one of raster, tessellated)\n"), "{params}");
-    let set = ["passes/vct.ron", "--params", "--set", "warp=spline", "--set", "warp_alpha=0.5"];
+    let set = ["passes/warps.ron", "--params", "--set", "warp=spline", "--set", "warp_alpha=0.5"];
     let values = graph(&set);
     assert!(values.contains("\n  warp_slope = 1.25  (select("), "{values}");
 
@@ -346,11 +346,11 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
         |         "voxel_dim": 8,
     checked 5 files, 1 errors
     "#);
-    edit("shaders/include/cone.glsl", "vec4", "vec5");
+    edit("shaders/cones/cone.glsl", "vec4", "vec5");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(said.contains("shaders/include/cone.glsl:") && said.contains("vec5"), "{said}");
+    assert!(said.contains("shaders/cones/cone.glsl:") && said.contains("vec5"), "{said}");
 }
 
 #[test]

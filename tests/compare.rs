@@ -124,11 +124,12 @@ fn what_cannot_be_compared_is_said() {
 /// A copy of the program's graphs and shaders, so that what is cached in it is the test's own.
 fn home() -> TempDir {
     let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders", "shaders/include", "configs"] {
-        std::fs::create_dir(home.path().join(folder)).unwrap();
-        for entry in std::fs::read_dir(root().join(folder)).unwrap().flatten().filter(|e| e.path().is_file()) {
-            std::fs::copy(entry.path(), home.path().join(folder).join(entry.file_name())).unwrap();
-        }
+    for folder in ["passes", "shaders"] {
+        common::copy(&root().join(folder), &home.path().join(folder));
+    }
+    std::fs::create_dir(home.path().join("configs")).unwrap();
+    for file in ["default.ron", "thesis.ron"] {
+        std::fs::copy(root().join("configs").join(file), home.path().join("configs").join(file)).unwrap();
     }
     home
 }

@@ -34,7 +34,7 @@ impl Bench {
         for (name, text) in shaders {
             bench.write(&format!("shaders/{name}"), &glsl(text));
         }
-        let scene = std::fs::read_to_string(common::root().join("shaders/include/scene.glsl")).unwrap();
+        let scene = std::fs::read_to_string(common::root().join("shaders/common/scene.glsl")).unwrap();
         bench.write("shaders/include/scene.glsl", &scene);
         bench
     }

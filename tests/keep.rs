@@ -61,7 +61,7 @@ impl Project {
         project.write("passes/graph.ron", GRAPH);
         project.write("shaders/fill.comp", &FILL.replace("scene.sky", "sceneInfo.sky"));
         project.write("shaders/include/wave.glsl", WAVE);
-        let include = std::fs::read_to_string(root().join("shaders/include/scene.glsl")).unwrap();
+        let include = std::fs::read_to_string(root().join("shaders/common/scene.glsl")).unwrap();
         project.write("shaders/include/scene.glsl", &include);
         project.write("configs/run.ron", "(graph: \"graph.ron\", scene: \"furnace\", size: (64, 64))");
         project
@@ -459,7 +459,7 @@ fn the_method_is_captured_and_replayed() {
     let mut experiment = common::experiment("cornell", (48, 32), &[("voxel_dim", "32"), ("shadow_dim", "256")]);
     experiment.lights.push((named("lamp"), LightChange { color: Some((9.0, 8.0, 7.0)), ..LightChange::default() }));
     let what = capture::What {
-        resources: vec![capture::Resource { name: "voxelFaces".into(), mip: 1, layer: 0 }],
+        resources: vec![capture::Resource { name: "voxelRadianceAniso".into(), mip: 1, layer: 0 }],
         ..capture::What::default()
     };
     let path = capture::take(&lab, &experiment, scene("cornell"), &what, folder.path(), "box").unwrap();

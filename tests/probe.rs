@@ -148,7 +148,7 @@ fn without_a_pointer_there_is_no_probe() {
 fn lines_are_drawn_over_every_view_and_nothing_else_changes() {
     let lab = lab(root());
     let bytes = |session: &mut Session, name: &str| session.texels(name, 0, 0).unwrap().bytes;
-    let views = ["shaded", "direct", "diffuse", "specular", "occlusion", "normal", "depth", "density", "voxels"];
+    let views = ["shaded", "direct", "diffuse", "specular", "occlusion", "normal", "depth", "voxels"];
     for view in views {
         let settings = [("view", view)];
         let mut without = frame(&lab, "cornell", None, &settings, &["display", "radiance"]);

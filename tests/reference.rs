@@ -18,11 +18,12 @@ use tempfile::TempDir;
 /// A folder with the repository's graphs, shaders and experiments, and no references.
 fn empty_home() -> TempDir {
     let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders", "shaders/include", "configs"] {
-        std::fs::create_dir_all(home.path().join(folder)).unwrap();
-        for file in std::fs::read_dir(root().join(folder)).unwrap().flatten().filter(|f| f.path().is_file()) {
-            std::fs::copy(file.path(), home.path().join(folder).join(file.file_name())).unwrap();
-        }
+    for folder in ["passes", "shaders"] {
+        common::copy(&root().join(folder), &home.path().join(folder));
+    }
+    std::fs::create_dir(home.path().join("configs")).unwrap();
+    for file in ["default.ron", "thesis.ron"] {
+        std::fs::copy(root().join("configs").join(file), home.path().join("configs").join(file)).unwrap();
     }
     home
 }
@@ -318,7 +319,7 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
         change(&mut other);
         assert_eq!(found(&lab.home, &plain(), &Arc::new(other), 1), None, "{what}");
     }
-    let shader = home.path().join("shaders/include/brdf.glsl");
+    let shader = home.path().join("shaders/common/brdf.glsl");
     let text = std::fs::read_to_string(&shader).unwrap();
     std::fs::write(&shader, text.replace("s.albedo / PI", "s.albedo / 3.0")).unwrap();
     assert_eq!(found(&lab.home, &plain(), &cornell, 1), None, "shader");

@@ -213,8 +213,8 @@ fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
     let steps: [&[(&str, &str)]; 7] = [
         &[],
         &[("voxel_dim", "48")],
-        &[("opacity", "stored")],
-        &[("temporal", "true")],
+        &[("opacity", "cell")],
+        &[("temporal_factor", "0.8")],
         &[("view", "normal")],
         &[("warp", "spline")],
         &[],
@@ -231,7 +231,7 @@ fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
             next.succeed(old).unwrap();
         }
         frames(&mut next, 1);
-        if !step.contains(&("temporal", "true")) {
+        if !step.contains(&("temporal_factor", "0.8")) {
             let mut fresh = lab.build(&experiment, &loaded, cornell.clone(), wanted, None).unwrap();
             frames(&mut fresh, 1);
             let (a, b) = (next.texels("display", 0, 0).unwrap().bytes, fresh.texels("display", 0, 0).unwrap().bytes);

@@ -119,7 +119,7 @@ fn value(table: &[BTreeMap<String, String>], case: &str, method: &str, column: &
 #[test]
 fn a_still_scene_is_still() {
     let home = home();
-    let methods = "\"uniform\": {}, \"temporal\": { \"temporal\": true }, \"tracking\": { \"volume\": \"camera\", \
+    let methods = "\"uniform\": {}, \"temporal\": { \"graph\": \"temporal.ron\" }, \"tracking\": { \"volume\": \"camera\", \
                    \"volume_size\": (10, 10, 10) }, \"tessellated\": { \"voxelizer\": \"tessellated\" }";
     let file = suite(home.path(), methods, "\"still\": (), \"yaw\": (motion: Camera(yaw: 1))");
     succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
@@ -165,7 +165,7 @@ fn the_reference_as_a_method_is_at_its_own_noise() {
 #[test]
 fn a_switched_light_arrives_as_late_as_the_filter_says() {
     let home = home();
-    let methods = "\"none\": {}, \"half\": { \"temporal\": true, \"temporal_factor\": 0.5 }, \"slow\": { \"temporal\": true, \"temporal_factor\": 0.8 }";
+    let methods = "\"none\": {}, \"half\": { \"graph\": \"temporal.ron\", \"temporal_factor\": 0.5 }, \"slow\": { \"graph\": \"temporal.ron\", \"temporal_factor\": 0.8 }";
     let cases = "\"on\": (frames: 40, motion: Switch(name: \"lamp\", at: 1, from: 0, to: 1)), \
                  \"off\": (frames: 40, motion: Switch(name: \"lamp\", at: 1, from: 1, to: 0.2))";
     let file = suite(home.path(), methods, cases);
@@ -203,7 +203,7 @@ fn a_cut_and_a_path() {
     let home = home();
     let path = home.path().join("turn.ron");
     std::fs::write(&path, "(keys: [(time: 0, eye: (0, 1.5, 2.5), target: (0, 1, 0), fov_y: 60), (time: 1, eye: (1, 1.5, 2.5), target: (0, 1, 0), fov_y: 60)])").unwrap();
-    let methods = "\"uniform\": {}, \"filtered\": { \"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"volume_snap\": \"off\", \"temporal\": true }";
+    let methods = "\"uniform\": {}, \"filtered\": { \"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"volume_snap\": \"off\", \"graph\": \"temporal.ron\" }";
     let to = "(eye: (0.9, 1.4, 1.9), target: (0, 1, -1), fov_y: 60)";
     let cases = format!(
         "\"cut\": (warmup: 2, frames: 40, motion: Cut(to: {to}, at: 2)), \
@@ -364,7 +364,7 @@ fn equal_cost() {
 #[test]
 fn killed_and_continued() {
     let home = home();
-    let methods = "\"a\": {}, \"b\": { \"temporal\": true }, \"c\": { \"warp\": \"spline\" }";
+    let methods = "\"a\": {}, \"b\": { \"graph\": \"temporal.ron\" }, \"c\": { \"graph\": \"warps.ron\", \"warp\": \"spline\" }";
     let cases = "\"still\": (), \"yaw\": (motion: Camera(yaw: 0.5)), \"on\": (frames: 6, motion: Switch(name: \"lamp\", at: 1, from: 0, to: 1))";
     let file = suite(home.path(), methods, cases);
     let results = home.path().join("out/results");

@@ -35,8 +35,19 @@ fn run(session: &mut Session, count: usize) {
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
 }
 
+/// With a graph whose volume can be moved under the picture.
+fn moved(mut e: Experiment) -> Experiment {
+    e.graph = match e.graph.as_str() {
+        "vct.ron" => common::graph_with(&[("volume_offset", "")]),
+        "temporal.ron" => common::graph_with(&[("volume_offset", ""), ("temporal_cut", "")]),
+        other => other.into(),
+    };
+    e
+}
+
 /// In the middle of the Cornell box, towards its back wall.
 fn inside(mut e: Experiment) -> Experiment {
+    e = moved(e);
     e.camera = CameraChoice::Placed(PlacedCamera::new((2.7, 2.5, 1.0), (2.9, 2.4, 5.0), 70.0));
     e
 }
@@ -96,7 +107,7 @@ fn every_block_is_filled() {
             for block in curved..curved + cascades {
                 let number = block.to_string();
                 let set =
-                    [*settings, &[("voxel_dim", "48"), ("voxelizer", voxelizer), ("voxel_view_block", &number), QUICK]]
+                    [*settings, &[("voxel_dim", "48"), ("voxelizer", voxelizer), ("voxel_view_cascade", &number), QUICK]]
                         .concat();
                 let mut session = frames(&lab, &inside(experiment("cornell", (16, 16), &set)), &VOXELS, 1);
                 let (grid, voxels) = oracle::read(&mut session).unwrap();
@@ -399,14 +410,13 @@ fn the_temporal_filter_gains_nothing() {
         ("volume", "camera"),
         ("volume_size", "(8, 8, 8)"),
         ("volume_snap", "voxel"),
-        ("shade_stage", "compute"),
         QUICK,
     ];
     let e = inside(experiment("cornell", (24, 18), &set));
     let filtered = inside(experiment(
         "cornell",
         (24, 18),
-        &[&set[..], &[("temporal", "true"), ("temporal_factor", "0.95"), ("temporal_cut", "100")]].concat(),
+        &[&set[..], &[("temporal_factor", "0.95"), ("temporal_cut", "100")]].concat(),
     ));
     let mut plain = frames(&lab, &e, &["voxelRadiance"], 1);
     let truth = mean(&floats(&mut plain, "voxelRadiance", 0));
@@ -430,9 +440,9 @@ fn the_temporal_filter_gains_nothing() {
 #[test]
 fn a_cut_resets_the_temporal_filter() {
     let lab = lab(root());
-    let set = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), ("temporal", "true"), QUICK];
-    let e = inside(experiment("cornell", (24, 18), &set));
-    let plain = inside(experiment("cornell", (24, 18), &[&set[..], &[("temporal", "false")]].concat()));
+    let set = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), QUICK];
+    let e = inside(experiment("cornell", (24, 18), &[&set[..], &[("temporal_cut", "1.0")]].concat()));
+    let plain = inside(experiment("cornell", (24, 18), &set));
     let mut dark = scene("cornell").lights.clone();
     dark.iter_mut().for_each(|l| l.color *= 0.1);
     // Light falls to a tenth in the frame in which the camera goes: what is brighter is the past.
@@ -460,7 +470,7 @@ fn cascades_meet_without_a_seam() {
     let size = (160u32, 120u32);
     let picture = |settings: &[(&str, &str)]| {
         let e = inside(experiment("cornell", size, &[settings, &[QUICK]].concat()));
-        let mut session = frames(&lab, &e, &["diffuseIndirect", "surfaceDistance", "surfaceNormal", "volume"], 1);
+        let mut session = frames(&lab, &e, &["diffuseIndirect", "gbufferDistance", "surfaceNormal", "volume"], 1);
         let light: Vec<f64> =
             floats(&mut session, "diffuseIndirect", 0).iter().map(|t| f64::from(t[0] + t[1] + t[2])).collect();
         (light, session)
@@ -475,7 +485,7 @@ fn cascades_meet_without_a_seam() {
         )
     };
     let (low, edge) = (vector(0), vector(4));
-    let (distance, normal) = (floats(&mut session, "surfaceDistance", 0), floats(&mut session, "surfaceNormal", 0));
+    let (distance, normal) = (floats(&mut session, "gbufferDistance", 0), floats(&mut session, "surfaceNormal", 0));
     let (eye, target) = (DVec3::new(2.7, 2.5, 1.0), DVec3::new(2.9, 2.4, 5.0));
     let toward = (target - eye).normalize();
     let right = toward.cross(DVec3::Y).normalize();

@@ -77,7 +77,7 @@ const LINE: usize = 4096;
 
 /// The method with one pass more, which tells what `volume.glsl` says about points.
 const GRAPH: &str = r#"(
-    include: ["vct.ron"],
+    include: ["warps.ron"],
     params: [
         Vec3(name: "density_at", default: (0.5, 0.5, 0.5), help: "Places along x, from 0 to 1, whose density colours are asked for."),
     ],
@@ -88,9 +88,10 @@ const GRAPH: &str = r#"(
 const TELL: &str = "#version 460
 #extension GL_GOOGLE_include_directive : require
 #include \"params.glsl\"
-#include \"scene.glsl\"
-#include \"random.glsl\"
-#include \"volume.glsl\"
+#include \"common/scene.glsl\"
+#include \"common/random.glsl\"
+#include \"common/volume.glsl\"
+#include \"display/density.glsl\"
 layout(local_size_x = 64) in;
 struct Row { vec4 there, back, at, image, again, a0, a1, a2, d0, d1, d2, inside; };
 struct Step { vec4 at, image; };
@@ -98,8 +99,8 @@ struct End { vec4 at, image, past; };
 layout(std430) writeonly buffer Told { Row rows[100000]; Step line[3 * 4096]; End ends[27]; vec4 density[3]; } told;
 const float STEP = 0.01; // m
 
-vec3 forward(vec3 p) { return worldToVolume(volume.grids[0], p); }
-vec3 world(vec3 u) { return volumeToWorld(volume.grids[0], u); }
+vec3 forward(vec3 p) { return worldToVolume(volume.maps[0], p); }
+vec3 world(vec3 u) { return volumeToWorld(volume.maps[0], u); }
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
@@ -109,7 +110,7 @@ void main() {
     // Everywhere in the world's part, not only where cells are dense.
     vec3 p = CURVED ? world(r) : mix(world(vec3(0.0)), world(vec3(1.0)), r);
     vec3 image = forward(p);
-    mat3 axes = cellAxes(volume.grids[0], p);
+    mat3 axes = cellAxes(volume.maps[0], p);
     vec3 d[3], inside = vec3(1.0);
     for (int a = 0; a < 3; a++) {
         vec3 before = p, after = p;
@@ -119,7 +120,7 @@ void main() {
         if (!inVolume(forward(before)) || !inVolume(forward(after))) inside = vec3(0.0);
     }
     // Not where spheres have their seam and their poles.
-    if (WARP == WARP_SPHERICAL && (abs(image.x - 0.5) > 0.45 || abs(image.y - 0.5) > 0.35)) inside = vec3(0.0);
+    if (CURVED_SEAM && (abs(image.x - 0.5) > 0.45 || abs(image.y - 0.5) > 0.35)) inside = vec3(0.0);
     told.rows[i] = Row(vec4(u, 0.0), vec4(forward(world(u)), 0.0), vec4(p, 0.0), vec4(image, 0.0), vec4(world(image), 0.0),
         vec4(axes[0], 0.0), vec4(axes[1], 0.0), vec4(axes[2], 0.0), vec4(d[0], 0.0), vec4(d[1], 0.0), vec4(d[2], 0.0), vec4(inside, 0.0));
     if (i < 3u * 4096u) {
@@ -135,7 +136,7 @@ void main() {
     if (i < 3u) {
         vec3 at = world(vec3(0.5));
         at.x = mix(world(vec3(0.0)).x, world(vec3(1.0)).x, params.density_at[i]);
-        told.density[i] = vec4(densityColor(volume.grids[0], at), 0.0);
+        told.density[i] = vec4(densityColor(volume.maps[0], at), 0.0);
     }
 }
 ";
@@ -333,7 +334,7 @@ fn density_is_told_by_hue() {
     // In the picture: green alone without a warp; with one, bluer in the middle than at the sides.
     let view = |warp: &str| -> Vec<[f32; 4]> {
         let box_ = [("volume", "box"), ("volume_center", "(2.78, 2.74, 2.8)"), ("volume_size", "(6, 6, 6)")];
-        let settings = [&box_[..], &[("voxel_dim", "32"), ("view", "density"), ("warp", warp)]].concat();
+        let settings = [&box_[..], &[("voxel_dim", "32"), ("density", "surfaces"), ("warp", warp)]].concat();
         let mut session = prepare(&lab, &experiment("cornell", (32, 32), &settings), &["inspected"]);
         session.frame(0.0).unwrap();
         session.finish().unwrap();

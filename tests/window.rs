@@ -115,41 +115,41 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
     let mut desk = small();
     let first = desk.first_picture();
     let good = desk.shows(&first);
-    let display = desk.file("shaders/display.frag");
-    let cone = desk.file("shaders/include/cone.glsl");
+    let display = desk.file("shaders/display/display.frag");
+    let cone = desk.file("shaders/cones/cone.glsl");
 
     // Saved in two ways: a new file renamed over the old one, and the old file written.
     let line = "toneMap(c * exp2(params.exposure))";
     let dimmed = with(&display, line, &format!("0.5 * {line}"));
     let mark = desk.now();
-    desk.rename_into("shaders/display.frag", &dimmed);
+    desk.rename_into("shaders/display/display.frag", &dimmed);
     let dim = desk.other_picture(mark, 0, &first);
     desk.shows(&dim);
     let built = desk.event(mark, "built");
     assert_eq!(number(&built, "rebuilt"), 1.0, "only the pass that shows: {built}");
     assert!(number(&built, "kept") > 5.0, "{built}");
     let mark = desk.now();
-    desk.write("shaders/display.frag", &display);
+    desk.write("shaders/display/display.frag", &display);
     desk.picture(mark, 0, &first);
     desk.shows(&first);
     let mark = desk.now();
-    desk.write("shaders/display.frag", &dimmed);
+    desk.write("shaders/display/display.frag", &dimmed);
     desk.picture(mark, 0, &dim);
     let mark = desk.now();
-    desk.rename_into("shaders/display.frag", &display);
+    desk.rename_into("shaders/display/display.frag", &display);
     desk.picture(mark, 0, &first);
     desk.shows(&first);
 
     // An include builds what includes it.
     let mark = desk.now();
-    desk.rename_into("shaders/include/cone.glsl", &with(&cone, "vec3 color = vec3(0.0);", "vec3 color = vec3(0.1);"));
+    desk.rename_into("shaders/cones/cone.glsl", &with(&cone, "vec3 color = vec3(0.0);", "vec3 color = vec3(0.1);"));
     let glowing = desk.other_picture(mark, 0, &first);
     let built = desk.event(mark, "built");
     assert_eq!(number(&built, "rebuilt"), 1.0, "only shading traces cones: {built}");
     assert!(number(&built, "kept") > 5.0, "{built}");
     desk.shows(&glowing);
     let mark = desk.now();
-    desk.rename_into("shaders/include/cone.glsl", &cone);
+    desk.rename_into("shaders/cones/cone.glsl", &cone);
     desk.picture(mark, 0, &first);
     desk.shows(&first);
 
@@ -159,19 +159,19 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
     let source = "bind: { \"source\": (of: \"radiance\") }, color: [(to: \"display\")])";
     let cases = [
         (
-            "shaders/display.frag",
+            "shaders/display/display.frag",
             with(&display, "uniform sampler2D source;", "uniform sampler2D source"),
             None,
             "syntax",
         ),
         (
-            "shaders/display.frag",
+            "shaders/display/display.frag",
             with(&display, "#include \"params.glsl\"", "#include \"params.glsl\"\n#include \"parms.glsl\""),
             Some(at(&display, "#include \"params.glsl\"") + 1),
             "parms.glsl",
         ),
         (
-            "shaders/display.frag",
+            "shaders/display/display.frag",
             display.replace("sampler2D source", "sampler2D sourze").replace("texelFetch(source", "texelFetch(sourze"),
             Some(at(&display, "sampler2D source")),
             "sourze",
@@ -287,7 +287,7 @@ fn a_window_may_become_tiny_or_vanish_for_a_while() {
     let mut desk = small();
     let first = desk.first_picture();
     desk.shows(&first);
-    let dimmed = desk.file("shaders/display.frag").replace("c * exp2", "0.5 * c * exp2");
+    let dimmed = desk.file("shaders/display/display.frag").replace("c * exp2", "0.5 * c * exp2");
     for (width, height) in [(1, 1), (3000, 2), (333, 222), (1, 700)] {
         desk.resize(width, height);
         std::thread::sleep(Duration::from_millis(150));
@@ -298,7 +298,7 @@ fn a_window_may_become_tiny_or_vanish_for_a_while() {
     desk.unmap();
     std::thread::sleep(Duration::from_millis(200));
     let mark = desk.now();
-    desk.rename_into("shaders/display.frag", &dimmed);
+    desk.rename_into("shaders/display/display.frag", &dimmed);
     std::thread::sleep(Duration::from_millis(300));
     desk.map();
     let dim = desk.other_picture(mark, 0, &first);
@@ -333,13 +333,13 @@ fn two_hundred_reloads_leave_nothing_behind() {
     let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut desk = Desk::open(SMALL, &["--size", "32x24"]);
     desk.first_picture();
-    let display = desk.file("shaders/display.frag");
+    let display = desk.file("shaders/display/display.frag");
     let start = Instant::now();
     let (mut memory, mut objects) = (0.0, 0.0);
     for i in 0..200 {
         let mark = desk.now();
         let factor = if i % 2 == 0 { "0.5 * c * exp2" } else { "0.6 * c * exp2" };
-        desk.rename_into("shaders/display.frag", &display.replace("c * exp2", factor));
+        desk.rename_into("shaders/display/display.frag", &display.replace("c * exp2", factor));
         let built = desk.event(mark, "built");
         if i == 20 {
             (memory, objects) = (desk.memory(), number(&built, "objects"));
@@ -364,7 +364,7 @@ fn a_save_is_on_the_screen_before_one_looks_up() {
     let _alone = ALONE.write().unwrap_or_else(PoisonError::into_inner);
     let mut desk = small();
     let mut last = desk.first_picture();
-    let cone = desk.file("shaders/include/cone.glsl");
+    let cone = desk.file("shaders/cones/cone.glsl");
     // What else the machine does only adds: the best of three rounds counts.
     let mut rounds = Vec::new();
     for round in 0..3 {
@@ -386,7 +386,7 @@ fn saves(desk: &mut Desk, last: &mut String, cone: &str, first: u32) -> (f64, f6
         let text = with(cone, "vec3 color = vec3(0.0);", &format!("vec3 color = vec3({});", 0.02 * f64::from(i)));
         let mark = desk.now();
         let start = Instant::now();
-        desk.rename_into("shaders/include/cone.glsl", &text);
+        desk.rename_into("shaders/cones/cone.glsl", &text);
         let painted = desk.wait(mark, "new picture on the screen", |e| {
             e["event"] == "painted" && e["pictures"][0] == 0 && e["fingerprints"][0] != last.as_str()
         });

@@ -335,7 +335,7 @@ mod tests {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let folders = Folders { passes: root.join("passes"), shaders: root.join("shaders") };
         let graph = load(&folders.passes.join("vct.ron"), &folders).unwrap();
-        let params = graph.params.glsl(&graph.values);
+        let generated = crate::graph::runs::generated(&graph, &graph.params);
         let mut files: Vec<&String> = graph.passes.iter().flat_map(|p| &p.value.shaders.0).map(|s| &s.value).collect();
         files.sort();
         files.dedup();
@@ -344,7 +344,7 @@ mod tests {
             .par_iter()
             .map(|file| {
                 let source = Source { file: (*file).clone(), stage: Stage::of_file(file).unwrap() };
-                let words = compiler.run(&source, &compiler.texts(file, &params).unwrap()).unwrap();
+                let words = compiler.run(&source, &compiler.texts(file, &generated).unwrap()).unwrap();
                 let found = accesses(&words);
                 let qualifiers = qualifiers(&words);
                 for (binding, qualifier) in &qualifiers {

@@ -69,9 +69,23 @@ pub fn scene(name: &str) -> Arc<Scene> {
     Arc::new(Scene::open(name, &|_, _| std::ops::ControlFlow::Continue(())).unwrap())
 }
 
+/// The plainest of the repository's graphs that has all of these parameters.
+#[track_caller]
+pub fn graph_with(params: &[(&str, &str)]) -> String {
+    let home = Home { root: root().to_path_buf(), cache: None };
+    let has_all = |name: &String| {
+        let graph = conelab::graph::load::load(&home.graph_path(name), &home.folders()).unwrap();
+        params.iter().all(|(name, _)| graph.params.index(name).is_some())
+    };
+    let both = root().join("tests/common/warps_temporal.ron").to_string_lossy().into_owned();
+    let graphs = ["vct.ron", "warps.ron", "temporal.ron", "thesis.ron", &both].map(String::from);
+    graphs.into_iter().find(has_all).unwrap_or_else(|| panic!("no graph has all of {params:?}"))
+}
+
 /// An experiment of the repository's method: scene, size and what differs from the defaults.
 pub fn experiment(scene: &str, size: (u32, u32), params: &[(&str, &str)]) -> Experiment {
     let mut experiment = Experiment::read(&root().join("configs/default.ron")).unwrap();
+    experiment.graph = graph_with(params);
     experiment.scene = scene.into();
     experiment.size = size;
     for (name, value) in params {
