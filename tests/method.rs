@@ -253,9 +253,7 @@ fn every_view_shows_something() {
     let lab = lab(root());
     let views = ["shaded", "direct", "diffuse", "specular", "occlusion", "normal", "depth"];
     let mut all: Vec<Vec<(&str, &str)>> = views.iter().map(|v| vec![("view", *v)]).collect();
-    all.extend(
-        ["radiance", "color", "normal", "alpha"].map(|v| vec![("view", "voxels"), ("voxel_view", v)]),
-    );
+    all.extend(["radiance", "color", "normal", "alpha"].map(|v| vec![("view", "voxels"), ("voxel_view", v)]));
     for mip in ["2", "4", "9"] {
         all.extend(
             ["radiance", "color", "normal", "alpha"]
@@ -285,8 +283,11 @@ fn cubes_stand_where_their_level_has_opacity() {
         let wanted = ["display", "voxelCubes", "voxelRadiance", "voxelRadianceAniso", "voxelAttribute", "voxelColor"];
         let mut session = frames(&lab, &experiment, &wanted, 1);
         // Anisotropic levels: what the first direction has any opacity for, so have the others.
-        let (texture, mip_of, width) =
-            if mips == "anisotropic" && mip > 0 { ("voxelRadianceAniso", mip - 1, 6) } else { ("voxelRadiance", mip, 1) };
+        let (texture, mip_of, width) = if mips == "anisotropic" && mip > 0 {
+            ("voxelRadianceAniso", mip - 1, 6)
+        } else {
+            ("voxelRadiance", mip, 1)
+        };
         let texels = floats(&mut session, texture, mip_of);
         let cells = dim >> mip;
         let row = |i: usize| i / cells * cells * width + i % cells;

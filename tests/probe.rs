@@ -26,7 +26,7 @@ struct Row {
     cone: u32,
     sample: u32,
     distance: f32,
-    taken: f32,
+    alpha: f32,
     radiance: Vec3,
     transmittance: f32,
 }
@@ -49,7 +49,7 @@ fn rows(session: &mut Session) -> Vec<Row> {
         cone: uint(row, "cone"),
         sample: uint(row, "sample"),
         distance: float(row, "distance"),
-        taken: float(row, "taken"),
+        alpha: float(row, "alpha"),
         radiance: match &row[column("radiance")] {
             Cell::Vector(v) => Vec3::from_slice(v),
             _ => panic!("radiance"),
@@ -101,14 +101,14 @@ fn samples_add_up_to_what_shading_found() {
             for (i, row) in samples.iter().enumerate() {
                 assert_eq!(row.sample as usize, i, "{what}: cone {number}");
                 assert!(row.transmittance <= before, "{what}: cone {number} clears up at sample {i}");
-                assert!((before - row.taken - row.transmittance).abs() < 1e-4, "{what}: cone {number}, sample {i}");
+                assert!((before - row.alpha - row.transmittance).abs() < 1e-4, "{what}: cone {number}, sample {i}");
                 assert!(i == 0 || row.distance > samples[i - 1].distance, "{what}: cone {number} goes back");
                 before = row.transmittance;
             }
         }
         assert!(rows.iter().all(|r| r.cone < 10), "{what}: more cones than there are");
 
-        // The wide set: .15 on the normal, the rest shared by the ring of eight.
+        // The wide set: 0.15 on the normal, the rest shared by the ring of eight.
         let hemisphere: Vec3 =
             (1..10).map(|n| if n == 1 { 0.15 } else { 0.85 / 8.0 } * cone_radiance(&cone(n), opened.sky)).sum();
         let expected = albedo * hemisphere;

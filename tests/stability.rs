@@ -364,7 +364,8 @@ fn equal_cost() {
 #[test]
 fn killed_and_continued() {
     let home = home();
-    let methods = "\"a\": {}, \"b\": { \"graph\": \"temporal.ron\" }, \"c\": { \"graph\": \"warps.ron\", \"warp\": \"spline\" }";
+    let methods =
+        "\"a\": {}, \"b\": { \"graph\": \"temporal.ron\" }, \"c\": { \"graph\": \"warps.ron\", \"warp\": \"spline\" }";
     let cases = "\"still\": (), \"yaw\": (motion: Camera(yaw: 0.5)), \"on\": (frames: 6, motion: Switch(name: \"lamp\", at: 1, from: 0, to: 1))";
     let file = suite(home.path(), methods, cases);
     let results = home.path().join("out/results");

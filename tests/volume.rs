@@ -106,9 +106,11 @@ fn every_block_is_filled() {
             let cascades = settings.iter().find(|s| s.0 == "cascades").map_or(1, |s| s.1.parse::<usize>().unwrap());
             for block in curved..curved + cascades {
                 let number = block.to_string();
-                let set =
-                    [*settings, &[("voxel_dim", "48"), ("voxelizer", voxelizer), ("voxel_view_cascade", &number), QUICK]]
-                        .concat();
+                let set = [
+                    *settings,
+                    &[("voxel_dim", "48"), ("voxelizer", voxelizer), ("voxel_view_cascade", &number), QUICK],
+                ]
+                .concat();
                 let mut session = frames(&lab, &inside(experiment("cornell", (16, 16), &set)), &VOXELS, 1);
                 let (grid, voxels) = oracle::read(&mut session).unwrap();
                 let cells = oracle::exact(&oracle::triangles_of(&scene, 0.0), &oracle::Surfaces::new(&scene), &grid);
@@ -405,13 +407,8 @@ fn a_snapped_volume_stands_still() {
 #[test]
 fn the_temporal_filter_gains_nothing() {
     let lab = lab(root());
-    let set = [
-        ("voxel_dim", "32"),
-        ("volume", "camera"),
-        ("volume_size", "(8, 8, 8)"),
-        ("volume_snap", "voxel"),
-        QUICK,
-    ];
+    let set =
+        [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), ("volume_snap", "voxel"), QUICK];
     let e = inside(experiment("cornell", (24, 18), &set));
     let filtered = inside(experiment(
         "cornell",

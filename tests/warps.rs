@@ -521,9 +521,9 @@ fn cones_go_by_the_cells_around_them() {
             continue;
         }
         // Opacity is that of a step, in cells.
-        let before = number(row, "transmittance") + number(row, "taken");
+        let before = number(row, "transmittance") + number(row, "alpha");
         let taken = (number(row, "opacity") * number(row, "step") / number(row, "cell")).min(before);
-        assert!((number(row, "taken") - taken).abs() < 2e-3, "{at}: takes {}, not {taken}", number(row, "taken"));
+        assert!((number(row, "alpha") - taken).abs() < 2e-3, "{at}: takes {}, not {taken}", number(row, "alpha"));
     }
     cells.sort_by(f64::total_cmp);
     println!("{empty} samples in empty space, in cells of {:.3} to {:.3} m", cells[0], cells[empty - 1]);

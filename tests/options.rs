@@ -1,0 +1,129 @@
+//! Every option of every choice of every graph: it builds, it renders without a message of the validation layer, it changes
+//! what its group says, and the default, written out, changes nothing.
+
+mod common;
+
+use common::{assert_clean, lab, prepare, root};
+use conelab::experiment::Experiment;
+use conelab::graph::load::load;
+use conelab::graph::param::{Kind, Param, Value};
+use conelab::graph::source::{At, Loc};
+use conelab::lab::{Home, Lab, LabError};
+use std::collections::BTreeMap;
+
+/// What a group of the panel is about: one of these textures differs where a parameter of it does.
+fn textures(group: &str) -> &'static [&'static str] {
+    match group {
+        "Shadows" => &["shadowMap", "direct"],
+        "Volume" => &["voxelIndex", "voxelRadiance"],
+        "Voxels" => &["voxelIndex", "voxelColor", "voxelNormal"],
+        "Radiance" => &["voxelRadiance", "diffuseIndirect"],
+        "Shading" => &["direct"],
+        "Diffuse cones" | "Tracing" => &["diffuseIndirect"],
+        "Specular cone" => &["specularIndirect"],
+        "Display" => &["display"],
+        other => panic!("no texture is known for the group '{other}'"),
+    }
+}
+
+/// What a choice needs beside it to matter at all.
+fn context(name: &str) -> &'static [(&'static str, &'static str)] {
+    match name {
+        "volume_snap" => &[("volume", "camera"), ("volume_size", "(9, 9, 9)")],
+        "warp_viewport" => &[("warp", "spline"), ("conservative", "off"), ("warp_alpha", "0.05")],
+        "fallback" => &[("warp", "perspective"), ("warp_near", "1.0"), ("warp_far", "6.0")],
+        "warp" => &[("warp_near", "1.0"), ("warp_far", "6.0")],
+        "voxel_view" => &[("view", "voxels")],
+        "cone_rotate" => &[("cone_count", "5")],
+        "trace" => &[("exact_rays", "8")],
+        "tess_levels" => &[("voxelizer", "tessellated")],
+        _ => &[],
+    }
+}
+
+/// Parameters that are for speed, not for the picture; and options that need what this device lacks.
+const SAME_PICTURE: [&str; 1] = ["volume_scroll"];
+
+fn run(
+    lab: &Lab,
+    graph: &str,
+    settings: &[(&str, &str)],
+    wanted: &[&str],
+) -> Result<BTreeMap<String, Vec<u8>>, LabError> {
+    let mut e = Experiment::read(&root().join("configs/default.ron")).unwrap();
+    e.graph = graph.into();
+    e.scene = root().join("configs/scenes/workshop.ron").to_string_lossy().into_owned();
+    e.size = (32, 24);
+    for (name, value) in [("voxel_dim", "32"), ("shadow_dim", "256")].iter().chain(settings) {
+        e.params.push((Loc { value: (*name).to_string(), at: At::default() }, (*value).to_string()));
+    }
+    let scene = common::scene(&e.scene);
+    lab.prepare(&e, scene, |_| Ok(vec!["display".into()]))?;
+    let mut session = prepare(lab, &e, wanted);
+    session.frame(0.0)?;
+    session.finish()?;
+    assert_clean(lab);
+    let made = |name: &&&str| {
+        let index = session.graph.textures.iter().position(|t| t.0 == **name);
+        index.is_some_and(|i| !session.program.plan.textures[i].usage.is_empty())
+    };
+    let names: Vec<&str> = wanted.iter().filter(made).copied().collect();
+    names.into_iter().map(|name| Ok((name.to_string(), session.texels(name, 0, 0)?.bytes))).collect()
+}
+
+/// The options of a choice or a flag.
+fn options(param: &Param) -> Vec<String> {
+    match &param.kind {
+        Kind::Choice(options) => options.clone(),
+        Kind::Bool => vec!["false".into(), "true".into()],
+        _ => Vec::new(),
+    }
+}
+
+fn text(value: &Value) -> String {
+    value.to_string()
+}
+
+#[test]
+fn every_option_builds_renders_and_changes_what_its_group_says() {
+    let lab = lab(root());
+    let home = Home { root: root().to_path_buf(), cache: None };
+    let params = |graph: &str| load(&home.graph_path(graph), &home.folders()).unwrap().params.list;
+    let plain: Vec<String> = params("vct.ron").iter().map(|p| p.name.clone()).collect();
+    let (mut options_run, mut wrong) = (0, Vec::new());
+    for graph in ["vct.ron", "warps.ron", "temporal.ron", "thesis.ron"] {
+        for param in params(graph) {
+            // What builds on the plain method has its choices; they are tried there.
+            if options(&param).is_empty()
+                || ["warps.ron", "temporal.ron"].contains(&graph) && plain.contains(&param.name)
+            {
+                continue;
+            }
+            let (context, wanted) = (context(&param.name), textures(&param.group));
+            let unset = run(&lab, graph, context, wanted).unwrap();
+            assert!(!unset.is_empty(), "{graph}: nothing of {wanted:?} is made for '{}'", param.name);
+            for option in options(&param) {
+                let what = format!("{graph}, {}={option}", param.name);
+                let found = match run(&lab, graph, &[context, &[(&param.name, &option)]].concat(), wanted) {
+                    Ok(found) => found,
+                    Err(LabError::Input(errors)) if errors.iter().all(|e| e.message.contains("does not have")) => {
+                        println!("{what}: skipped, {}", errors[0].message);
+                        continue;
+                    }
+                    Err(e) => panic!("{what}: {e}"),
+                };
+                options_run += 1;
+                let default = text(&param.default) == option;
+                if default != (found == unset) && !SAME_PICTURE.contains(&param.name.as_str()) {
+                    wrong.push(format!(
+                        "{what}: {}",
+                        if default { "the default changes the picture" } else { "nothing changes" }
+                    ));
+                }
+            }
+        }
+    }
+    println!("{options_run} options");
+    assert!(options_run > 60, "{options_run} options");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
