@@ -1678,3 +1678,28 @@ layout(std430) writeonly buffer Work { uint count; Row list[8]; Row one; uint wo
         |     tables: [(rows: "work.count", list: "work.list", start: 16, title: "Work", help: "Rows.",
     "#);
 }
+
+#[test]
+fn groups_of_passes() {
+    let fill = "(name: \"fill\", shaders: [\"fill.comp\"], dispatch: Indirect(\"work\", 0)),";
+    let group = |text: &str| graph(fill, &text.replace("FILL", fill));
+    assert_eq!(group("(stage: \"s\", when: \"method == fast\", passes: [FILL]),"), "");
+    assert_eq!(group("(passes: [(passes: [FILL]), (when: \"bright\", passes: [])]),"), "");
+    assert_snapshot!(group("(name: \"s\", passes: [FILL]),"), @r#"
+    passes/graph.ron:20:10: error: unknown field 'name'
+        |         (name: "s", passes: [(name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
+        = help: known: passes, stage, when
+    "#);
+    assert_snapshot!(group("(when: \"method == rows\", passes: [FILL]),"), @r#"
+    passes/graph.ron:20:16: error: unknown variable 'rows' in 'method == rows'
+        |         (when: "method == rows", passes: [(name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
+    "#);
+    // One wrong pass is told, and the others are there.
+    assert_snapshot!(group("(when: \"bright\", passes: [(name: \"prepare\", clear: \"work\"), (nam: \"x\"), FILL]),"), @r#"
+    passes/graph.ron:20:42: error: two passes are named 'prepare'; timings could not tell them apart
+        |         (when: "bright", passes: [(name: "prepare", clear: "work"), (nam: "x"), (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
+    passes/graph.ron:20:70: error: unknown field 'nam'
+        |         (when: "bright", passes: [(name: "prepare", clear: "work"), (nam: "x"), (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
+        = help: did you mean 'name'?
+    "#);
+}

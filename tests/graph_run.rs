@@ -1222,3 +1222,40 @@ fn members_of_buffers_by_name() {
     let mut session = bench.run(&lab, &["picture"], 1);
     assert_eq!(session.failed_checks().unwrap(), ["too many (7)"]);
 }
+
+#[test]
+fn groups_share_a_stage_and_a_condition() {
+    let bench = Bench::new(
+        r#"(
+            params: [
+                Bool(name: "outer", default: true, help: "All of the group."),
+                Int(name: "inner", default: 1, range: (0, 2), help: "Some of it."),
+            ],
+            buffers: { "sums": (size: Struct) },
+            passes: [
+                (name: "forget", clear: "sums"),
+                (stage: "group", when: "outer", passes: [
+                    (name: "a", repeat: 1, shaders: ["add.comp"], dispatch: Groups(1, 1, 1)),
+                    (when: "inner > 0", passes: [
+                        (name: "b", repeat: "2 * inner", shaders: ["add.comp"], dispatch: Groups(1, 1, 1)),
+                        (name: "c", when: "inner == 2", stage: "own", shaders: ["add.comp"], dispatch: Groups(100, 1, 1)),
+                    ]),
+                ]),
+                (name: "d", shaders: ["add.comp"], dispatch: Groups(1000, 1, 1)),
+            ],
+        )"#,
+        &[("add.comp", "layout(std430) buffer Sums { uint sum; } sums; void main() { atomicAdd(sums.sum, 1u); }")],
+    );
+    let lab = bench.lab();
+    let run = "size: (32, 24)";
+    let mut last = run.to_string();
+    for (outer, inner, sum) in [(true, 1, 1003), (true, 0, 1001), (true, 2, 1105), (false, 2, 1000)] {
+        let next = format!("{run}, params: {{ \"outer\": {outer}, \"inner\": {inner} }}");
+        bench.edit("configs/run.ron", &last, &next);
+        last = next;
+        let mut session = bench.run(&lab, &["sums"], 1);
+        assert_eq!(words(&mut session, "sums"), [sum], "outer {outer}, inner {inner}");
+        let stages: Vec<&str> = session.graph.passes.iter().map(|p| p.value.stage()).collect();
+        assert_eq!(stages, ["forget", "group", "group", "own", "d"]);
+    }
+}

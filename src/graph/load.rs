@@ -3,7 +3,7 @@
 use super::expr::Expr;
 use super::file::{
     BufferDecl, CheckDecl, Command, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds,
-    TextureDecl, ViewDecl, VoxelsDecl,
+    TextureDecl, ViewDecl, VoxelsDecl, ungrouped,
 };
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
@@ -133,7 +133,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         values.extend(file.values.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
         graph.buffers.extend(file.buffers.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
-        graph.passes.extend(file.passes.0);
+        graph.passes.extend(ungrouped(file.passes));
         graph.scene = file.scene.or(graph.scene);
         checks.extend(file.checks.0);
         graph.compare.extend(file.compare.0);
@@ -604,7 +604,7 @@ impl Check<'_> {
                 format!("pass '{name}' does several things: dispatch, draw, clear and copy exclude each other"),
             ),
         }
-        self.exprs(pass.when.iter().chain(&pass.repeat).chain(&pass.mip));
+        self.exprs(pass.conditions().chain(&pass.repeat).chain(&pass.mip));
         if pass.repeat.is_some() && pass.each_mip.is_some() {
             self.error(at, format!("pass '{name}' has both repeat and each_mip"));
         }

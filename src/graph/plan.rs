@@ -175,7 +175,7 @@ pub fn all_expressions(graph: &Graph) -> impl Iterator<Item = &Ex> {
 }
 
 fn pass_expressions(pass: &PassDecl) -> Vec<&Ex> {
-    let mut list: Vec<&Ex> = pass.when.iter().chain(&pass.repeat).chain(&pass.mip).collect();
+    let mut list: Vec<&Ex> = pass.conditions().chain(&pass.repeat).chain(&pass.mip).collect();
     if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = pass.dispatch.as_ref().map(|d| &d.value) {
         list.extend([x, y, z]);
     }
@@ -216,9 +216,7 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     let mut dropped = Vec::new();
     let mut steps = Vec::new();
     for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
-        if let Some(when) = &pass.value.when
-            && !planner.condition(when)
-        {
+        if let Some(when) = pass.value.conditions().find(|when| !planner.condition(when)) {
             dropped.push((number, format!("{} is false", when.value.text)));
             continue;
         }
