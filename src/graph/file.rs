@@ -20,6 +20,10 @@ pub struct GraphFile {
     pub textures: Entries<TextureDecl>,
     /// Buffers by name.
     pub buffers: Entries<BufferDecl>,
+    /// Names that shaders bind, each for the first of its cases that holds.
+    pub aliases: Entries<Vec<Loc<AliasDecl>>>,
+    /// Names that shaders bind, each for a texture sampled in its own way.
+    pub samplers: Entries<NamedSampler>,
     /// Passes and groups of them, in order.
     pub passes: Items<PassItem>,
     /// The display-encoded picture.
@@ -127,6 +131,41 @@ pub struct SamplerDecl {
     pub address: AddressMode,
     /// Depth comparison.
     pub compare: Option<Compare>,
+}
+
+/// A texture sampled in its own way, under a name of its own.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NamedSampler {
+    /// The texture.
+    pub of: Loc<String>,
+    /// Between texels.
+    #[serde(default)]
+    pub filter: FilterMode,
+    /// Between mips; as `filter` when absent.
+    pub mip_filter: Option<FilterMode>,
+    /// Outside [0, 1].
+    #[serde(default)]
+    pub address: AddressMode,
+    /// Depth comparison.
+    pub compare: Option<Compare>,
+}
+
+/// A case of an alias: the fields of [`Bind`], and when it holds.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "as in Bind")]
+pub struct AliasDecl {
+    /// The condition; absent in the last case.
+    pub when: Option<Ex>,
+    pub of: Loc<String>,
+    pub mip: Option<Ex>,
+    pub layer: Option<Ex>,
+    #[serde(rename = "as")]
+    pub format: Option<Loc<String>>,
+    #[serde(default)]
+    pub history: bool,
+    pub sampler: Option<SamplerDecl>,
 }
 
 /// Filtering.

@@ -1,5 +1,6 @@
 //! Reading a graph with its includes, and checking everything that needs no shader.
 
+use super::alias::{Alias, narrowed};
 use super::expr::Expr;
 use super::file::{
     BufferDecl, CheckDecl, Command, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds,
@@ -37,6 +38,8 @@ pub struct Graph {
     pub textures: Vec<(String, Loc<TextureDecl>)>,
     /// Buffers by name.
     pub buffers: Vec<(String, Loc<BufferDecl>)>,
+    /// Names that stand for textures or buffers, and textures sampled under a name of their own.
+    pub aliases: Vec<Alias>,
     /// Passes in order.
     pub passes: Vec<Loc<PassDecl>>,
     /// The display-encoded picture.
@@ -105,6 +108,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         values: Vec::new(),
         textures: Vec::new(),
         buffers: Vec::new(),
+        aliases: Vec::new(),
         passes: Vec::new(),
         output: None,
         hdr: None,
@@ -133,6 +137,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         values.extend(file.values.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
         graph.buffers.extend(file.buffers.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
+        errors.extend(super::alias::join(&mut graph.aliases, file.aliases, file.samplers, &graph.sources));
         graph.passes.extend(ungrouped(file.passes));
         graph.scene = file.scene.or(graph.scene);
         checks.extend(file.checks.0);
@@ -166,6 +171,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     check.names();
     check.named_values();
     check.textures();
+    check.aliases();
     for pass in &graph.passes {
         check.pass(&pass.value, pass.at);
     }
@@ -378,7 +384,7 @@ impl Check<'_> {
         let mut seen: HashMap<&str, ()> = HashMap::new();
         let resources =
             graph.textures.iter().map(|(n, t)| (n, t.at)).chain(graph.buffers.iter().map(|(n, b)| (n, b.at)));
-        for (name, at) in resources {
+        for (name, at) in resources.chain(graph.aliases.iter().map(|a| (&a.name, a.at))) {
             if !name.starts_with(|c: char| c.is_ascii_alphabetic())
                 || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             {
@@ -466,6 +472,11 @@ impl Check<'_> {
     ) -> bool {
         if exists(self.graph, &name.value) {
             return true;
+        }
+        if self.graph.alias(&name.value).is_some() {
+            let message = format!("'{}' is an alias or sampler, which passes bind: name a {what}", name.value);
+            self.error(name.at, message);
+            return false;
         }
         if !self.is_unknown(&name.value) {
             return false;
@@ -570,6 +581,22 @@ impl Check<'_> {
         }
     }
 
+    fn aliases(&mut self) {
+        for alias in &self.graph.aliases {
+            for case in &alias.cases {
+                self.exprs(&case.when);
+                match self.graph.alias(&case.bind.of.value) {
+                    Some(_) => {
+                        let message =
+                            format!("'{}' is an alias or sampler itself: name a texture or buffer", case.bind.of.value);
+                        self.error(case.bind.of.at, message);
+                    }
+                    None => self.bind(&case.bind),
+                }
+            }
+        }
+    }
+
     fn format(&mut self, name: &Loc<String>, or_choice: bool) {
         if Format::named(&name.value).is_some() || self.broken.contains(&name.value) {
             return;
@@ -614,6 +641,7 @@ impl Check<'_> {
         self.stages(pass, at);
         match pass.dispatch.as_ref().map(|d| &d.value) {
             Some(Dispatch::Cover(target)) if pass.bind.0.iter().any(|(key, _)| key.value == target.value) => {}
+            Some(Dispatch::Cover(target)) if self.graph.alias(&target.value).is_some() => {}
             Some(Dispatch::Cover(target)) => drop(self.texture_name(target)),
             Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) => self.exprs([x, y, z]),
             Some(Dispatch::Indirect(command)) => self.indirect(command),
@@ -625,7 +653,10 @@ impl Check<'_> {
             _ => {}
         }
         for (_, bind) in &pass.bind.0 {
-            self.bind(&bind.value);
+            match self.graph.alias(&bind.value.of.value) {
+                Some(alias) => alias.cases.iter().for_each(|case| self.bind(&narrowed(&case.bind, &bind.value))),
+                None => self.bind(&bind.value),
+            }
         }
         self.attachments(pass, at);
         if let Some(target) = &pass.clear {
