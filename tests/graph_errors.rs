@@ -1678,3 +1678,121 @@ layout(std430) writeonly buffer Work { uint count; Row list[8]; Row one; uint wo
         |     tables: [(rows: "work.count", list: "work.list", start: 16, title: "Work", help: "Rows.",
     "#);
 }
+
+#[test]
+fn groups_of_passes() {
+    let fill = "(name: \"fill\", shaders: [\"fill.comp\"], dispatch: Indirect(\"work\", 0)),";
+    let group = |text: &str| graph(fill, &text.replace("FILL", fill));
+    assert_eq!(group("(stage: \"s\", when: \"method == fast\", passes: [FILL]),"), "");
+    assert_eq!(group("(passes: [(passes: [FILL]), (when: \"bright\", passes: [])]),"), "");
+    assert_snapshot!(group("(name: \"s\", passes: [FILL]),"), @r#"
+    passes/graph.ron:20:10: error: unknown field 'name'
+        |         (name: "s", passes: [(name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
+        = help: known: passes, stage, when
+    "#);
+    assert_snapshot!(group("(when: \"method == rows\", passes: [FILL]),"), @r#"
+    passes/graph.ron:20:16: error: unknown variable 'rows' in 'method == rows'
+        |         (when: "method == rows", passes: [(name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
+    "#);
+    // One wrong pass is told, and the others are there.
+    assert_snapshot!(group("(when: \"bright\", passes: [(name: \"prepare\", clear: \"work\"), (nam: \"x\"), FILL]),"), @r#"
+    passes/graph.ron:20:42: error: two passes are named 'prepare'; timings could not tell them apart
+        |         (when: "bright", passes: [(name: "prepare", clear: "work"), (nam: "x"), (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
+    passes/graph.ron:20:70: error: unknown field 'nam'
+        |         (when: "bright", passes: [(name: "prepare", clear: "work"), (nam: "x"), (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
+        = help: did you mean 'name'?
+    "#);
+}
+
+#[test]
+fn aliases_and_samplers() {
+    let with = |section: &str, text: &str| {
+        let section = format!("    {section}: {{ {text} }},\n    textures: {{");
+        bench()
+            .edit("passes/graph.ron", "    textures: {", &section)
+            .edit("shaders/paint.frag", "uniform sampler2D last;", "uniform sampler2D ghost;")
+            .edit("shaders/paint.frag", "texelFetch(last,", "texelFetch(ghost,")
+            .edit("passes/graph.ron", "            bind: { \"last\": (of: \"picture\", history: true) },\n", "")
+            .findings()
+    };
+    let alias = |text: &str| with("aliases", text);
+    let sampler = |text: &str| with("samplers", text);
+    let right = "\"ghost\": [(when: \"bright\", of: \"picture\", history: true), (of: \"picture\", history: true)]";
+    assert_eq!(alias(right), "");
+    assert_snapshot!(alias("\"ghost\": [(when: \"bright\", of: \"picture\", history: true)]"), @r#"
+    passes/graph.ron:9:33: error: the last case of 'ghost' has a condition: what if none holds?
+        |     aliases: { "ghost": [(when: "bright", of: "picture", history: true)] },
+    "#);
+    assert_snapshot!(alias("\"ghost\": [(of: \"picture\", history: true), (of: \"picture\", history: true)]"), @r#"
+    passes/graph.ron:9:26: error: a case of 'ghost' without `when` hides those behind it
+        |     aliases: { "ghost": [(of: "picture", history: true), (of: "picture", history: true)] },
+    "#);
+    assert_snapshot!(alias("\"ghost\": []"), @r#"
+    passes/graph.ron:9:25: error: alias 'ghost' stands for nothing
+        |     aliases: { "ghost": [] },
+    "#);
+    assert_snapshot!(alias(&right.replace("bright", "bride")), @r#"
+    passes/graph.ron:9:33: error: unknown variable 'bride' in 'bride'
+        |     aliases: { "ghost": [(when: "bride", of: "picture", history: true), (of: "picture", history: true)] },
+    "#);
+    assert_snapshot!(alias(&right.replace("\"picture\"", "\"pictures\"")), @r#"
+    passes/graph.ron:9:47: error: no texture is named 'pictures'
+        |     aliases: { "ghost": [(when: "bright", of: "pictures", history: true), (of: "pictures", history: true)] },
+        = help: did you mean 'picture'?
+    passes/graph.ron:9:80: error: no texture is named 'pictures'
+        |     aliases: { "ghost": [(when: "bright", of: "pictures", history: true), (of: "pictures", history: true)] },
+        = help: did you mean 'picture'?
+    "#);
+    // Each case must fit the shader.
+    assert_snapshot!(alias("\"ghost\": [(when: \"bright\", of: \"grid\"), (of: \"picture\", history: true)]"), @r"
+    shaders/paint.frag:4: error: 'grid' is 3D, and the shader declares a sampler2D (pass 'paint')
+        | uniform sampler2D ghost;
+        = help: declare it as 3D
+    ");
+    assert_snapshot!(alias("\"ghost\": [(when: \"bright\", of: \"work\", mip: 1), (of: \"depth\", history: true)]"), @r#"
+    passes/graph.ron:9:47: error: 'work' is a buffer: it has no mip, layer, format, history or sampler
+        |     aliases: { "ghost": [(when: "bright", of: "work", mip: 1), (of: "depth", history: true)] },
+    passes/graph.ron:9:69: error: 'depth' is not declared with `history: true`
+        |     aliases: { "ghost": [(when: "bright", of: "work", mip: 1), (of: "depth", history: true)] },
+    "#);
+    // Names that are taken, used twice, or not at all.
+    assert_snapshot!(alias(&format!("{right}, \"count\": [(of: \"picture\")]")), @r#"
+    passes/graph.ron:9:107: error: resource 'count' is declared twice
+        |     aliases: { "ghost": [(when: "bright", of: "picture", history: true), (of: "picture", history: true)], "count": [(of: "picture")] },
+    "#);
+    assert_snapshot!(alias(&format!("{right}, {right}")), @r#"
+    passes/graph.ron:9:107: error: 'ghost' stands twice
+        |     aliases: { "ghost": [(when: "bright", of: "picture", history: true), (of: "picture", history: true)], "ghost": [(when: "bright", of: "picture", history: true), (of: "picture", history: true)] },
+    "#);
+    assert_snapshot!(alias(&format!("{right}, \"spare\": [(of: \"ghost\")]")), @r#"
+    passes/graph.ron:9:122: error: 'ghost' is an alias or sampler itself: name a texture or buffer
+        |     aliases: { "ghost": [(when: "bright", of: "picture", history: true), (of: "picture", history: true)], "spare": [(of: "ghost")] },
+    "#);
+    assert_snapshot!(alias(&format!("{right} }}, samplers: {{ \"ghost\": (of: \"picture\")")), @r#"
+    passes/graph.ron:9:121: error: 'ghost' is an alias and a sampler
+        |     aliases: { "ghost": [(when: "bright", of: "picture", history: true), (of: "picture", history: true)] }, samplers: { "ghost": (of: "picture") },
+    "#);
+    assert_snapshot!(alias(&format!("{right}, \"spare\": [(of: \"picture\")]")), @r#"
+    passes/graph.ron:9:107: warning: 'spare' is declared and never used
+        |     aliases: { "ghost": [(when: "bright", of: "picture", history: true), (of: "picture", history: true)], "spare": [(of: "picture")] },
+    "#);
+    // Samplers.
+    assert_snapshot!(sampler("\"ghost\": (of: \"depth\", compare: less)"), @r"
+    shaders/paint.frag:4: error: the sampler of 'depth' does not fit: the shader declares a sampler2D (pass 'paint')
+        | uniform sampler2D ghost;
+        = help: declare a Shadow sampler, or bind it with a sampler that does not compare
+    ");
+    assert_snapshot!(sampler("\"ghost\": (of: \"dept\", compares: less)"), @r#"
+    passes/graph.ron:9:39: error: unknown field 'compares'
+        |     samplers: { "ghost": (of: "dept", compares: less) },
+        = help: did you mean 'compare'?
+    "#);
+    // Where only a texture will do.
+    let target = bench()
+        .edit("passes/graph.ron", "    textures: {", &format!("    aliases: {{ {right} }},\n    textures: {{"))
+        .edit("passes/graph.ron", "color: [(to: \"picture\"", "color: [(to: \"ghost\"");
+    assert_snapshot!(target.findings(), @r#"
+    passes/graph.ron:28:26: error: 'ghost' is an alias or sampler, which passes bind: name a texture
+        |             color: [(to: "ghost", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
+    "#);
+}

@@ -1222,3 +1222,117 @@ fn members_of_buffers_by_name() {
     let mut session = bench.run(&lab, &["picture"], 1);
     assert_eq!(session.failed_checks().unwrap(), ["too many (7)"]);
 }
+
+#[test]
+fn groups_share_a_stage_and_a_condition() {
+    let bench = Bench::new(
+        r#"(
+            params: [
+                Bool(name: "outer", default: true, help: "All of the group."),
+                Int(name: "inner", default: 1, range: (0, 2), help: "Some of it."),
+            ],
+            buffers: { "sums": (size: Struct) },
+            passes: [
+                (name: "forget", clear: "sums"),
+                (stage: "group", when: "outer", passes: [
+                    (name: "a", repeat: 1, shaders: ["add.comp"], dispatch: Groups(1, 1, 1)),
+                    (when: "inner > 0", passes: [
+                        (name: "b", repeat: "2 * inner", shaders: ["add.comp"], dispatch: Groups(1, 1, 1)),
+                        (name: "c", when: "inner == 2", stage: "own", shaders: ["add.comp"], dispatch: Groups(100, 1, 1)),
+                    ]),
+                ]),
+                (name: "d", shaders: ["add.comp"], dispatch: Groups(1000, 1, 1)),
+            ],
+        )"#,
+        &[("add.comp", "layout(std430) buffer Sums { uint sum; } sums; void main() { atomicAdd(sums.sum, 1u); }")],
+    );
+    let lab = bench.lab();
+    let run = "size: (32, 24)";
+    let mut last = run.to_string();
+    for (outer, inner, sum) in [(true, 1, 1003), (true, 0, 1001), (true, 2, 1105), (false, 2, 1000)] {
+        let next = format!("{run}, params: {{ \"outer\": {outer}, \"inner\": {inner} }}");
+        bench.edit("configs/run.ron", &last, &next);
+        last = next;
+        let mut session = bench.run(&lab, &["sums"], 1);
+        assert_eq!(words(&mut session, "sums"), [sum], "outer {outer}, inner {inner}");
+        let stages: Vec<&str> = session.graph.passes.iter().map(|p| p.value.stage()).collect();
+        assert_eq!(stages, ["forget", "group", "group", "own", "d"]);
+    }
+}
+
+#[test]
+fn a_name_stands_for_what_its_condition_says() {
+    // One pass writes, one reads, whichever of two textures and mips it is; a third reads it sampled otherwise.
+    let bench = Bench::new(
+        r#"(
+            include: ["shared.ron"],
+            params: [Choice(name: "target", options: ["large", "level", "small"], help: "What is written.")],
+            textures: {
+                "large": (size: (32, 16), format: "r32f", mips: 2),
+                "small": (size: (8, 8), format: "r32f"),
+            },
+            buffers: { "found": (size: Struct), "spare": (size: Struct) },
+            aliases: {
+                "chosen": [
+                    (when: "target == large", of: "large"),
+                    (when: "target == level", of: "large", mip: "1"),
+                    (of: "small"),
+                ],
+                "result": [(when: "target == small", of: "spare"), (of: "found")],
+            },
+            samplers: { "blurred": (of: "small", address: border_one) },
+            passes: [
+                (name: "ground", clear: "small", value: (0.5, 0, 0, 0)),
+                (name: "write", shaders: ["write.comp"], dispatch: Cover("chosen")),
+                (name: "sum", shaders: ["sum.comp"], dispatch: Groups(1, 1, 1), bind: { "source": (of: "chosen") }),
+            ],
+        )"#,
+        &[
+            (
+                "write.comp",
+                "uniform writeonly image2D chosen;
+                void main() { imageStore(chosen, ivec2(gl_GlobalInvocationID.xy), vec4(gl_GlobalInvocationID.x)); }",
+            ),
+            (
+                "sum.comp",
+                "uniform sampler2D source;
+                uniform sampler2D blurred;
+                uniform sampler2D sharp;
+                layout(std430) buffer Result { uvec2 size; float corner; float outside; float clamped; } result;
+                void main() {
+                    result.size = uvec2(textureSize(source, 0));
+                    result.corner = texelFetch(source, ivec2(3, 2), 0).r;
+                    result.outside = textureLod(blurred, vec2(-1.0), 0.0).r;
+                    result.clamped = textureLod(sharp, vec2(-1.0), 0.0).r;
+                }",
+            ),
+        ],
+    );
+    // The including file's `blurred` replaces this one; `sharp` stays.
+    bench.write(
+        "passes/shared.ron",
+        "(samplers: { \"blurred\": (of: \"small\"), \"sharp\": (of: \"small\", filter: nearest) })",
+    );
+    let lab = bench.lab();
+    let run = "size: (32, 24)";
+    let mut last = run.to_string();
+    let expected: [(&str, &str, [u32; 2], &[&str]); 3] = [
+        ("large", "found", [32, 16], &["large", "small", "found"]),
+        ("level", "found", [16, 8], &["large", "small", "found"]),
+        ("small", "spare", [8, 8], &["small", "spare"]),
+    ];
+    for (target, buffer, size, made) in expected {
+        let next = format!("{run}, params: {{ \"target\": \"{target}\" }}");
+        bench.edit("configs/run.ron", &last, &next);
+        last = next;
+        let mut session = bench.run(&lab, &[buffer], 1);
+        let found = words(&mut session, buffer);
+        assert_eq!(found[..2], size, "{target}");
+        assert_eq!(f32::from_bits(found[2]), 3.0, "{target}");
+        assert_eq!(f32::from_bits(found[3]), 1.0, "{target}: outside is one");
+        let corner = if target == "small" { 0.0 } else { 0.5 };
+        assert_eq!(f32::from_bits(found[4]), corner, "{target}: outside is the edge");
+        let names: Vec<String> = session.program.memory(&session.graph).into_iter().map(|m| m.0).collect();
+        assert_eq!(names, made, "{target}");
+    }
+}

@@ -26,8 +26,12 @@ pub struct GraphFile {
     pub textures: Entries<TextureDecl>,
     /// Buffers by name.
     pub buffers: Entries<BufferDecl>,
-    /// Passes, in order.
-    pub passes: Items<PassDecl>,
+    /// Names that shaders bind, each for the first of its cases that holds.
+    pub aliases: Entries<Vec<Loc<AliasDecl>>>,
+    /// Names that shaders bind, each for a texture sampled in its own way.
+    pub samplers: Entries<NamedSampler>,
+    /// Passes and groups of them, in order.
+    pub passes: Items<PassItem>,
     /// The display-encoded picture.
     pub output: Option<Loc<String>>,
     /// The linear picture.
@@ -133,6 +137,41 @@ pub struct SamplerDecl {
     pub address: AddressMode,
     /// Depth comparison.
     pub compare: Option<Compare>,
+}
+
+/// A texture sampled in its own way, under a name of its own.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NamedSampler {
+    /// The texture.
+    pub of: Loc<String>,
+    /// Between texels.
+    #[serde(default)]
+    pub filter: FilterMode,
+    /// Between mips; as `filter` when absent.
+    pub mip_filter: Option<FilterMode>,
+    /// Outside [0, 1].
+    #[serde(default)]
+    pub address: AddressMode,
+    /// Depth comparison.
+    pub compare: Option<Compare>,
+}
+
+/// A case of an alias: the fields of [`Bind`], and when it holds.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "as in Bind")]
+pub struct AliasDecl {
+    /// The condition; absent in the last case.
+    pub when: Option<Ex>,
+    pub of: Loc<String>,
+    pub mip: Option<Ex>,
+    pub layer: Option<Ex>,
+    #[serde(rename = "as")]
+    pub format: Option<Loc<String>>,
+    #[serde(default)]
+    pub history: bool,
+    pub sampler: Option<SamplerDecl>,
 }
 
 /// Filtering.
@@ -282,6 +321,59 @@ pub struct BufferDecl {
     pub indirect: bool,
 }
 
+/// An item of `passes`.
+#[derive(Clone, Debug)]
+pub enum PassItem {
+    /// A pass.
+    Pass(Box<PassDecl>),
+    /// Passes that share a stage or a condition.
+    Group(Group),
+}
+
+impl<'de> Deserialize<'de> for PassItem {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        struct Probe {
+            passes: Option<serde::de::IgnoredAny>,
+        }
+        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+        // What is no struct at all is told as a pass that it is not.
+        let probe = super::source::options().from_str::<Probe>(raw.get_ron());
+        match probe {
+            Ok(Probe { passes: Some(_) }) => nested(raw).map(PassItem::Group),
+            _ => nested(raw).map(|pass| PassItem::Pass(Box::new(pass))),
+        }
+    }
+}
+
+/// Passes that share a stage or a condition.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Group {
+    /// What tables of times count those under that say nothing else.
+    pub stage: Option<String>,
+    /// Condition of all, beside their own.
+    pub when: Option<Ex>,
+    /// The passes, or groups again.
+    pub passes: Items<PassItem>,
+}
+
+/// The passes of a list, with what their groups say.
+pub fn ungrouped(items: Items<PassItem>) -> Vec<Loc<PassDecl>> {
+    let of = |item: Loc<PassItem>| match item.value {
+        PassItem::Pass(pass) => vec![Loc { value: *pass, at: item.at }],
+        PassItem::Group(group) => {
+            let mut passes = ungrouped(group.passes);
+            for pass in &mut passes {
+                pass.value.stage = pass.value.stage.take().or_else(|| group.stage.clone());
+                pass.value.outer.splice(0..0, group.when.clone());
+            }
+            passes
+        }
+    };
+    items.0.into_iter().flat_map(of).collect()
+}
+
 /// A pass.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -292,8 +384,12 @@ pub struct PassDecl {
     pub after: Option<Loc<String>>,
     /// What tables of times count it under, where that is not its name.
     pub stage: Option<String>,
-    /// Condition; always when absent.
-    pub when: Option<Ex>,
+    /// Its own condition; see [`PassDecl::conditions`].
+    #[serde(rename = "when")]
+    pub own: Option<Ex>,
+    /// Conditions of the groups that it stands in.
+    #[serde(skip)]
+    pub outer: Vec<Ex>,
     /// Shader files.
     #[serde(default)]
     pub shaders: Items<String>,
@@ -332,6 +428,11 @@ pub struct PassDecl {
 }
 
 impl PassDecl {
+    /// It runs when all of them hold.
+    pub fn conditions(&self) -> impl Iterator<Item = &Ex> {
+        self.outer.iter().chain(&self.own)
+    }
+
     /// What tables of times count it under.
     pub fn stage(&self) -> &str {
         self.stage.as_deref().unwrap_or(&self.name.value)

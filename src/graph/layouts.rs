@@ -36,8 +36,11 @@ impl<'l> Layouts<'l> {
         for link in linked {
             for bound in &link.bound {
                 let shader = link.stages.iter().find(|s| s.stage == bound.stage);
-                if let (Target::Buffer(b), Some(layout), Some(shader)) = (&bound.target, &bound.layout, shader) {
-                    declared[*b].push(Declared { layout, shader, name: &bound.name });
+                let (Some(layout), Some(shader)) = (&bound.layout, shader) else { continue };
+                for case in &bound.cases {
+                    if let Target::Buffer(b) = case.target {
+                        declared[b].push(Declared { layout, shader, name: &bound.name });
+                    }
                 }
             }
         }

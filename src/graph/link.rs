@@ -1,7 +1,7 @@
 //! Shaders against the graph: every name a shader binds is looked up, and what it expects is compared with what is there.
 
 use super::externals::{EXTERNALS, ExternalKind};
-use super::file::{Bind, PassDecl, TextureDecl};
+use super::file::{Bind, Ex, PassDecl, TextureDecl};
 use super::layouts::{Declared, Layouts};
 use super::load::Graph;
 use super::param::Kind;
@@ -40,10 +40,19 @@ pub struct Bound {
     pub resource: Resource,
     /// How the block of a buffer lies in memory.
     pub layout: Option<Arc<Layout>>,
+    /// What it is: one, or several of an alias, of which the first whose condition holds counts.
+    pub cases: Vec<BoundCase>,
+}
+
+/// What a binding is, under a condition.
+#[derive(Clone, Debug)]
+pub struct BoundCase {
+    /// The condition; none in the last case.
+    pub when: Option<Ex>,
     /// What it is.
     pub target: Target,
-    /// Index in the pass's `bind`, where it is renamed or narrowed there.
-    pub bind: Option<usize>,
+    /// What the pass or an alias says of it: where it is renamed or narrowed.
+    pub bind: Option<Bind>,
 }
 
 /// A pass with its shaders.
@@ -111,7 +120,11 @@ pub fn link(
     let all = (0..graph.passes.len()).all(|i| runs.has(i));
     let place = |d: &Declared<'_>, message: String| linker.at_declaration(d.shader, d.name, message);
     let members = Layouts::new(graph, &linked).mistakes(all, place);
-    let Linker { mut findings, used, .. } = linker;
+    let Linker { mut findings, mut used, .. } = linker;
+    // An alias that is used uses all that it may stand for.
+    for alias in graph.aliases.iter().filter(|a| used.contains(&a.name)).collect::<Vec<_>>() {
+        used.extend(alias.cases.iter().map(|case| case.bind.of.value.clone()));
+    }
     findings.extend(members);
     findings.extend(unused(graph, &used, &texts));
     if findings.iter().any(|f| f.severity == Severity::Error) { Err(findings) } else { Ok((linked, findings)) }
@@ -153,15 +166,22 @@ impl Linker<'_> {
         let mut bound = Vec::new();
         for shader in &stages {
             for binding in &shader.interface.bindings {
-                if let Some((target, bind)) = self.resolve(pass, shader, &binding.name, &binding.resource) {
+                let cases = self.graph.cases(pass, &binding.name).into_iter();
+                // All of them are looked at: each must fit.
+                let cases: Vec<Option<BoundCase>> = cases
+                    .map(|(when, bind)| {
+                        let target = self.resolve(pass, shader, &binding.name, bind.as_ref(), &binding.resource)?;
+                        Some(BoundCase { when, target, bind })
+                    })
+                    .collect();
+                if let Some(cases) = cases.into_iter().collect::<Option<Vec<_>>>() {
                     bound.push(Bound {
                         stage: shader.stage,
                         binding: binding.binding,
                         name: binding.name.clone(),
                         resource: binding.resource.clone(),
                         layout: binding.layout.clone(),
-                        target,
-                        bind,
+                        cases,
                     });
                 }
             }
@@ -177,6 +197,7 @@ impl Linker<'_> {
                 self.findings.push(found.nearest(&key.value, names));
             }
         }
+        self.used.extend(pass.bind.0.iter().map(|(_, bind)| bind.value.of.value.clone()));
         self.outputs(pass, &stages);
         self.mark_used(pass);
         Linked { stages, bound }
@@ -205,6 +226,7 @@ impl Linker<'_> {
     fn mark_named(&mut self, texts: &[Texts]) {
         let graph = self.graph;
         let names = graph.textures.iter().map(|t| &t.0).chain(graph.buffers.iter().map(|b| &b.0));
+        let names = names.chain(graph.aliases.iter().map(|a| &a.name));
         let named = names.filter(|name| texts.iter().flat_map(|t| t.values()).any(|text| has_word(text, name)));
         self.used.extend(named.cloned());
     }
@@ -281,12 +303,11 @@ impl Linker<'_> {
         pass: &PassDecl,
         shader: &Compiled,
         name: &str,
+        decl: Option<&Bind>,
         resource: &Resource,
-    ) -> Option<(Target, Option<usize>)> {
-        let bind = pass.bind.0.iter().position(|(key, _)| key.value == name);
-        let decl = bind.map(|i| &pass.bind.0[i].1.value);
+    ) -> Option<Target> {
         let resource_name = decl.map_or(name, |d| d.of.value.as_str());
-        self.used.insert(resource_name.to_string());
+        self.used.extend([name.to_string(), resource_name.to_string()]);
         let external = EXTERNALS.iter().position(|e| e.name == resource_name);
         let buffer = self.graph.buffers.iter().position(|b| b.0 == resource_name);
         let texture = self.graph.textures.iter().position(|t| t.0 == resource_name);
@@ -319,10 +340,10 @@ impl Linker<'_> {
                         None,
                     );
                 }
-                Some((Target::External(i), None))
+                Some(Target::External(i))
             }
             (_, Some(i), _) => match resource {
-                Resource::Buffer { .. } | Resource::Uniform => Some((Target::Buffer(i), bind)),
+                Resource::Buffer { .. } | Resource::Uniform => Some(Target::Buffer(i)),
                 other => fail(
                     self,
                     format!("'{resource_name}' is a buffer of the graph, and the shader declares {}", describe(other)),
@@ -333,12 +354,13 @@ impl Linker<'_> {
                 let texture = &self.graph.textures[i].1.value;
                 match mismatch(self.graph, resource_name, texture, decl, resource) {
                     Some((message, help)) => fail(self, message, help),
-                    None => Some((Target::Texture(i), bind)),
+                    None => Some(Target::Texture(i)),
                 }
             }
             _ => {
                 let known = self.graph.textures.iter().map(|t| t.0.as_str());
                 let known = known.chain(self.graph.buffers.iter().map(|b| b.0.as_str()));
+                let known = known.chain(self.graph.aliases.iter().map(|a| a.name.as_str()));
                 let known =
                     known.chain(EXTERNALS.iter().map(|e| e.name)).chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
                 let help = super::source::nearest(name, known);

@@ -1,9 +1,10 @@
 //! Reading a graph with its includes, and checking everything that needs no shader.
 
+use super::alias::{Alias, narrowed};
 use super::expr::Expr;
 use super::file::{
     BufferDecl, CheckDecl, Command, CompareDecl, Dispatch, Draw, Ex, GraphFile, PassDecl, RawText, SceneNeeds,
-    TextureDecl, ViewDecl, VoxelsDecl,
+    TextureDecl, ViewDecl, VoxelsDecl, ungrouped,
 };
 use super::param::{Kind, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
@@ -39,6 +40,8 @@ pub struct Graph {
     pub textures: Vec<(String, Loc<TextureDecl>)>,
     /// Buffers by name.
     pub buffers: Vec<(String, Loc<BufferDecl>)>,
+    /// Names that stand for textures or buffers, and textures sampled under a name of their own.
+    pub aliases: Vec<Alias>,
     /// Passes in order.
     pub passes: Vec<Loc<PassDecl>>,
     /// The display-encoded picture.
@@ -108,6 +111,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         values: Vec::new(),
         textures: Vec::new(),
         buffers: Vec::new(),
+        aliases: Vec::new(),
         passes: Vec::new(),
         output: None,
         hdr: None,
@@ -152,7 +156,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         values.extend(file.values.0);
         graph.textures.extend(file.textures.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
         graph.buffers.extend(file.buffers.0.into_iter().map(|(k, v)| (k.value, Loc { at: k.at, value: v.value })));
-        for pass in file.passes.0 {
+        errors.extend(super::alias::join(&mut graph.aliases, file.aliases, file.samplers, &graph.sources));
+        for pass in ungrouped(file.passes) {
             insert_pass(&mut graph.passes, pass, &graph.sources, whole, &broken, &mut errors);
         }
         graph.scene = file.scene.or(graph.scene);
@@ -189,6 +194,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     check.modules(&modules);
     check.named_values();
     check.textures();
+    check.aliases();
     for pass in &graph.passes {
         check.pass(&pass.value, pass.at);
     }
@@ -447,7 +453,7 @@ impl Check<'_> {
         let mut seen: HashMap<&str, ()> = HashMap::new();
         let resources =
             graph.textures.iter().map(|(n, t)| (n, t.at)).chain(graph.buffers.iter().map(|(n, b)| (n, b.at)));
-        for (name, at) in resources {
+        for (name, at) in resources.chain(graph.aliases.iter().map(|a| (&a.name, a.at))) {
             if !name.starts_with(|c: char| c.is_ascii_alphabetic())
                 || !name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             {
@@ -560,6 +566,11 @@ impl Check<'_> {
         if exists(self.graph, &name.value) {
             return true;
         }
+        if self.graph.alias(&name.value).is_some() {
+            let message = format!("'{}' is an alias or sampler, which passes bind: name a {what}", name.value);
+            self.error(name.at, message);
+            return false;
+        }
         if !self.is_unknown(&name.value) {
             return false;
         }
@@ -663,6 +674,22 @@ impl Check<'_> {
         }
     }
 
+    fn aliases(&mut self) {
+        for alias in &self.graph.aliases {
+            for case in &alias.cases {
+                self.exprs(&case.when);
+                match self.graph.alias(&case.bind.of.value) {
+                    Some(_) => {
+                        let message =
+                            format!("'{}' is an alias or sampler itself: name a texture or buffer", case.bind.of.value);
+                        self.error(case.bind.of.at, message);
+                    }
+                    None => self.bind(&case.bind),
+                }
+            }
+        }
+    }
+
     fn format(&mut self, name: &Loc<String>, or_choice: bool) {
         if Format::named(&name.value).is_some() || self.broken.contains(&name.value) {
             return;
@@ -697,7 +724,7 @@ impl Check<'_> {
                 format!("pass '{name}' does several things: dispatch, draw, clear and copy exclude each other"),
             ),
         }
-        self.exprs(pass.when.iter().chain(&pass.repeat).chain(&pass.mip));
+        self.exprs(pass.conditions().chain(&pass.repeat).chain(&pass.mip));
         if pass.repeat.is_some() && pass.each_mip.is_some() {
             self.error(at, format!("pass '{name}' has both repeat and each_mip"));
         }
@@ -707,6 +734,7 @@ impl Check<'_> {
         self.stages(pass, at);
         match pass.dispatch.as_ref().map(|d| &d.value) {
             Some(Dispatch::Cover(target)) if pass.bind.0.iter().any(|(key, _)| key.value == target.value) => {}
+            Some(Dispatch::Cover(target)) if self.graph.alias(&target.value).is_some() => {}
             Some(Dispatch::Cover(target)) => drop(self.texture_name(target)),
             Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) => self.exprs([x, y, z]),
             Some(Dispatch::Indirect(command)) => self.indirect(command),
@@ -718,7 +746,10 @@ impl Check<'_> {
             _ => {}
         }
         for (_, bind) in &pass.bind.0 {
-            self.bind(&bind.value);
+            match self.graph.alias(&bind.value.of.value) {
+                Some(alias) => alias.cases.iter().for_each(|case| self.bind(&narrowed(&case.bind, &bind.value))),
+                None => self.bind(&bind.value),
+            }
         }
         self.attachments(pass, at);
         if let Some(target) = &pass.clear {

@@ -1,4 +1,5 @@
 //! The pass graph: parameters, textures, buffers and passes, read from RON. It knows no voxels.
+mod alias;
 mod choices;
 pub mod expr;
 pub mod externals;

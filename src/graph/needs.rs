@@ -67,7 +67,7 @@ pub(super) fn check(graph: &Graph, linked: &[Linked], plan: &Plan, input: &PlanI
 }
 
 fn choices<'p>(pass: &'p PassDecl, params: &'p Params) -> impl Iterator<Item = (&'p str, &'p Value, &'p [String])> {
-    let variables = pass.when.iter().flat_map(|ex| ex.value.variables());
+    let variables = pass.conditions().flat_map(|ex| ex.value.variables());
     variables.filter_map(|v| {
         let i = params.index(v)?;
         match &params.list[i].kind {

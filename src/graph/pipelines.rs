@@ -90,10 +90,10 @@ fn pipeline_desc(
     let constants = params.constants();
     let stripped: Vec<u32> = step.stripped.iter().map(|i| link.bound[*i].binding).collect();
     // A texture without a binding in the step is one that the stripped shader does not know.
-    let bound =
-        link.bound.iter().enumerate().filter(|(i, b)| {
-            !matches!(b.target, Target::Texture(_)) || step.bindings.iter().any(|plan| plan.bound == *i)
-        });
+    let bound = link.bound.iter().enumerate().filter(|(i, b)| {
+        let texture = matches!(b.cases[step.cases[*i]].target, Target::Texture(_));
+        !texture || step.bindings.iter().any(|plan| plan.bound == *i)
+    });
     let stages: Vec<StageDesc> = link
         .stages
         .iter()

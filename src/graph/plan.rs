@@ -1,9 +1,9 @@
 //! What runs in a frame: expressions evaluated, passes that nobody needs left out, every use of every subresource listed.
 
 use super::expr::{Env, Var};
-use super::file::{Bind, BufferSize, Command, Dispatch, Draw, Ex, PassDecl, Which};
+use super::file::{BufferSize, Command, Dispatch, Draw, Ex, PassDecl, Which};
 use super::layouts::{DISPATCH_WORDS, DRAW_WORDS, Layouts};
-use super::link::{Bound, Linked, Target};
+use super::link::{Bound, BoundCase, Linked, Target};
 use super::load::Graph;
 use super::param::{Params, Value};
 use super::source::{At, Diagnostic};
@@ -126,6 +126,8 @@ pub struct Step {
     pub index: u32,
     /// What it does.
     pub work: Work,
+    /// Which case of each of the pass's bindings holds.
+    pub cases: Vec<usize>,
     /// Textures behind its bindings.
     pub bindings: Vec<BindingPlan>,
     /// Bindings, by index in the pass's bindings, whose stores nobody needs: they are taken out of the shader. Those that
@@ -167,15 +169,18 @@ pub fn all_expressions(graph: &Graph) -> impl Iterator<Item = &Ex> {
     let buffers = graph.buffers.iter().flat_map(|(_, b)| b.value.size.value.expression());
     let scene = graph.scene.iter().flat_map(|s| std::iter::once(&s.value.max_edge).chain(&s.value.when));
     let values = graph.values.iter().map(|v| &v.expr);
+    let cases = graph.aliases.iter().flat_map(|a| &a.cases);
+    let aliases = cases.flat_map(|c| c.when.iter().chain(&c.bind.mip).chain(&c.bind.layer));
     textures
         .chain(buffers)
         .chain(scene)
         .chain(values)
+        .chain(aliases)
         .chain(graph.passes.iter().flat_map(|p| pass_expressions(&p.value)))
 }
 
 fn pass_expressions(pass: &PassDecl) -> Vec<&Ex> {
-    let mut list: Vec<&Ex> = pass.when.iter().chain(&pass.repeat).chain(&pass.mip).collect();
+    let mut list: Vec<&Ex> = pass.conditions().chain(&pass.repeat).chain(&pass.mip).collect();
     if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = pass.dispatch.as_ref().map(|d| &d.value) {
         list.extend([x, y, z]);
     }
@@ -216,9 +221,7 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     let mut dropped = Vec::new();
     let mut steps = Vec::new();
     for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
-        if let Some(when) = &pass.value.when
-            && !planner.condition(when)
-        {
+        if let Some(when) = pass.value.conditions().find(|when| !planner.condition(when)) {
             dropped.push((number, format!("{} is false", when.value.text)));
             continue;
         }
@@ -434,6 +437,7 @@ impl Planner<'_> {
             pass: number,
             index,
             work: Work::Vertices(0),
+            cases: Vec::new(),
             bindings: Vec::new(),
             stripped: Vec::new(),
             color: Vec::new(),
@@ -443,8 +447,9 @@ impl Planner<'_> {
             uses: Vec::new(),
         };
         for (i, bound) in link.bound.iter().enumerate() {
-            let decl = bound.bind.map(|b| &pass.bind.0[b].1.value);
-            self.binding(i, bound, decl, &mut step);
+            let case = self.case(bound.cases.iter().map(|c| c.when.as_ref()));
+            step.cases.push(case);
+            self.binding(i, bound, &bound.cases[case], &mut step);
         }
         self.attachments(pass, &mut step);
         step.work = self.work(pass, link, &mut step)?;
@@ -452,9 +457,16 @@ impl Planner<'_> {
         Some(step)
     }
 
-    fn binding(&mut self, i: usize, bound: &Bound, decl: Option<&Bind>, step: &mut Step) {
+    /// The first case whose condition holds; the last one has none.
+    fn case<'e>(&mut self, conditions: impl ExactSizeIterator<Item = Option<&'e Ex>>) -> usize {
+        let last = conditions.len().saturating_sub(1);
+        conditions.enumerate().find(|(_, when)| when.is_none_or(|ex| self.condition(ex))).map_or(last, |(i, _)| i)
+    }
+
+    fn binding(&mut self, i: usize, bound: &Bound, case: &BoundCase, step: &mut Step) {
         let stage = bound.stage.sync();
-        match bound.target {
+        let decl = case.bind.as_ref();
+        match case.target {
             Target::External(_) => {}
             Target::Buffer(b) => {
                 let (read, write) = match bound.resource {
@@ -680,15 +692,21 @@ impl Planner<'_> {
     fn covered(&mut self, pass: &PassDecl, link: &Linked, step: &Step, name: &str) -> Option<[u32; 3]> {
         let bound = link.bound.iter().position(|b| b.name == name);
         let binding = bound.and_then(|i| step.bindings.iter().find(|b| b.bound == i));
-        let (texture, mip) = match (binding, pass.bind.0.iter().find(|(k, _)| k.value == name)) {
-            (Some(b), _) => match link.bound[b.bound].target {
-                Target::Texture(t) => (t, b.mips.0),
-                _ => return None,
-            },
-            (None, Some((_, bind))) => (self.texture(&bind.value.of.value)?, 0),
-            (None, None) => (self.texture(name)?, 0),
+        let (texture, mip) = match binding {
+            Some(b) => (b.texture, b.mips.0),
+            None => {
+                let cases = self.graph.cases(pass, name);
+                let case = self.case(cases.iter().map(|c| c.0.as_ref()));
+                match cases.into_iter().nth(case).and_then(|c| c.1) {
+                    Some(bind) => {
+                        let mip = bind.mip.as_ref().map_or(0, |ex| self.count(ex, 0, "mip"));
+                        (self.texture(&bind.of.value)?, mip)
+                    }
+                    None => (self.texture(name)?, 0),
+                }
+            }
         };
-        Some(self.textures[texture].extent.map(|n| (n >> mip).max(1)))
+        Some(self.textures[texture].extent.map(|n| n.checked_shr(mip).unwrap_or(0).max(1)))
     }
 
     fn grid(&mut self, at: At, groups: [u32; 3]) -> Option<[u32; 3]> {

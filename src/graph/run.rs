@@ -1,7 +1,7 @@
 //! A plan on a device: resources, pipelines, descriptor sets, and the recording of frames.
 
 use super::externals::EXTERNALS;
-use super::file::{PassDecl, Which};
+use super::file::Which;
 use super::link::{Linked, Target, bound_shape};
 use super::load::Graph;
 use super::param::{Params, Value};
@@ -215,7 +215,6 @@ impl Program {
     ) -> Result<StepGpu> {
         let step = self.plan.steps[index].clone();
         let link = &linked[step.pass];
-        let pass = &graph.passes[step.pass].value;
         let mut out = StepGpu {
             pipeline: pipeline.clone(),
             push: link.stages.iter().any(|s| s.interface.push),
@@ -233,7 +232,7 @@ impl Program {
             if let Some(pipeline) = &pipeline
                 && !link.bound.is_empty()
             {
-                let set = self.set(graph, pass, link, &step, pipeline, parity)?;
+                let set = self.set(graph, link, &step, pipeline, parity)?;
                 out.sets[parity] = Some(set);
             }
         }
@@ -268,7 +267,6 @@ impl Program {
     fn set(
         &mut self,
         graph: &Graph,
-        pass: &PassDecl,
         link: &Linked,
         step: &Step,
         pipeline: &Pipeline,
@@ -279,13 +277,14 @@ impl Program {
         for (i, bound) in link.bound.iter().enumerate() {
             // Images whose stores were taken out of the shader have no binding.
             let binding = step.bindings.iter().find(|b| b.bound == i);
-            let (Target::Texture(t), Some(plan)) = (&bound.target, binding) else {
+            let case = &bound.cases[step.cases[i]];
+            let (Target::Texture(t), Some(plan)) = (&case.target, binding) else {
                 views.push(None);
                 samplers.push(None);
                 continue;
             };
             let t = *t;
-            let decl = bound.bind.map(|b| &pass.bind.0[b].1.value);
+            let decl = case.bind.as_ref();
             let texture = &graph.textures[t].1.value;
             let format = plan.format.unwrap_or(self.plan.textures[t].format);
             let desc = ViewDesc {
@@ -315,7 +314,7 @@ impl Program {
         let mut writes = Vec::new();
         for (i, bound) in link.bound.iter().enumerate() {
             let kind = descriptor_type(&bound.resource);
-            let write = match bound.target {
+            let write = match bound.cases[step.cases[i]].target {
                 Target::External(e) => self.external(EXTERNALS[e].name)?,
                 Target::Buffer(b) => match &self.buffers[b] {
                     Some(buffer) => DescriptorWrite::Buffer(buffer),

@@ -55,6 +55,6 @@ pub fn runs(graph: &Graph, params: &Params, env: &Env) -> Runs {
     let mut env = env.clone();
     super::value::fill(graph, params, &mut env);
     let holds = |when: &super::file::Ex| when.value.eval(&env) != Ok(0.0);
-    let passes = graph.passes.iter().map(|p| p.value.when.as_ref().is_none_or(holds)).collect();
+    let passes = graph.passes.iter().map(|p| p.value.conditions().all(holds)).collect();
     Runs { passes, generated: generated(graph, params) }
 }

@@ -29,7 +29,7 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
         findings.push(Diagnostic { severity: Severity::Warning, ..d });
     };
     let resources = graph.textures.iter().map(|t| (&t.0, t.1.at)).chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
-    for (name, at) in resources {
+    for (name, at) in resources.chain(graph.aliases.iter().map(|a| (&a.name, a.at))) {
         if !used.contains(name) && !wanted.contains(name.as_str()) {
             warn(at, format!("'{name}' is declared and never used"));
         }

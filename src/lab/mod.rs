@@ -205,8 +205,10 @@ fn plan_of(
 
 /// Whether a pass that runs asks for the hierarchy over the scene's triangles.
 fn traces_rays(linked: &[Linked], plan: &Plan) -> bool {
-    let mut bound = plan.steps.iter().flat_map(|s| &linked[s.pass].bound);
-    bound.any(|b| matches!(b.target, Target::External(e) if RAY_RESOURCES.contains(&EXTERNALS[e].name)))
+    let bound = plan.steps.iter().flat_map(|s| &linked[s.pass].bound);
+    bound
+        .flat_map(|b| &b.cases)
+        .any(|c| matches!(c.target, Target::External(e) if RAY_RESOURCES.contains(&EXTERNALS[e].name)))
 }
 
 /// The parameters of an experiment: defaults, then what it sets.
