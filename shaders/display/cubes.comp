@@ -13,6 +13,6 @@ void main() {
     uint i = atomicAdd(voxelCubes.found, 1u);
     if (i >= voxelCubes.cells.length()) return;
     voxelCubes.cells[i] = cell.x + size.x * (cell.y + size.y * cell.z);
-    voxelCubes.draw_vertices = 36;
-    atomicMax(voxelCubes.draw_instances, i + 1u);
+    voxelCubes.draw.x = 36;
+    atomicMax(voxelCubes.draw.y, i + 1u);
 }

@@ -4,10 +4,7 @@
 #include "common/volume.glsl"
 
 layout(std430) buffer VoxelCubes {
-    uint draw_vertices; // VkDrawIndirectCommand: 36, cubes, 0, 0
-    uint draw_instances;
-    uint draw_first_vertex;
-    uint draw_first_instance;
+    uvec4 draw; // VkDrawIndirectCommand: 36, cubes, 0, 0
     uint found; // cells that hold anything, listed or not
     uint cells[]; // x + size * (y + size * z)
 } voxelCubes;
