@@ -299,7 +299,7 @@ fn fields_and_variants_that_do_not_exist() {
 #[test]
 fn values_of_the_wrong_kind() {
     assert_snapshot!(graph("\"depth\": (size: (\"width\", \"height\")", "\"depth\": (size: \"width\""), @r#"
-    passes/graph.ron:13:32: error: expected two sizes (width, height) or three (width, height, depth)
+    passes/graph.ron:13:26: error: expected two sizes (width, height) or three (width, height, depth)
         |         "depth": (size: "width", format: "d32"),
     "#);
     assert_snapshot!(graph("format: \"rgba16f\", history: true", "format: \"rgba16f\", history: \"yes\""), @r#"
@@ -1794,5 +1794,34 @@ fn aliases_and_samplers() {
     assert_snapshot!(target.findings(), @r#"
     passes/graph.ron:28:26: error: 'ghost' is an alias or sampler, which passes bind: name a texture
         |             color: [(to: "ghost", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
+    "#);
+}
+
+#[test]
+fn sizes_by_a_word() {
+    let size = |text: &str| graph("\"depth\": (size: (\"width\", \"height\")", &format!("\"depth\": (size: {text}"));
+    assert_eq!(size("Screen"), "");
+    assert_eq!(size("Like(\"picture\")"), "");
+    assert_snapshot!(size("Scren"), @r#"
+    passes/graph.ron:13:25: error: unknown name 'Scren'
+        |         "depth": (size: Scren, format: "d32"),
+        = help: did you mean 'Screen'?
+    "#);
+    assert_snapshot!(size("Like(picture)"), @r#"
+    passes/graph.ron:13:30: error: Expected string
+        |         "depth": (size: Like(picture), format: "d32"),
+    "#);
+    assert_snapshot!(size("Like(\"pictures\")"), @r#"
+    passes/graph.ron:13:30: error: no texture is named 'pictures'
+        |         "depth": (size: Like("pictures"), format: "d32"),
+        = help: did you mean 'picture'?
+    "#);
+    assert_snapshot!(size("Like(\"depth\")"), @r#"
+    passes/graph.ron:13:9: error: 'depth' is as large as itself
+        |         "depth": (size: Like("depth"), format: "d32"),
+    "#);
+    assert_snapshot!(size("Like(\"grid\")"), @r#"
+    passes/graph.ron:27:72: error: attachments differ in size: 64x48 and 64x64
+        |             color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
     "#);
 }

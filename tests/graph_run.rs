@@ -1336,3 +1336,83 @@ fn a_name_stands_for_what_its_condition_says() {
         assert_eq!(names, made, "{target}");
     }
 }
+
+#[test]
+fn what_is_left_out_is_the_default() {
+    let bench = Bench::new(
+        r#"(
+            textures: {
+                "said": (size: ("width", "height"), format: "rgba16f"),
+                "unsaid": (size: Screen, format: "rgba16f"),
+                "saidDepth": (size: ("width", "height"), format: "d32", sampler: (filter: linear, address: clamp)),
+                "unsaidDepth": (size: Like("unsaid"), format: "d32"),
+                "volume": (size: (4, 5, 6), format: "r8", mips: 2),
+                "alike": (size: Like("cousin"), format: "r8"),
+                "cousin": (size: Like("volume"), format: "r8"),
+            },
+            passes: [
+                (name: "said", shaders: ["scene.vert", "scene.frag"], draw: Scene(what: all), topology: triangles,
+                    color: [(to: "said", clear: (0, 0, 0, 0), mip: "0", layer: "0", blend: off)],
+                    depth: (to: "saidDepth", clear: 1.0, test: less, write: true),
+                    raster: (cull: none, depth_clamp: false, discard: false)),
+                (name: "unsaid", shaders: ["scene.vert", "scene.frag"], draw: Scene,
+                    color: [(to: "unsaid", clear: (0, 0, 0, 0))], depth: (to: "unsaidDepth", clear: 1)),
+                (name: "clear", clear: "alike"),
+            ],
+        )"#,
+        &[
+            (
+                "scene.vert",
+                "#include \"scene.glsl\"
+                layout(location = 0) out vec3 at;
+                void main() {
+                    at = toWorld(draws.draws[gl_InstanceIndex].instance, loadPosition(gl_VertexIndex));
+                    gl_Position = camera.view_projection * vec4(at, 1.0);
+                }",
+            ),
+            (
+                "scene.frag",
+                "layout(location = 0) in vec3 at; layout(location = 0) out vec4 color; void main() { color = vec4(at, 1.0); }",
+            ),
+        ],
+    );
+    let lab = bench.lab();
+    let mut session = bench.run(&lab, &["said", "unsaid", "saidDepth", "unsaidDepth", "alike"], 1);
+    let mut bytes = |name: &str| session.texels(name, 0, 0).unwrap().bytes;
+    let said = bytes("said");
+    assert!(said.iter().any(|b| *b != 0), "the scene is in the picture");
+    assert_eq!(bytes("unsaid"), said);
+    assert_eq!(bytes("unsaidDepth"), bytes("saidDepth"));
+    let alike = session.graph.textures.iter().position(|t| t.0 == "alike").unwrap();
+    let plan = &session.program.plan.textures[alike];
+    assert_eq!((plan.extent, plan.volume, plan.mips), ([4, 5, 6], true, 1));
+}
+
+#[test]
+fn the_example_of_the_documentation_runs() {
+    let text = std::fs::read_to_string(common::root().join("docs/graph.md")).unwrap();
+    let example = text.split("## A complete example").nth(1).unwrap();
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["passes", "shaders", "configs"] {
+        common::copy(&common::root().join(folder), &home.path().join(folder));
+    }
+    // Each file is a block behind a line with its name: `passes/sketch.ron`:
+    let mut files = 0;
+    let blocks: Vec<&str> = example.split("\n```").collect();
+    for pair in blocks.windows(2) {
+        let name = pair[0].lines().last().and_then(|line| line.strip_prefix('`')?.strip_suffix("`:"));
+        let Some((name, (_, body))) = name.zip(pair[1].split_once('\n')) else { continue };
+        std::fs::write(home.path().join(name), body).unwrap();
+        files += 1;
+    }
+    assert_eq!(files, 7);
+    succeeds(conelab(home.path()).args(["check", "passes/sketch.ron", "configs/sketch.ron"]));
+    let small = ["--set", "shadow_dim=256", "--size", "64x48"];
+    let mut pictures = Vec::new();
+    for (name, more) in [("sketch", &[][..]), ("steady", &["--set", "steady=true", "--frames", "3", "--step", "0.1"])] {
+        let file = home.path().join(format!("{name}.png"));
+        succeeds(conelab(home.path()).args(["render", "configs/sketch.ron", "-o"]).arg(&file).args(small).args(more));
+        pictures.push(std::fs::read(file).unwrap());
+    }
+    assert_ne!(pictures[0], pictures[1]);
+}

@@ -2,7 +2,7 @@
 
 use super::expr::Expr;
 use super::param::Decl;
-use super::source::{Entries, Items, Loc, TwoOrThree, nested};
+use super::source::{Entries, Items, Loc, TwoOrThree, nested, offset_in_file};
 use super::table::TableDecl;
 use serde::Deserialize;
 
@@ -108,7 +108,7 @@ impl CheckDecl {
 #[serde(deny_unknown_fields)]
 pub struct TextureDecl {
     /// Two sizes for 2D, three for 3D.
-    pub size: TwoOrThree<Expr>,
+    pub size: Size,
     /// A format, or a choice parameter whose options are formats.
     pub format: Loc<String>,
     /// Formats it may also be viewed as.
@@ -123,6 +123,33 @@ pub struct TextureDecl {
     /// Keep last frame's content beside this frame's.
     #[serde(default)]
     pub history: bool,
+}
+
+/// Size of a texture: two expressions for 2D, three for 3D; with the name of a texture whose they are, until the graph is
+/// whole.
+#[derive(Clone, Debug)]
+pub struct Size(pub Vec<Ex>, pub Option<Loc<String>>);
+
+/// The words for a size.
+#[derive(Deserialize)]
+enum SizeWord {
+    Screen,
+    Like(Loc<String>),
+}
+
+impl<'de> Deserialize<'de> for Size {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+        let text = raw.trim().get_ron();
+        if !text.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            return nested(raw).map(|TwoOrThree::<Expr>(sizes)| Size(sizes, None));
+        }
+        let screen = |name| Loc { value: Expr::new(name), at: offset_in_file(text) };
+        Ok(match nested(raw)? {
+            SizeWord::Screen => Size(vec![screen("width"), screen("height")], None),
+            SizeWord::Like(other) => Size(Vec::new(), Some(other)),
+        })
+    }
 }
 
 /// How a texture is sampled.
@@ -396,6 +423,7 @@ pub struct PassDecl {
     /// Compute grid.
     pub dispatch: Option<Loc<Dispatch>>,
     /// What is drawn.
+    #[serde(default, deserialize_with = "draw")]
     pub draw: Option<Loc<Draw>>,
     /// Primitives.
     #[serde(default)]
@@ -467,6 +495,15 @@ pub enum Draw {
     Vertices(Ex),
     /// Counts read from a buffer (VkDrawIndirectCommand).
     Indirect(Command),
+}
+
+/// `Scene` alone is all of it.
+fn draw<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<Loc<Draw>>, D::Error> {
+    let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+    match raw.trim().get_ron() {
+        text @ "Scene" => Ok(Some(Loc { value: Draw::Scene { what: Which::All }, at: offset_in_file(text) })),
+        _ => nested(raw),
+    }
 }
 
 /// Which triangles of the scene.

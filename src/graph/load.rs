@@ -184,6 +184,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         graph.parts.extend(file.parts.0.iter().map(|(part, texture)| (part.value.clone(), texture.value.clone())));
         wanted.extend(file.parts.0.into_iter().map(|p| p.1));
     }
+    sizes_of_others(&mut graph, whole, &broken, &mut errors);
     let mut list = check_params(&decls, &graph.sources, &mut errors, &mut broken);
     graph.params_at = list.iter().map(|p| declared_at(&decls, &p.name)).collect();
     set_defaults(&mut list, &defaults, &graph.sources, whole, &broken, &mut errors);
@@ -343,6 +344,33 @@ fn check_params(
         }
     }
     list
+}
+
+/// Gives the textures that are as large as another its size.
+fn sizes_of_others(graph: &mut Graph, whole: bool, broken: &[String], errors: &mut Vec<Diagnostic>) {
+    let sizes: Vec<(String, super::file::Size)> =
+        graph.textures.iter().map(|(name, t)| (name.clone(), t.value.size.clone())).collect();
+    let size_of = |name: &str| sizes.iter().find(|s| s.0 == name).map(|s| &s.1);
+    for (name, texture) in &mut graph.textures {
+        let mut at = texture.value.size.1.clone();
+        // As many steps as there are textures: more go in a circle.
+        for _ in 0..=sizes.len() {
+            let Some(other) = &at else { break };
+            let Some(found) = size_of(&other.value) else { break };
+            texture.value.size.0.clone_from(&found.0);
+            at.clone_from(&found.1);
+        }
+        match (at, &texture.value.size.1) {
+            (Some(other), Some(_)) if size_of(&other.value).is_some() => {
+                errors.push(graph.sources.error(texture.at, format!("'{name}' is as large as itself")));
+            }
+            (Some(other), _) if whole && !broken.contains(&other.value) => {
+                let found = graph.sources.error(other.at, format!("no texture is named '{}'", other.value));
+                errors.push(found.nearest(&other.value, sizes.iter().map(|s| s.0.as_str())));
+            }
+            _ => {}
+        }
+    }
 }
 
 fn declared_at(decls: &[Loc<super::param::Decl>], name: &str) -> At {

@@ -263,7 +263,7 @@ fn offset_of(text: &str, line: usize, column: usize) -> u32 {
 }
 
 /// Offset of a slice of the file that is being parsed; 0 when it is none (values built in code).
-fn offset_in_file(slice: &str) -> At {
+pub(super) fn offset_in_file(slice: &str) -> At {
     CONTEXT.with_borrow(|context| {
         context.as_ref().map_or(At::default(), |c| {
             let offset = (slice.as_ptr() as usize).wrapping_sub(c.base);
