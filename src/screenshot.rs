@@ -167,7 +167,7 @@ impl Host {
         Ok(Pos2::new((bounds.x0 + bounds.x1) as f32 / 2.0, (bounds.y0 + bounds.y1) as f32 / 2.0) / self.script.scale)
     }
 
-    /// Frames until everything wished for is there and nothing moves any more.
+    /// Frames until everything requested is there and nothing moves any more.
     fn settle(&mut self) -> Result<(), LabError> {
         let until = Instant::now() + self.script.patience;
         let mut calm = 0;

@@ -80,8 +80,8 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     error(&mut desk, mark, "another error", |e| !same(e, own));
     desk.resting(0);
     let picture = desk.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
-    let wish = number(picture, "wish");
-    let last = desk.wait(mark, "the last error", |e| e["event"] == "judged" && e["wish"].as_f64() >= Some(wish));
+    let request = number(picture, "request");
+    let last = desk.wait(mark, "the last error", |e| e["event"] == "judged" && e["request"].as_f64() >= Some(request));
     let slid = number(&last, "error");
     assert!(!same(slid, own), "{slid}");
 
@@ -117,7 +117,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     desk.click("Button", "as the panel");
     let large = desk.wait(mark, "a larger picture", |e| e["event"] == "picture" && e["size"][0].as_f64() > Some(160.0));
     desk.wait(mark, "no reference of it", |e| {
-        e["event"] == "judged" && e["error"].is_null() && e["wish"].as_f64() >= large["wish"].as_f64()
+        e["event"] == "judged" && e["error"].is_null() && e["request"].as_f64() >= large["request"].as_f64()
     });
     let before = desk.resting(0);
     std::thread::sleep(Duration::from_millis(300));

@@ -3,11 +3,11 @@
 //! the values of a parameter are taken to be in the order of their costs: halving finds the two between which the first's
 //! time lies, and the nearer is taken.
 
+use super::chart_spec::CostChart;
 use super::file::{Method, Suite};
 use super::plan::{Job, Options, plan};
 use super::record::{json, lasting};
 use super::run::{Progress, cell_of, median, place};
-use super::wish::CostChart;
 use crate::lab::{Lab, LabError, Seed};
 use crate::measure::{Warm, WarmUp};
 use crate::oracle;

@@ -1,7 +1,7 @@
 //! Suite files: methods, and what moves (docs/stability.md).
 
+use super::chart_spec::{ChartFile, CostChart};
 use super::motion::Motion;
-use super::wish::{ChartFile, CostChart};
 use crate::camera_path::CameraPath;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
@@ -229,7 +229,7 @@ impl Suite {
         let chart = parsed
             .chart
             .as_ref()
-            .and_then(|c| c.value.wish(&methods, &cases).map_err(|why| errors.push(sources.error(c.at, why))).ok());
+            .and_then(|c| c.value.spec(&methods, &cases).map_err(|why| errors.push(sources.error(c.at, why))).ok());
         let experiment = match Experiment::read(&folder.join(&parsed.experiment.value)) {
             Ok(experiment) => Some(experiment),
             Err(found) if found.iter().all(|d| d.place.line == 0) => {

@@ -3,6 +3,7 @@
 
 mod cameras;
 mod chart;
+mod chart_spec;
 mod cost;
 mod file;
 mod motion;
@@ -18,9 +19,9 @@ mod series;
 mod sheet;
 mod table;
 mod truth;
-mod wish;
 
 pub use cameras::Cameras;
+pub use chart_spec::{CostChart, EqualTime};
 pub use cost::{Candidate, Cost};
 pub use file::{Suite, check};
 pub use motion::{Moment, Motion, Unit};
@@ -30,4 +31,3 @@ pub use record::{FrameScore, Measured, Outcome, PartResult, Record, Report, Wors
 pub use run::{Progress, Tally, run};
 pub use score::{Change, Flicker, Step, change, display, flicker, settling, step};
 pub use sheet::{Failure, failures, sheet, table as failure_table};
-pub use wish::{CostChart, EqualTime};

@@ -1,5 +1,6 @@
 //! Running a suite: every method in every case, one after another, each kept as soon as it is finished.
 
+use super::chart_spec::CostChart;
 use super::file::Suite;
 use super::motion::{Moment, Motion};
 use super::pictures::Panels;
@@ -8,7 +9,6 @@ use super::plot::Plot;
 use super::record::{Folder, Measured, Outcome, RESULT_SCHEMA, Record, Report, SCHEMA, Worst, json, lasting};
 use super::series::{Known, PartSeries};
 use super::truth::{Tracing, Truth, Truths};
-use super::wish::CostChart;
 use super::{chart, cost, page, table};
 use crate::graph::param::Value;
 use crate::lab::{Lab, LabError, Seed, Session, parts_of};
@@ -135,9 +135,9 @@ pub fn run(
 }
 
 /// Tables, JSON, charts and the page.
-fn write(report: &Report, wish: Option<&CostChart>, options: &Options) -> Result<(), LabError> {
+fn write(report: &Report, spec: Option<&CostChart>, options: &Options) -> Result<(), LabError> {
     let charts = chart::charts(report)?;
-    let plot = wish.map(|wish| Plot::new(report, wish)).transpose()?;
+    let plot = spec.map(|spec| Plot::new(report, spec)).transpose()?;
     let mut files = vec![
         ("stability.json".to_string(), json(report)?),
         ("stability.csv".into(), table::rows(report)?.into_bytes()),

@@ -22,21 +22,21 @@ impl Workbench {
                 self.go(false);
             }
             ui.separator();
-            let mut compare = self.wish.slots[1].is_some();
+            let mut compare = self.desired.slots[1].is_some();
             if ui
                 .toggle_value(&mut compare, "A | B")
                 .on_hover_text("Put a second experiment beside the first")
                 .clicked()
             {
-                self.wish.slots[1] = if compare { self.wish.slots[0].clone() } else { None };
+                self.desired.slots[1] = if compare { self.desired.slots[0].clone() } else { None };
                 self.panel_slot = usize::from(compare);
             }
             self.comparisons(ui);
-            if self.wish.slots[1].is_some() {
+            if self.desired.slots[1].is_some() {
                 self.compare_bar(ui);
             }
             ui.separator();
-            ui.toggle_value(&mut self.wish.continuous, "keep rendering").on_hover_text(
+            ui.toggle_value(&mut self.desired.continuous, "keep rendering").on_hover_text(
                 "Frames are rendered when something changes; with this also when nothing does, to measure",
             );
             if ui.button("help").on_hover_text("F1").clicked() {
@@ -51,7 +51,7 @@ impl Workbench {
         for compare in &outline.graph.compare {
             let button = ui.button(&compare.value.title).on_hover_text(&compare.value.help);
             if button.clicked() {
-                let base = self.wish.slots[0].clone().unwrap_or_default();
+                let base = self.desired.slots[0].clone().unwrap_or_default();
                 let make = |values: &Entries<RawText>| {
                     let mut slot = base.clone();
                     for (name, text) in &values.0 {
@@ -63,7 +63,7 @@ impl Workbench {
                     }
                     slot
                 };
-                self.wish.slots = [Some(make(&compare.value.a)), Some(make(&compare.value.b))];
+                self.desired.slots = [Some(make(&compare.value.a)), Some(make(&compare.value.b))];
             }
         }
     }
@@ -89,14 +89,14 @@ impl Workbench {
         let Some((path, slot)) = chosen else { return };
         match Experiment::read(&path) {
             Ok(experiment) if slot == 0 => self.open(&experiment),
-            Ok(experiment) => self.wish.slots[1] = Some(slot_of(&experiment)),
+            Ok(experiment) => self.desired.slots[1] = Some(slot_of(&experiment)),
             Err(errors) => self.slots[slot].errors = errors,
         }
     }
 
     fn scenes_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        ui.menu_button(format!("scene: {}", short(&self.wish.scene)), |ui| {
+        ui.menu_button(format!("scene: {}", short(&self.desired.scene)), |ui| {
             for (name, about) in crate::scene::builtin::list() {
                 if ui.button(name).on_hover_text(about).clicked() {
                     chosen = Some(name.to_string());

@@ -1,6 +1,6 @@
 //! What the user edits: parameters of a slot.
 
-use super::wish::SlotWish;
+use super::request::SideRequest;
 use crate::graph::param::{Param, Params, Value};
 
 /// A value as RON, as experiments write it.
@@ -18,13 +18,13 @@ pub fn changed(params: &Params) -> Vec<(String, String)> {
 }
 
 /// A parameter's value in a slot: what is set, else the default.
-pub fn value(slot: &SlotWish, param: &Param) -> Value {
+pub fn value(slot: &SideRequest, param: &Param) -> Value {
     let set = slot.params.iter().rev().find(|(name, _)| *name == param.name);
     set.and_then(|(_, text)| param.parse(text).ok()).unwrap_or_else(|| param.default.clone())
 }
 
 /// Sets a parameter of a slot; values at the default are not kept.
-pub fn set(slot: &mut SlotWish, param: &Param, value: &Value) {
+pub fn set(slot: &mut SideRequest, param: &Param, value: &Value) {
     let place = slot.params.iter().position(|(name, _)| *name == param.name);
     let at_default = *value == param.default;
     match (place, at_default) {

@@ -115,13 +115,13 @@ impl Workbench {
 
     fn save_as(&self, name: &str, replace: bool) -> Result<PathBuf, LabError> {
         let name = checked_name(name)?;
-        let slot = self.wish.slots[self.panel_slot].as_ref().or(self.wish.slots[0].as_ref());
+        let slot = self.desired.slots[self.panel_slot].as_ref().or(self.desired.slots[0].as_ref());
         let outline = self.slots[self.panel_slot].outline.as_ref().or(self.slots[0].outline.as_ref());
         let (Some(slot), Some(outline)) = (slot, outline) else {
             return Err(LabError::Request("there is nothing to save yet: no graph has been built".into()));
         };
-        let time = self.slots[0].picture.as_ref().map_or(self.wish.clock.at, |p| p.time);
-        let experiment = keep::experiment(&self.wish, slot, &name, time, self.scene.as_deref());
+        let time = self.slots[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
+        let experiment = keep::experiment(&self.desired, slot, &name, time, self.scene.as_deref());
         let path = self.experiment_path(&name);
         crate::experiment::write(&experiment, &outline.graph.params, &path, replace)?;
         Ok(path)

@@ -27,10 +27,10 @@ impl Workbench {
             let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
             let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
-            let wish = self.slots[0].picture.as_ref().map_or(0, |p| p.wish);
+            let request = self.slots[0].picture.as_ref().map_or(0, |p| p.request);
             self.event(
                 "painted",
-                json!({ "pictures": list, "fingerprints": prints, "wish": wish, "since_change_ms": since }),
+                json!({ "pictures": list, "fingerprints": prints, "request": request, "since_change_ms": since }),
             );
         }
         self.pixels.clear();

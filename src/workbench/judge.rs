@@ -31,8 +31,8 @@ pub struct Question {
 pub struct Case {
     /// 0 is A, 1 is B.
     pub slot: usize,
-    /// The wish that it fulfils.
-    pub wish: u64,
+    /// The request that it fulfils.
+    pub request: u64,
     /// Revision of the files.
     pub revision: u64,
     /// What is asked.
@@ -58,8 +58,8 @@ pub struct Case {
 pub struct Judged {
     /// 0 is A, 1 is B.
     pub slot: usize,
-    /// The wish that was judged.
-    pub wish: u64,
+    /// The request that was judged.
+    pub request: u64,
     /// What was asked.
     pub question: Question,
     /// The answer, or why there is none.
@@ -107,9 +107,9 @@ pub(super) fn run(cases: &Receiver<Case>, tell: &dyn Fn(Report)) {
             newest[slot] = Some(case);
         }
         for case in newest.into_iter().flatten() {
-            let (slot, wish, question) = (case.slot, case.wish, case.question.clone());
+            let (slot, request, question) = (case.slot, case.request, case.question.clone());
             let result = memory.judge(case).map_err(|e| e.to_string());
-            tell(Report::Judged(Judged { slot, wish, question, result }));
+            tell(Report::Judged(Judged { slot, request, question, result }));
         }
     }
 }

@@ -25,12 +25,12 @@ mod panel;
 mod paths;
 mod renderdoc;
 pub mod report;
+pub mod request;
 mod surroundings;
 mod tables;
 mod times;
 mod view;
 mod watch;
-pub mod wish;
 
 use crate::experiment::Experiment;
 use crate::graph::source::Diagnostic;
@@ -44,10 +44,10 @@ use engine::{Engine, Order};
 use events::Events;
 use opening::slot_of;
 use report::{DeviceReport, Outline, PictureReport};
+use request::RenderRequest;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use wish::Wish;
 
 /// Pictures that hosts keep for the interface: A, B, the comparison, the inspector.
 pub const PICTURES: usize = 4;
@@ -108,9 +108,9 @@ pub struct Options {
 pub struct Workbench {
     engine: Engine,
     watch: watch::Watch,
-    wish: Wish,
-    /// The wish that the engine was told last.
-    told: Wish,
+    desired: RenderRequest,
+    /// The request that the engine was sent last.
+    sent: RenderRequest,
     name: String,
     slots: [Slot; 2],
     scene: Option<Arc<Scene>>,
@@ -120,7 +120,7 @@ pub struct Workbench {
     loading: Option<(String, f32)>,
     device: Option<DeviceReport>,
     history: history::History,
-    /// Whether undo goes to the scene that is loaded: its view and light are those of the wish.
+    /// Whether undo goes to the scene that is loaded: its view and light are those of the desired state.
     returning: bool,
     panel: panel::Panel,
     panel_slot: usize,
@@ -168,21 +168,21 @@ impl Workbench {
         let (home, gpu) = (options.home, options.gpu);
         let engine = Engine::start(home.clone(), gpu.clone(), wake.clone());
         let mut watch = watch::Watch::new(&root, wake.clone());
-        let wish = Wish {
+        let desired = RenderRequest {
             slots: [Some(slot_of(&experiment)), None],
             scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
             size: options.size.unwrap_or((0, 0)),
-            clock: wish::Clock { at: experiment.time, jumps: 1, ..wish::Clock::default() },
-            ..Wish::default()
+            clock: request::Clock { at: experiment.time, jumps: 1, ..request::Clock::default() },
+            ..RenderRequest::default()
         };
-        watch.scene(&wish.scene);
+        watch.scene(&desired.scene);
         crate::capture::sweep_partials(&root.join("captures"));
         let trouble = watch.trouble.clone();
         Ok(Workbench {
             engine,
             watch,
-            told: Wish::default(),
-            wish,
+            sent: RenderRequest::default(),
+            desired,
             name: experiment.name.clone(),
             slots: Default::default(),
             scene: None,
@@ -248,7 +248,7 @@ impl Workbench {
         let Some(name) = &outline.graph.pointer else { return };
         let Some(param) = outline.graph.params.list.iter().find(|p| p.name == *name) else { return };
         let at = at.map_or([-1.0; 2], |p| [f64::from(p.x.floor()), f64::from(p.y.floor())]);
-        for slot in self.wish.slots.iter_mut().flatten() {
+        for slot in self.desired.slots.iter_mut().flatten() {
             edit::set(slot, param, &crate::graph::param::Value::Vector(at.to_vec()));
         }
     }
@@ -261,15 +261,15 @@ impl Workbench {
         }
     }
 
-    /// Tells the engine, if something is wished for that it does not know.
+    /// Tells the engine, if it does not know the desired state.
     fn tell(&mut self) {
-        let mut wish = self.wish.clone();
-        wish.number = self.told.number;
-        if wish_differs(&wish, &self.told) {
-            wish.number += 1;
-            self.wish.number = wish.number;
-            self.told = wish.clone();
-            self.engine.wish(wish);
+        let mut desired = self.desired.clone();
+        desired.number = self.sent.number;
+        if differs(&desired, &self.sent) {
+            desired.number += 1;
+            self.desired.number = desired.number;
+            self.sent = desired.clone();
+            self.engine.request(desired);
         }
     }
 
@@ -278,14 +278,14 @@ impl Workbench {
         self.trouble.as_deref()
     }
 
-    /// Whether everything wished for is on screen.
+    /// Whether everything requested is on screen.
     pub fn settled(&self) -> bool {
         let shown = |i: usize| {
-            self.wish.slots[i].is_none()
+            self.desired.slots[i].is_none()
                 || self.slots[i]
                     .picture
                     .as_ref()
-                    .is_some_and(|p| !p.preview && p.wish >= self.told.number && self.slots[i].outline.is_some())
+                    .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.slots[i].outline.is_some())
         };
         shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits()
     }
@@ -317,7 +317,7 @@ impl Workbench {
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
         self.remember(held);
-        if self.wish.slots[1].is_none() {
+        if self.desired.slots[1].is_none() {
             self.slots[1] = Slot::default();
             self.comparison_of = None;
         }
@@ -329,15 +329,15 @@ impl Workbench {
     /// The picture has the size of the middle, once that has stood still for a moment.
     fn fit_size(&mut self, ui: &Ui) {
         let size = self.fixed_size.unwrap_or((self.area[0].max(1), self.area[1].max(1)));
-        if size == self.wish.size || size.0 < 2 || size.1 < 2 {
+        if size == self.desired.size || size.0 < 2 || size.1 < 2 {
             self.resize_since = None;
             return;
         }
-        let first = self.wish.size == (0, 0);
+        let first = self.desired.size == (0, 0);
         let since = *self.resize_since.get_or_insert_with(Instant::now);
         let quiet = Duration::from_millis(120);
         if first || since.elapsed() >= quiet {
-            self.wish.size = size;
+            self.desired.size = size;
             self.resize_since = None;
         } else {
             ui.ctx().request_repaint_after(quiet);
@@ -347,18 +347,18 @@ impl Workbench {
     fn parameters(&mut self, ui: &mut Ui) {
         // A panel that shrinks to what is in it stays small.
         ui.take_available_width();
-        if self.wish.slots[1].is_some() {
+        if self.desired.slots[1].is_some() {
             ui.horizontal(|ui| {
                 ui.selectable_value(&mut self.panel_slot, 0, "A");
                 ui.selectable_value(&mut self.panel_slot, 1, "B");
                 if ui.small_button("A to B").clicked() {
-                    self.wish.slots[1] = self.wish.slots[0].clone();
+                    self.desired.slots[1] = self.desired.slots[0].clone();
                 }
                 if ui.small_button("B to A").clicked() {
-                    self.wish.slots[0] = self.wish.slots[1].clone();
+                    self.desired.slots[0] = self.desired.slots[1].clone();
                 }
                 if ui.small_button("swap").clicked() {
-                    self.wish.slots.swap(0, 1);
+                    self.desired.slots.swap(0, 1);
                 }
             });
         } else {
@@ -370,8 +370,8 @@ impl Workbench {
             ui.weak(self.waiting_text());
             return;
         };
-        let other = self.wish.slots[1 - number].clone();
-        if let Some(slot) = &mut self.wish.slots[number] {
+        let other = self.desired.slots[1 - number].clone();
+        if let Some(slot) = &mut self.desired.slots[number] {
             self.panel.show(ui, &outline.graph.params, slot, other.as_ref());
         }
     }
@@ -392,7 +392,7 @@ impl Workbench {
         });
         ui.separator();
         // What is not looked at need not be made.
-        (self.wish.look, self.wish.table) = (None, None);
+        (self.desired.look, self.desired.table) = (None, None);
         match self.tab {
             Tab::Surroundings => self.surroundings(ui),
             Tab::Times => self.times_tab(ui),
@@ -411,10 +411,10 @@ impl Workbench {
                 help::Action::Help => self.help = !self.help,
                 help::Action::Undo => self.go(true),
                 help::Action::Redo => self.go(false),
-                help::Action::Play => self.wish.clock.playing = !self.wish.clock.playing,
+                help::Action::Play => self.desired.clock.playing = !self.desired.clock.playing,
                 help::Action::Step => {
-                    self.wish.clock.playing = false;
-                    self.wish.clock.steps += 1;
+                    self.desired.clock.playing = false;
+                    self.desired.clock.steps += 1;
                 }
                 help::Action::Flip => self.view.flipped = !self.view.flipped,
                 help::Action::Unpoint => self.point_at(None),
@@ -433,8 +433,8 @@ impl Workbench {
     }
 }
 
-/// Whether two wishes differ in anything but their number.
-fn wish_differs(a: &Wish, b: &Wish) -> bool {
+/// Whether two requests differ in anything but their number.
+fn differs(a: &RenderRequest, b: &RenderRequest) -> bool {
     a.slots != b.slots
         || a.scene != b.scene
         || a.lights != b.lights

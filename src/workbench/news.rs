@@ -109,7 +109,7 @@ impl Workbench {
     }
 
     fn picture_came(&mut self, picture: PictureReport) {
-        if self.wish.slots[picture.slot].is_none() {
+        if self.desired.slots[picture.slot].is_none() {
             return;
         }
         self.times.note(&picture);
@@ -120,7 +120,7 @@ impl Workbench {
         if self.events.is_some() {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let fields = json!({ "slot": number, "preview": picture.preview, "frame": picture.frame,
-                "wish": picture.wish, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
+                "request": picture.request, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
                 "since_change_ms": since,
                 "fingerprint": events::fingerprint(&picture.bytes) });
             self.event("picture", fields);
@@ -132,19 +132,19 @@ impl Workbench {
         self.loading = None;
         self.trouble = None;
         self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
-        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
+        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.desired.camera.is_some();
         if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
             let fallback = Experiment { camera: CameraChoice::Named("default".into()), ..self.bare() };
             let experiment = self.experiment.take().unwrap_or(fallback);
             match keep::lights(&experiment, &scene) {
-                Ok(lights) => self.wish.lights = lights,
+                Ok(lights) => self.desired.lights = lights,
                 Err(e) => self.trouble = Some(e.to_string()),
             }
             match viewpoint_of(&experiment, &scene) {
-                Ok(v) => self.wish.camera = Some(v.camera),
+                Ok(v) => self.desired.camera = Some(v.camera),
                 Err(e) => {
                     self.trouble = Some(e.to_string());
-                    self.wish.camera = Some(Viewpoint::around(&scene).camera);
+                    self.desired.camera = Some(Viewpoint::around(&scene).camera);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The panel of parameters, made from what the graph declares: nothing here knows any of them.
 
 use super::edit;
-use super::wish::SlotWish;
+use super::request::SideRequest;
 use crate::graph::param::{Kind, Param, Params, Value};
 use egui::{Color32, Response, RichText, Ui};
 
@@ -19,7 +19,7 @@ const CHANGED: Color32 = Color32::from_rgb(255, 196, 84);
 
 impl Panel {
     /// Shows the parameters of a slot; edits go into it. `other` is the slot it is compared with.
-    pub fn show(&mut self, ui: &mut Ui, params: &Params, slot: &mut SlotWish, other: Option<&SlotWish>) {
+    pub fn show(&mut self, ui: &mut Ui, params: &Params, slot: &mut SideRequest, other: Option<&SideRequest>) {
         let top = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(top, egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let reset = egui::Button::new(RichText::new("reset all")).small();
@@ -74,11 +74,11 @@ fn matches(param: &Param, needle: &str) -> bool {
         || [&param.name, &param.group, &param.help].iter().any(|text| text.to_lowercase().contains(needle))
 }
 
-fn is_set(slot: &SlotWish, param: &Param) -> bool {
+fn is_set(slot: &SideRequest, param: &Param) -> bool {
     slot.params.iter().any(|(name, _)| *name == param.name)
 }
 
-fn row(ui: &mut Ui, param: &Param, slot: &mut SlotWish, other: Option<&SlotWish>) {
+fn row(ui: &mut Ui, param: &Param, slot: &mut SideRequest, other: Option<&SideRequest>) {
     let before = edit::value(slot, param);
     let mut value = before.clone();
     let changed = is_set(slot, param);

@@ -8,7 +8,7 @@ use crate::graph::successor::Change;
 use crate::lab::Texels;
 use crate::scene::Scene;
 use crate::workbench::judge::Judged;
-use crate::workbench::wish::Look;
+use crate::workbench::request::Look;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -47,8 +47,8 @@ pub struct Outline {
 pub struct PictureReport {
     /// 0 is A, 1 is B.
     pub slot: usize,
-    /// Wish that it fulfils.
-    pub wish: u64,
+    /// The request that it fulfils.
+    pub request: u64,
     /// Revision of the files that it was made from.
     pub revision: u64,
     /// Whether it is the preview, shown until the graph's own picture is there.

@@ -152,7 +152,7 @@ impl Workbench {
                 }
             }
         });
-        self.wish.table = Some(self.tables.chosen);
+        self.desired.table = Some(self.tables.chosen);
         ui.weak(&table.help);
         self.tables.refresh(table);
         self.table_bar(ui, table);

@@ -91,7 +91,7 @@ impl Workbench {
             );
             return;
         };
-        let both = self.wish.slots[1].is_some() && self.slots[1].picture.is_some();
+        let both = self.desired.slots[1].is_some() && self.slots[1].picture.is_some();
         let mut shown = fit(area, a, scale);
         let draw = |number: usize, rect: Rect, clip: Rect| {
             painter.with_clip_rect(clip.intersect(area)).image(textures[number], rect, WHOLE, Color32::WHITE);
@@ -162,7 +162,7 @@ impl Workbench {
             self.point_at(Some(at));
             self.show_tables();
         }
-        if let Some(camera) = &mut self.wish.camera {
+        if let Some(camera) = &mut self.desired.camera {
             motion::steer(ui, response, camera, self.view.steering, self.diagonal, self.view.speed);
         }
     }

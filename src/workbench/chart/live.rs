@@ -27,10 +27,10 @@ const SAMPLES: u64 = 256;
 /// What is known of A or B.
 #[derive(Default)]
 pub(super) struct Slot {
-    /// GPU times of the frames of the last wish, ms.
+    /// GPU times of the frames of the last request, ms.
     pub(super) times: Vec<f64>,
-    wish: u64,
-    /// What the judge was asked last, about which wish.
+    request: u64,
+    /// What the judge was asked last, about which request.
     asked: Option<(u64, Question)>,
     pub(super) judged: Option<Judged>,
     trail: Vec<(f64, f64)>,
@@ -39,7 +39,7 @@ pub(super) struct Slot {
 /// The live part of the chart.
 pub struct State {
     pub(super) slots: [Slot; 2],
-    /// The wish that was told last, and when it was first seen.
+    /// The request that was told last, and when it was first seen.
     since: (u64, Instant),
     pub(super) gather: Option<Gather>,
     /// References gathered so far.
@@ -81,14 +81,14 @@ impl State {
     pub fn dot(&self, slot: usize, told: u64) -> Option<Live> {
         let slot = &self.slots[slot];
         let (ms, error) = slot.place()?;
-        let fresh = slot.judged.as_ref().is_some_and(|j| j.wish >= told);
+        let fresh = slot.judged.as_ref().is_some_and(|j| j.request >= told);
         Some(Live { ms, error, fresh, trail: slot.trail.clone() })
     }
 }
 
 impl Slot {
     fn answers(&self, asked: &(u64, Question)) -> bool {
-        self.judged.as_ref().is_some_and(|j| j.wish >= asked.0 && j.question == asked.1)
+        self.judged.as_ref().is_some_and(|j| j.request >= asked.0 && j.question == asked.1)
     }
 
     fn place(&self) -> Option<(f64, f64)> {
@@ -102,14 +102,14 @@ impl super::Chart {
     /// Takes in the time of a frame.
     pub fn note(&mut self, picture: &PictureReport) {
         let Some(slot) = self.live.slots.get_mut(picture.slot).filter(|_| !picture.preview) else { return };
-        if slot.wish != picture.wish {
+        if slot.request != picture.request {
             // The dot moves: what it leaves is where it was when its error was right.
             if let Some(at) = slot.place().filter(|at| slot.trail.last() != Some(at)) {
                 slot.trail.push(at);
             }
             let surplus = slot.trail.len().saturating_sub(TRAIL);
             slot.trail.drain(..surplus);
-            slot.wish = picture.wish;
+            slot.request = picture.request;
             slot.times.clear();
         }
         if slot.times.len() == KEPT {
@@ -141,22 +141,22 @@ impl Workbench {
 
     /// Whether a slot shows something that the judge was not asked about.
     fn is_due(&self, slot: usize, question: &Question) -> bool {
-        let shows = self.slots[slot].picture.as_ref().is_some_and(|p| !p.preview && p.wish >= self.told.number);
+        let shows = self.slots[slot].picture.as_ref().is_some_and(|p| !p.preview && p.request >= self.sent.number);
         let asked = self.chart.live.slots[slot].asked.as_ref();
-        let known = asked.is_some_and(|a| a.0 >= self.told.number && a.1 == *question);
-        self.wish.slots[slot].is_some() && shows && self.slots[slot].errors.is_empty() && !known
+        let known = asked.is_some_and(|a| a.0 >= self.sent.number && a.1 == *question);
+        self.desired.slots[slot].is_some() && shows && self.slots[slot].errors.is_empty() && !known
     }
 
     /// Whether the judge is about to be asked.
     pub(super) fn judge_is_due(&self) -> bool {
         let question = self.question();
-        !self.wish.clock.playing && (0..2).any(|slot| self.is_due(slot, &question))
+        !self.desired.clock.playing && (0..2).any(|slot| self.is_due(slot, &question))
     }
 
     /// Asks the judge about what has come to rest.
     pub(in super::super) fn ask_judge(&mut self, ui: &Ui) {
-        if self.chart.live.since.0 != self.told.number {
-            self.chart.live.since = (self.told.number, Instant::now());
+        if self.chart.live.since.0 != self.sent.number {
+            self.chart.live.since = (self.sent.number, Instant::now());
         }
         if self.tab != Tab::Chart || !self.judge_is_due() {
             return;
@@ -169,7 +169,7 @@ impl Workbench {
         let question = self.question();
         for slot in 0..2 {
             if self.is_due(slot, &question) {
-                self.chart.live.slots[slot].asked = Some((self.told.number, question.clone()));
+                self.chart.live.slots[slot].asked = Some((self.sent.number, question.clone()));
                 self.engine.order(Order::Judge(slot, question.clone()));
             }
         }
@@ -185,7 +185,7 @@ impl Workbench {
         }
         let ms = spread(slot.times.clone()).median;
         let verdict = judged.result.as_ref().ok();
-        let event = json!({ "slot": judged.slot, "wish": judged.wish, "part": judged.question.part,
+        let event = json!({ "slot": judged.slot, "request": judged.request, "part": judged.question.part,
             "metric": judged.question.metric, "bounces": judged.question.bounces, "gpu_ms": ms,
             "error": verdict.and_then(|v| v.error).map(|e| e.error),
             "samples": verdict.and_then(|v| v.error).map(|e| e.samples),
@@ -200,11 +200,11 @@ impl Workbench {
 
     /// Gathers the reference of what A shows.
     pub(super) fn start_gathering(&mut self) {
-        let (Some(slot), Some(scene), Some(picture)) = (&self.wish.slots[0], &self.scene, &self.slots[0].picture)
+        let (Some(slot), Some(scene), Some(picture)) = (&self.desired.slots[0], &self.scene, &self.slots[0].picture)
         else {
             return;
         };
-        let experiment = keep::still(&self.wish, slot, &self.name, picture.time, scene);
+        let experiment = keep::still(&self.desired, slot, &self.name, picture.time, scene);
         self.fixed_size = Some(experiment.size);
         let (bounces, samples) = (self.question().bounces, self.chart.live.samples);
         let (home, gpu) = (self.home.clone(), self.gpu.clone());

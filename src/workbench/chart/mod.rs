@@ -56,7 +56,7 @@ impl Workbench {
             _ => Vec::new(),
         };
         let title = axis_title(self.chart.choice.metric);
-        let lives = [0, 1].map(|slot| self.chart.live.dot(slot, self.told.number));
+        let lives = [0, 1].map(|slot| self.chart.live.dot(slot, self.sent.number));
         let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
         let shown = plot::Shown {
             chosen: &self.chart.chosen,

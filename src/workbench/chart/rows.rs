@@ -9,11 +9,11 @@ impl Workbench {
     /// What is known of A and B, and what can be done about what is not.
     pub(super) fn live_rows(&mut self, ui: &mut Ui, title: &str, lives: &[Option<Live>; 2]) {
         let mut missing = false;
-        for (slot, live) in lives.iter().enumerate().filter(|s| self.wish.slots[s.0].is_some()) {
+        for (slot, live) in lives.iter().enumerate().filter(|s| self.desired.slots[s.0].is_some()) {
             let state = &self.chart.live.slots[slot];
             let name = ["A", "B"][slot];
             match state.judged.as_ref().map(|j| (&j.question, &j.result)) {
-                None if self.wish.clock.playing => drop(ui.weak(format!("{name}: judged when time stands still"))),
+                None if self.desired.clock.playing => drop(ui.weak(format!("{name}: judged when time stands still"))),
                 None => drop(ui.weak(format!("{name}: not judged yet"))),
                 Some((_, Err(why))) => drop(ui.weak(format!("{name}: {why}"))),
                 Some((question, Ok(verdict))) => match (&verdict.error, live) {
@@ -82,7 +82,7 @@ impl Workbench {
 
     /// The size of the picture: that of the sweep, that of the panel, or as it is.
     fn size_row(&mut self, ui: &mut Ui) {
-        let (w, h) = self.wish.size;
+        let (w, h) = self.desired.size;
         let sweeps = self.chart.data().and_then(|d| d.keys.get(self.chart.choice.subject)).map(|k| k.0.size);
         ui.horizontal_wrapped(|ui| {
             ui.weak(match self.fixed_size {

@@ -1,8 +1,8 @@
-//! From what a slot shows to what is wished for: values set, or a build that takes its place.
+//! From what a slot shows to what is desired: values set, or a build that takes its place.
 
 use super::super::builder::{Done, Job, Key};
 use super::super::report::{Outline, Report};
-use super::super::wish::SlotWish;
+use super::super::request::SideRequest;
 use super::Run;
 use crate::graph::source::{Diagnostic, Place};
 use crate::graph::usage::Res;
@@ -12,13 +12,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 impl Run<'_> {
-    pub(super) fn key(&self, slot: &SlotWish, number: usize) -> Key {
+    pub(super) fn key(&self, slot: &SideRequest, number: usize) -> Key {
         let mut wanted = Vec::new();
-        if let Some(look) = self.wish.look.as_ref().filter(|l| l.slot == number) {
+        if let Some(look) = self.desired.look.as_ref().filter(|l| l.slot == number) {
             wanted.push(look.texture.clone());
         }
         if number == 0
-            && let (Some(table), Some(loaded)) = (self.wish.table, &self.slots[0].loaded)
+            && let (Some(table), Some(loaded)) = (self.desired.table, &self.slots[0].loaded)
             && let Some(table) = loaded.graph.tables.get(table)
         {
             wanted.push(table.buffer.value.clone());
@@ -26,31 +26,31 @@ impl Run<'_> {
         Key {
             graph: slot.graph.clone(),
             params: slot.params.clone(),
-            size: self.wish.size,
-            revision: self.wish.revision,
+            size: self.desired.size,
+            revision: self.desired.revision,
             scene: self.scene_number,
             wanted,
         }
     }
 
-    /// Brings a slot nearer to what is wished for: sets values, or starts a build.
+    /// Brings a slot nearer to what is desired: sets values, or starts a build.
     pub(super) fn approach(&mut self, number: usize) -> Result<(), LabError> {
-        let Some(wish) = self.wish.slots[number].clone() else { return Ok(()) };
+        let Some(desired) = self.desired.slots[number].clone() else { return Ok(()) };
         let Some(scene) = self.scene.clone() else { return Ok(()) };
-        if self.wish.size.0 == 0 || self.wish.size.1 == 0 {
+        if self.desired.size.0 == 0 || self.desired.size.1 == 0 {
             return Ok(());
         }
-        let key = self.key(&wish, number);
-        let experiment = self.wish.experiment(&wish);
+        let key = self.key(&desired, number);
+        let experiment = self.desired.experiment(&desired);
         let slot = &mut self.slots[number];
         if slot.key.as_ref() == Some(&key) {
             // What failed meanwhile is taken back.
             slot.failed = None;
-            slot.answered = self.wish.number;
+            slot.answered = self.desired.number;
             return Ok(());
         }
         if slot.failed.as_ref() == Some(&key) {
-            slot.answered = self.wish.number;
+            slot.answered = self.desired.number;
             return Ok(());
         }
         let same_files = |k: &Key| k.graph == key.graph && k.revision == key.revision;
@@ -65,7 +65,7 @@ impl Run<'_> {
                 Ok(Some(params)) => {
                     slot.key = Some(key);
                     slot.failed = None;
-                    slot.answered = self.wish.number;
+                    slot.answered = self.desired.number;
                     self.out.send(Report::Set { slot: number, params });
                     self.disturb(1);
                     return Ok(());
@@ -103,7 +103,7 @@ impl Run<'_> {
     pub(super) fn built(&mut self, done: Done) -> Result<(), LabError> {
         let number = done.slot;
         self.slots[number].building = None;
-        if self.wish.slots[number].is_none() {
+        if self.desired.slots[number].is_none() {
             return Ok(());
         }
         match done.result {
@@ -138,10 +138,11 @@ impl Run<'_> {
             Err(error) if done.preview => {
                 // Whatever is wrong will be said by the graph itself; here is none to fall back to.
                 self.out.send(Report::Trouble(format!("no preview: {error}")));
-                let key = self.wish.slots[number].clone().map(|w| self.key(&w, number));
+                let key = self.desired.slots[number].clone().map(|w| self.key(&w, number));
                 self.slots[number].failed = None;
-                if let (Some(key), Some(scene), Some(wish)) = (key, self.scene.clone(), &self.wish.slots[number]) {
-                    let experiment = self.wish.experiment(wish);
+                if let (Some(key), Some(scene), Some(desired)) = (key, self.scene.clone(), &self.desired.slots[number])
+                {
+                    let experiment = self.desired.experiment(desired);
                     self.slots[number].building = Some(Instant::now());
                     let (seed, loaded, lab) = (None, None, self.lab.clone());
                     let job = Job { slot: number, key, experiment, scene, seed, loaded, preview: false, lab };

@@ -8,25 +8,25 @@ use super::{Run, SETTLE, remembers};
 impl Run<'_> {
     /// Hands what a slot shows to the judge. What is not there yet is asked for again.
     pub(super) fn judge(&mut self, number: usize, question: Question) {
-        let (Some(wish), Some(scene)) = (&self.wish.slots[number], &self.scene) else { return };
+        let (Some(desired), Some(scene)) = (&self.desired.slots[number], &self.scene) else { return };
         let slot = &self.slots[number];
-        let shown = slot.session.as_ref().filter(|_| slot.key.as_ref() == Some(&self.key(wish, number)));
+        let shown = slot.session.as_ref().filter(|_| slot.key.as_ref() == Some(&self.key(desired, number)));
         let (Some(session), Some(loaded)) = (shown, &slot.loaded) else {
             let result = Err("what is asked for is not shown".into());
-            self.out.send(Report::Judged(Judged { slot: number, wish: self.wish.number, question, result }));
+            self.out.send(Report::Judged(Judged { slot: number, request: self.desired.number, question, result }));
             return;
         };
         let case = Case {
             slot: number,
-            wish: slot.answered,
-            revision: self.wish.revision,
+            request: slot.answered,
+            revision: self.desired.revision,
             question,
             lab: self.lab.clone(),
             loaded: loaded.clone(),
             seed: session.lend(),
-            experiment: keep::still(&self.wish, wish, "judged", self.clock.now, scene),
+            experiment: keep::still(&self.desired, desired, "judged", self.clock.now, scene),
             scene: scene.clone(),
-            lights: self.wish.lights.clone(),
+            lights: self.desired.lights.clone(),
             frames: if remembers(session) { SETTLE } else { 1 },
         };
         let _ = self.cases.send(case);
@@ -34,8 +34,8 @@ impl Run<'_> {
 
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
     pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
-        let (Some(wish), Some(scene)) = (self.wish.slots[number].clone(), self.scene.clone()) else { return };
-        let experiment = keep::experiment(&self.wish, &wish, &name, self.clock.now, Some(&scene));
+        let (Some(desired), Some(scene)) = (self.desired.slots[number].clone(), self.scene.clone()) else { return };
+        let experiment = keep::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
         let settle = self.slots[number].session.as_ref().is_some_and(|s| remembers(s));
         let frames = if settle { SETTLE as usize } else { 1 };
         let (lab, out) = (self.lab.clone(), self.out.clone());

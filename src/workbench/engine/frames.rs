@@ -15,7 +15,7 @@ impl Run<'_> {
             return Ok(());
         }
         let stepping = self.tick();
-        let rest = !(self.wish.continuous || stepping);
+        let rest = !(self.desired.continuous || stepping);
         self.turn += 1;
         for i in 0..2 {
             let number = (i + self.turn) % 2;
@@ -28,7 +28,7 @@ impl Run<'_> {
 
     /// Moves time on; whether it goes.
     fn tick(&mut self) -> bool {
-        let clock = self.wish.clock;
+        let clock = self.desired.clock;
         let real = self.clock.last.elapsed().as_secs_f64();
         self.clock.last = Instant::now();
         let mut goes = false;
@@ -48,22 +48,22 @@ impl Run<'_> {
         let software = self.lab.gpu.info.kind == "cpu";
         let slot = &mut self.slots[number];
         let Some(session) = &mut slot.session else { return Ok(()) };
-        if let Some(camera) = &self.wish.camera {
+        if let Some(camera) = &self.desired.camera {
             session.set_camera(camera);
         }
-        if let Some(path) = &self.wish.path {
+        if let Some(path) = &self.desired.path {
             session.look(&path.at(self.clock.now));
         }
         if std::mem::take(&mut slot.lights) {
             let own = session.scene.clone();
-            let (lights, sky) = self.wish.lights.as_ref().map_or((&own.lights, own.sky), |(l, s)| (l, *s));
+            let (lights, sky) = self.desired.lights.as_ref().map_or((&own.lights, own.sky), |(l, s)| (l, *s));
             session.set_lights(lights, sky);
         }
         session.set_time(self.clock.now);
         slot.frame += 1;
-        slot.submitted.push_back(Submitted { wish: slot.answered, time: self.clock.now, frame: slot.frame });
+        slot.submitted.push_back(Submitted { request: slot.answered, time: self.clock.now, frame: slot.frame });
         let captured = std::mem::take(&mut self.renderdoc).then(renderdoc::begin);
-        let delta = if self.wish.clock.playing { self.wish.clock.step.unwrap_or(0.0) } else { 0.0 };
+        let delta = if self.desired.clock.playing { self.desired.clock.step.unwrap_or(0.0) } else { 0.0 };
         let mut finished: Vec<FrameTimes> = session.frame(delta)?.into_iter().collect();
         slot.due -= 1;
         if !rest {
@@ -87,10 +87,10 @@ impl Run<'_> {
             let Some(submitted) = slot.submitted.pop_front() else { continue };
             slot.last_ms = times.gpu_ms;
             let Some(bytes) = times.picture else { continue };
-            let size = slot.session.as_ref().map_or(self.wish.size, |s| s.size());
+            let size = slot.session.as_ref().map_or(self.desired.size, |s| s.size());
             self.out.send(Report::Picture(PictureReport {
                 slot: number,
-                wish: submitted.wish,
+                request: submitted.request,
                 revision: slot.key.as_ref().map_or(0, |k| k.revision),
                 preview: slot.preview,
                 frame: submitted.frame,
@@ -109,8 +109,8 @@ impl Run<'_> {
         let slot = &mut self.slots[number];
         let Some(session) = slot.session.as_mut().filter(|_| !slot.preview) else { return Ok(()) };
         let now = slot.due == 0 || self.last_look.elapsed() > Duration::from_millis(150);
-        let look = self.wish.look.as_ref().filter(|l| l.slot == number);
-        if !now || (look.is_none() && self.wish.table.is_none()) {
+        let look = self.desired.look.as_ref().filter(|l| l.slot == number);
+        if !now || (look.is_none() && self.desired.table.is_none()) {
             return Ok(());
         }
         self.last_look = Instant::now();
@@ -126,7 +126,7 @@ impl Run<'_> {
             }
         }
         if number == 0
-            && let Some(table) = self.wish.table
+            && let Some(table) = self.desired.table
             && let Some(name) = session.graph.tables.get(table).map(|t| t.buffer.value.clone())
         {
             let bytes = session.buffer(&name)?;

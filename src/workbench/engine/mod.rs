@@ -1,4 +1,4 @@
-//! The engine: a thread with a device of its own, which renders what the window wishes for.
+//! The engine: a thread with a device of its own, which renders what the window requests.
 //!
 //! The window has a second device. That costs a copy of each picture through main memory (8 MB at 1080p, about a
 //! millisecond each way) and buys that the window answers while a frame takes seconds, and that a shader which hangs
@@ -12,7 +12,7 @@ mod scenes;
 use super::builder::{self, Done, Job, Key};
 use super::judge::{self, Case, Question};
 use super::report::{DeviceReport, Report};
-use super::wish::{Look, Wish};
+use super::request::{Look, RenderRequest};
 use crate::lab::{Home, Lab, LabError, Loaded, Session};
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
@@ -22,9 +22,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// What the window asks of the engine, beside its wish.
+/// What the window asks of the engine, besides the desired state.
 pub enum Order {
-    /// The wish changed.
+    /// The desired state changed.
     Look,
     /// Save what slot A or B shows, under a name; with these resources.
     Capture(usize, String, Vec<String>),
@@ -44,7 +44,7 @@ pub enum Order {
 
 /// The window's end of an engine.
 pub struct Engine {
-    wish: Arc<Mutex<Wish>>,
+    desired: Arc<Mutex<RenderRequest>>,
     orders: Sender<Order>,
     /// News.
     pub reports: Receiver<Report>,
@@ -54,18 +54,18 @@ pub struct Engine {
 impl Engine {
     /// Starts the engine; `wake` is called after each report.
     pub fn start(home: Home, options: GpuOptions, wake: Arc<dyn Fn() + Send + Sync>) -> Engine {
-        let wish = Arc::new(Mutex::new(Wish::default()));
+        let desired = Arc::new(Mutex::new(RenderRequest::default()));
         let (orders, inbox) = unbounded();
         let (outbox, reports) = unbounded();
         let out = Out { reports: outbox, wake };
-        let shared = wish.clone();
+        let shared = desired.clone();
         let thread = std::thread::spawn(move || run(home, options, &shared, &inbox, &out));
-        Engine { wish, orders, reports, thread: Some(thread) }
+        Engine { desired, orders, reports, thread: Some(thread) }
     }
 
     /// Works towards this from now on.
-    pub fn wish(&self, wish: Wish) {
-        *self.wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = wish;
+    pub fn request(&self, request: RenderRequest) {
+        *self.desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = request;
         self.order(Order::Look);
     }
 
@@ -104,7 +104,7 @@ impl Out {
 
 /// A frame that was submitted.
 struct Submitted {
-    wish: u64,
+    request: u64,
     time: f64,
     frame: u64,
 }
@@ -124,7 +124,7 @@ struct Slot {
     frame: u64,
     /// GPU time of the last frame known, ms.
     last_ms: f64,
-    /// The last wish that the session, or the failure to build one, answers.
+    /// The last request that the session, or the failure to build one, answers.
     answered: u64,
     /// Frames still to render before the slot rests.
     due: u32,
@@ -136,7 +136,7 @@ struct Slot {
 struct Run<'a> {
     lab: Lab,
     out: &'a Out,
-    wish: Wish,
+    desired: RenderRequest,
     slots: [Slot; 2],
     jobs: Sender<Job>,
     cases: Sender<Case>,
@@ -160,15 +160,21 @@ struct Clocked {
     jumps: u64,
 }
 
-fn run(home: Home, options: GpuOptions, wish: &Mutex<Wish>, inbox: &Receiver<Order>, out: &Out) -> Vec<String> {
+fn run(
+    home: Home,
+    options: GpuOptions,
+    desired: &Mutex<RenderRequest>,
+    inbox: &Receiver<Order>,
+    out: &Out,
+) -> Vec<String> {
     let mut messages = Vec::new();
     loop {
-        match session(home.clone(), &options, wish, inbox, out, &mut messages) {
+        match session(home.clone(), &options, desired, inbox, out, &mut messages) {
             Ok(End::Quit) => return messages,
             Ok(End::Restart) => {}
             Err(e) => {
                 out.send(Report::Trouble(format!("{e}. Change a shader or a value, or press Restart device")));
-                // What was wished for must not be tried again unchanged: it may kill the device each time.
+                // What was requested must not be tried again unchanged: it may kill the device each time.
                 for order in inbox {
                     match order {
                         Order::Quit => return messages,
@@ -191,7 +197,7 @@ enum End {
 fn session(
     home: Home,
     options: &GpuOptions,
-    wish: &Mutex<Wish>,
+    desired: &Mutex<RenderRequest>,
     inbox: &Receiver<Order>,
     out: &Out,
     messages: &mut Vec<String>,
@@ -209,7 +215,7 @@ fn session(
     let mut run = Run {
         lab,
         out,
-        wish: Wish::default(),
+        desired: RenderRequest::default(),
         slots: Default::default(),
         jobs,
         cases,
@@ -223,7 +229,7 @@ fn session(
         renderdoc: false,
         last_look: Instant::now(),
     };
-    run.change(wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
+    run.change(desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
     let result = loop {
         let (idle, awaits) = (!run.busy(), run.awaits_build());
         let mut orders: Vec<Order> = Vec::new();
@@ -251,7 +257,7 @@ fn session(
         if orders.iter().any(|o| matches!(o, Order::Restart)) {
             break Ok(End::Restart);
         }
-        let step = run.handle(orders, builds, scenes, wish).and_then(|()| run.render());
+        let step = run.handle(orders, builds, scenes, desired).and_then(|()| run.render());
         if let Err(e) = step {
             break Err(e);
         }
@@ -284,7 +290,7 @@ impl Run<'_> {
         orders: Vec<Order>,
         builds: Vec<Done>,
         scenes: Vec<Result<Arc<Scene>, SceneError>>,
-        wish: &Mutex<Wish>,
+        desired: &Mutex<RenderRequest>,
     ) -> Result<(), LabError> {
         for scene in scenes {
             self.scene_came(scene)?;
@@ -309,35 +315,35 @@ impl Run<'_> {
                 Order::Look | Order::Quit | Order::Restart => {}
             }
         }
-        let latest = wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
-        if latest.number != self.wish.number {
+        let latest = desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
+        if latest.number != self.desired.number {
             self.change(latest)?;
         }
         Ok(())
     }
 
-    /// Works through a new wish.
-    fn change(&mut self, wish: Wish) -> Result<(), LabError> {
-        let old = std::mem::replace(&mut self.wish, wish);
-        if self.wish.clock.jumps != self.clock.jumps {
-            self.clock.jumps = self.wish.clock.jumps;
-            self.clock.now = self.wish.clock.at;
+    /// Takes in a new request.
+    fn change(&mut self, desired: RenderRequest) -> Result<(), LabError> {
+        let old = std::mem::replace(&mut self.desired, desired);
+        if self.desired.clock.jumps != self.clock.jumps {
+            self.clock.jumps = self.desired.clock.jumps;
+            self.clock.now = self.desired.clock.at;
         }
-        if self.wish.clock.playing && !old.clock.playing {
+        if self.desired.clock.playing && !old.clock.playing {
             self.clock.last = Instant::now();
         }
-        if self.wish.lights != old.lights {
+        if self.desired.lights != old.lights {
             for slot in &mut self.slots {
                 slot.lights = true;
             }
         }
         // Files, parameters and sizes disturb a slot when what they lead to has been built.
-        let seen = |w: &Wish| (w.camera, w.clock, w.continuous, w.look.clone(), w.table);
-        if seen(&self.wish) != seen(&old) || self.wish.lights != old.lights || self.wish.path != old.path {
+        let seen = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.look.clone(), w.table);
+        if seen(&self.desired) != seen(&old) || self.desired.lights != old.lights || self.desired.path != old.path {
             self.disturb(1);
         }
         for i in 0..2 {
-            if self.wish.slots[i].is_none() {
+            if self.desired.slots[i].is_none() {
                 self.slots[i] = Slot { building: self.slots[i].building, ..Slot::default() };
             }
         }

@@ -4,7 +4,7 @@ use crate::lab::Texels;
 use crate::picture;
 use crate::vulkan::Format;
 use crate::vulkan::format::Channels;
-use crate::workbench::wish::Look;
+use crate::workbench::request::Look;
 use rayon::prelude::*;
 
 /// What of a texel is shown.

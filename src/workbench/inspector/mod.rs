@@ -8,7 +8,7 @@ mod views;
 mod work;
 
 use super::report::Outline;
-use super::wish::Look;
+use super::request::Look;
 use super::{INSPECTOR, Workbench};
 use crate::graph::plan::TexturePlan;
 use crate::lab::Texels;
@@ -112,7 +112,7 @@ impl Workbench {
     /// The tab.
     pub(super) fn inspector_tab(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         self.view_buttons(ui);
-        if self.wish.slots[1].is_none() {
+        if self.desired.slots[1].is_none() {
             self.inspector.look.slot = 0;
         } else {
             ui.horizontal(|ui| {
@@ -129,7 +129,7 @@ impl Workbench {
             ui.weak("The graph has no textures");
             return;
         };
-        self.wish.look = Some(self.inspector.look.clone());
+        self.desired.look = Some(self.inspector.look.clone());
         ui.separator();
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             self.tones(ui, &plan);

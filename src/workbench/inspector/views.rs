@@ -40,28 +40,28 @@ impl Workbench {
             self.leave_view();
         }
         let Some(view) = chosen.and_then(|i| outline.graph.views.get(i)) else { return };
-        let Some(wish) = self.wish.slots[slot].as_mut() else { return };
+        let Some(desired) = self.desired.slots[slot].as_mut() else { return };
         for (name, text) in &view.value.set.0 {
             let Some(param) = outline.graph.params.list.iter().find(|p| p.name == name.value) else { continue };
             let Ok(value) = param.parse(&text.value.0) else { continue };
             let before = &mut self.inspector.before.0;
             if !before.iter().any(|b| b.0 == slot && b.1 == name.value) {
-                let old = wish.params.iter().find(|p| p.0 == name.value).map(|p| p.1.clone());
+                let old = desired.params.iter().find(|p| p.0 == name.value).map(|p| p.1.clone());
                 before.push((slot, name.value.clone(), old));
             }
-            edit::set(wish, param, &value);
+            edit::set(desired, param, &value);
         }
     }
 
     /// Puts the parameters back.
     fn leave_view(&mut self) {
         for (slot, name, old) in std::mem::take(&mut self.inspector.before.0) {
-            let Some(wish) = self.wish.slots[slot].as_mut() else { continue };
-            let place = wish.params.iter().position(|p| p.0 == name);
+            let Some(desired) = self.desired.slots[slot].as_mut() else { continue };
+            let place = desired.params.iter().position(|p| p.0 == name);
             match (place, old) {
-                (Some(i), Some(old)) => wish.params[i].1 = old,
-                (Some(i), None) => drop(wish.params.remove(i)),
-                (None, Some(old)) => wish.params.push((name, old)),
+                (Some(i), Some(old)) => desired.params[i].1 = old,
+                (Some(i), None) => drop(desired.params.remove(i)),
+                (None, Some(old)) => desired.params.push((name, old)),
                 (None, None) => {}
             }
         }

@@ -3,7 +3,7 @@
 use super::image::{Decoded, Tone};
 use super::statistics::{self, BINS, Values};
 use crate::lab::Texels;
-use crate::workbench::wish::Look;
+use crate::workbench::request::Look;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use std::sync::Arc;
 

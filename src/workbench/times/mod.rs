@@ -70,7 +70,7 @@ impl Times {
 impl Workbench {
     /// The tab.
     pub(super) fn times_tab(&mut self, ui: &mut Ui) {
-        let both = self.wish.slots[1].is_some();
+        let both = self.desired.slots[1].is_some();
         self.times.refresh(both);
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             // The scroll bar must not cover the last column.

@@ -1,4 +1,4 @@
-//! What the window wants to see; the engine always works towards the latest wish.
+//! The desired state: what the window wants to see. The engine always works towards the latest request.
 
 use crate::camera_path::CameraPath;
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
@@ -8,7 +8,7 @@ use glam::Vec3;
 
 /// A graph with the parameters that are not at their defaults.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SlotWish {
+pub struct SideRequest {
     /// Graph file in the passes folder.
     pub graph: String,
     /// (name, value as RON).
@@ -49,9 +49,9 @@ pub struct Look {
 
 /// Everything that decides what is rendered.
 #[derive(Clone, Debug, Default)]
-pub struct Wish {
+pub struct RenderRequest {
     /// A and, when compared, B.
-    pub slots: [Option<SlotWish>; 2],
+    pub slots: [Option<SideRequest>; 2],
     /// Built-in name or path of the scene.
     pub scene: String,
     /// Lights and sky that differ from the scene's own.
@@ -74,13 +74,13 @@ pub struct Wish {
     pub look: Option<Look>,
     /// The table shown, by the number that the graph gives it, of slot A.
     pub table: Option<usize>,
-    /// Counts wishes.
+    /// Counts requests.
     pub number: u64,
 }
 
-impl Wish {
+impl RenderRequest {
     /// The experiment of a slot, as a session is made from it.
-    pub fn experiment(&self, slot: &SlotWish) -> Experiment {
+    pub fn experiment(&self, slot: &SideRequest) -> Experiment {
         let mut sources = Sources::default();
         let text = slot.params.iter().map(|(n, v)| format!("{n}: {v}")).collect::<Vec<_>>().join("\n");
         let file = sources.add("the panel".as_ref(), text);
