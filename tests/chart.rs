@@ -25,10 +25,10 @@ fn number(event: &Value, name: &str) -> f64 {
 /// The error of A's picture, once it has been told after the first `since` events and `is` what was waited for.
 #[track_caller]
 fn error(desk: &mut Desk, since: usize, what: &str, is: impl Fn(f64) -> bool) -> f64 {
-    let judged =
-        desk.wait(since, what, |e| e["event"] == "judged" && e["slot"] == 0 && e["error"].as_f64().is_some_and(&is));
-    assert!(number(&judged, "gpu_ms") > 0.0, "{judged}");
-    number(&judged, "error")
+    let measured =
+        desk.wait(since, what, |e| e["event"] == "error" && e["slot"] == 0 && e["error"].as_f64().is_some_and(&is));
+    assert!(number(&measured, "gpu_ms") > 0.0, "{measured}");
+    number(&measured, "error")
 }
 
 /// Whether the picture is that of a point: one was rendered for the window, the other by another process.
@@ -42,8 +42,8 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     desk.first_picture();
     let mark = desk.now();
     desk.click("", "Chart");
-    let judged = desk.event(mark, "judged");
-    assert!(judged["error"].is_null() && judged["why"].is_null(), "there is no reference yet: {judged}");
+    let measured = desk.event(mark, "error");
+    assert!(measured["error"].is_null() && measured["why"].is_null(), "there is no reference yet: {measured}");
 
     // 256 samples take long on a software device: it is stopped, and what there is by then is kept.
     let mark = desk.now();
@@ -81,7 +81,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     desk.resting(0);
     let picture = desk.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
     let request = number(picture, "request");
-    let last = desk.wait(mark, "the last error", |e| e["event"] == "judged" && e["request"].as_f64() >= Some(request));
+    let last = desk.wait(mark, "the last error", |e| e["event"] == "error" && e["request"].as_f64() >= Some(request));
     let slid = number(&last, "error");
     assert!(!same(slid, own), "{slid}");
 
@@ -111,13 +111,13 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     let mark = desk.now();
     let (x, y) = centre(desk.place());
     desk.drag((x, y), (x + 60.0, y + 20.0));
-    desk.wait(mark, "no reference of the view", |e| e["event"] == "judged" && e["error"].is_null());
+    desk.wait(mark, "no reference of the view", |e| e["event"] == "error" && e["error"].is_null());
     desk.resting(0);
     let mark = desk.now();
     desk.click("Button", "as the panel");
     let large = desk.wait(mark, "a larger picture", |e| e["event"] == "picture" && e["size"][0].as_f64() > Some(160.0));
     desk.wait(mark, "no reference of it", |e| {
-        e["event"] == "judged" && e["error"].is_null() && e["request"].as_f64() >= large["request"].as_f64()
+        e["event"] == "error" && e["error"].is_null() && e["request"].as_f64() >= large["request"].as_f64()
     });
     let before = desk.resting(0);
     std::thread::sleep(Duration::from_millis(300));

@@ -27,7 +27,7 @@ pub struct FitArgs {
     /// How the error is measured.
     #[arg(long, value_enum, default_value = "relmse")]
     metric: Metric,
-    /// Part of the light that is judged.
+    /// Part of the light that is compared.
     #[arg(long, default_value = "total")]
     part: String,
     /// Vary this parameter over these values, neighbours alike; may be given many times. The graph's own list when

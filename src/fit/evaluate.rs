@@ -63,9 +63,9 @@ pub struct Subject<'a> {
     pub axes: &'a [Axis],
     /// The truth.
     pub reference: &'a Reference,
-    /// Part of the light that is judged.
+    /// Part of the light that is compared.
     pub part: &'a str,
-    /// How it is judged.
+    /// How it is compared.
     pub metric: Metric,
     /// How long a setting is timed.
     pub frames: Frames,

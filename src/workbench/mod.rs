@@ -9,13 +9,13 @@ pub mod compare;
 mod difference;
 pub mod edit;
 pub mod engine;
+pub mod error_worker;
 pub mod events;
 mod gallery;
 mod help;
 mod history;
 mod host;
 mod inspector;
-pub mod judge;
 mod keep;
 mod messages;
 mod motion;
@@ -323,7 +323,7 @@ impl Workbench {
         }
         self.compare();
         self.tell();
-        self.ask_judge(ui);
+        self.request_errors(ui);
     }
 
     /// The picture has the size of the middle, once that has stood still for a moment.

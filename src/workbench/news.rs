@@ -93,7 +93,7 @@ impl Workbench {
                 self.event("captured", json!({ "ok": ok, "text": text }));
                 self.status = text;
             }
-            Report::Judged(judged) => self.judged(judged),
+            Report::Error(result) => self.error_came(result),
             Report::Trouble(text) => {
                 self.event("trouble", json!({ "text": text }));
                 self.trouble = Some(text);

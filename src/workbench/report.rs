@@ -7,7 +7,7 @@ use crate::graph::source::Diagnostic;
 use crate::graph::successor::Change;
 use crate::lab::Texels;
 use crate::scene::Scene;
-use crate::workbench::judge::Judged;
+use crate::workbench::error_worker::ErrorResult;
 use crate::workbench::request::Look;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -121,7 +121,7 @@ pub enum Report {
     /// A capture was made, or why not.
     Captured(Result<PathBuf, String>),
     /// The error of what is shown.
-    Judged(Judged),
+    Error(ErrorResult),
     /// Something the user should know.
     Trouble(String),
 }

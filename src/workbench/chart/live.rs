@@ -1,8 +1,8 @@
-//! The workbench's own dots: their times from the frames that are shown, their errors from the judge; and the reference
+//! The workbench's own dots: their times from the frames that are shown, their errors from the error worker; and the reference
 //! that the errors need.
 
 use super::super::engine::Order;
-use super::super::judge::{Judged, Question};
+use super::super::error_worker::{ErrorQuery, ErrorResult};
 use super::super::report::PictureReport;
 use super::super::{Tab, Workbench, keep};
 use super::gather::{Gather, Job};
@@ -17,9 +17,9 @@ use std::time::{Duration, Instant};
 const KEPT: usize = 240;
 /// Places that a dot has been at.
 const TRAIL: usize = 16;
-/// How long everything must stand still before it is judged.
+/// How long everything must stand still before its error is measured.
 const QUIET: Duration = Duration::from_millis(150);
-/// How long frames go on after a picture was judged, to measure their time; at least two and at most 32.
+/// How long frames go on after an error was measured, to measure their time; at least two and at most 32.
 const MEASURED: Duration = Duration::from_millis(400);
 /// Samples of a reference when nothing else is said, as `conelab reference`.
 const SAMPLES: u64 = 256;
@@ -30,16 +30,16 @@ pub(super) struct Slot {
     /// GPU times of the frames of the last request, ms.
     pub(super) times: Vec<f64>,
     request: u64,
-    /// What the judge was asked last, about which request.
-    asked: Option<(u64, Question)>,
-    pub(super) judged: Option<Judged>,
+    /// The last query sent to the error worker, with the number of the render request.
+    asked: Option<(u64, ErrorQuery)>,
+    pub(super) error: Option<ErrorResult>,
     trail: Vec<(f64, f64)>,
 }
 
 /// The live part of the chart.
 pub struct State {
     pub(super) slots: [Slot; 2],
-    /// The request that was told last, and when it was first seen.
+    /// Number of the request that was sent last, and when it was first seen.
     since: (u64, Instant),
     pub(super) gather: Option<Gather>,
     /// References gathered so far.
@@ -67,32 +67,32 @@ impl Default for State {
 }
 
 impl State {
-    /// What slot A looks at, as last judged.
+    /// Scene, camera, size and time of slot A's picture, as last measured.
     pub fn subject(&self) -> Option<&Subject> {
-        self.slots[0].judged.as_ref()?.result.as_ref().ok().map(|v| &v.subject)
+        self.slots[0].error.as_ref()?.result.as_ref().ok().map(|v| &v.subject)
     }
 
-    /// Whether the judge has been asked and has not answered.
+    /// Whether the error worker has not answered yet.
     pub fn awaits(&self) -> bool {
         self.slots.iter().any(|s| s.asked.as_ref().is_some_and(|a| !s.answers(a)))
     }
 
     /// Where a slot is; nothing as long as its error or time is not known.
-    pub fn dot(&self, slot: usize, told: u64) -> Option<Live> {
+    pub fn dot(&self, slot: usize, sent: u64) -> Option<Live> {
         let slot = &self.slots[slot];
         let (ms, error) = slot.place()?;
-        let fresh = slot.judged.as_ref().is_some_and(|j| j.request >= told);
+        let fresh = slot.error.as_ref().is_some_and(|j| j.request >= sent);
         Some(Live { ms, error, fresh, trail: slot.trail.clone() })
     }
 }
 
 impl Slot {
-    fn answers(&self, asked: &(u64, Question)) -> bool {
-        self.judged.as_ref().is_some_and(|j| j.request >= asked.0 && j.question == asked.1)
+    fn answers(&self, asked: &(u64, ErrorQuery)) -> bool {
+        self.error.as_ref().is_some_and(|j| j.request >= asked.0 && j.query == asked.1)
     }
 
     fn place(&self) -> Option<(f64, f64)> {
-        let error = self.judged.as_ref()?.result.as_ref().ok()?.error?.error;
+        let error = self.error.as_ref()?.result.as_ref().ok()?.error?.error;
         let ms = spread(self.times.clone()).median;
         (ms > 0.0 && error.is_finite()).then_some((ms, error))
     }
@@ -133,32 +133,32 @@ impl super::Chart {
 
 impl Workbench {
     /// What is to be asked about A and B.
-    fn question(&self) -> Question {
+    fn query(&self) -> ErrorQuery {
         let (part, bounces) = self.chart.choice.part_and_bounces(self.chart.data().map(|d| &**d));
         let metric = self.chart.choice.metric.to_string();
-        Question { part, metric, bounces, gathered: self.chart.live.gathered }
+        ErrorQuery { part, metric, bounces, gathered: self.chart.live.gathered }
     }
 
-    /// Whether a slot shows something that the judge was not asked about.
-    fn is_due(&self, slot: usize, question: &Question) -> bool {
+    /// Whether a slot shows something whose error was not asked for.
+    fn is_due(&self, slot: usize, query: &ErrorQuery) -> bool {
         let shows = self.slots[slot].picture.as_ref().is_some_and(|p| !p.preview && p.request >= self.sent.number);
         let asked = self.chart.live.slots[slot].asked.as_ref();
-        let known = asked.is_some_and(|a| a.0 >= self.sent.number && a.1 == *question);
+        let known = asked.is_some_and(|a| a.0 >= self.sent.number && a.1 == *query);
         self.desired.slots[slot].is_some() && shows && self.slots[slot].errors.is_empty() && !known
     }
 
-    /// Whether the judge is about to be asked.
-    pub(super) fn judge_is_due(&self) -> bool {
-        let question = self.question();
-        !self.desired.clock.playing && (0..2).any(|slot| self.is_due(slot, &question))
+    /// Whether an error is about to be asked for.
+    pub(super) fn error_is_due(&self) -> bool {
+        let query = self.query();
+        !self.desired.clock.playing && (0..2).any(|slot| self.is_due(slot, &query))
     }
 
-    /// Asks the judge about what has come to rest.
-    pub(in super::super) fn ask_judge(&mut self, ui: &Ui) {
+    /// Asks for the errors of pictures that have come to rest.
+    pub(in super::super) fn request_errors(&mut self, ui: &Ui) {
         if self.chart.live.since.0 != self.sent.number {
             self.chart.live.since = (self.sent.number, Instant::now());
         }
-        if self.tab != Tab::Chart || !self.judge_is_due() {
+        if self.tab != Tab::Chart || !self.error_is_due() {
             return;
         }
         let stood = self.chart.live.since.1.elapsed();
@@ -166,36 +166,36 @@ impl Workbench {
             ui.ctx().request_repaint_after(QUIET - stood);
             return;
         }
-        let question = self.question();
+        let query = self.query();
         for slot in 0..2 {
-            if self.is_due(slot, &question) {
-                self.chart.live.slots[slot].asked = Some((self.sent.number, question.clone()));
-                self.engine.order(Order::Judge(slot, question.clone()));
+            if self.is_due(slot, &query) {
+                self.chart.live.slots[slot].asked = Some((self.sent.number, query.clone()));
+                self.engine.order(Order::MeasureError(slot, query.clone()));
             }
         }
     }
 
-    /// The judge has answered.
-    pub(in super::super) fn judged(&mut self, judged: Judged) {
-        let slot = &mut self.chart.live.slots[judged.slot];
-        let subject = |j: &Judged| j.result.as_ref().ok().map(|v| v.subject.clone());
-        let other = |old: &Judged| old.question != judged.question || subject(old) != subject(&judged);
-        if slot.judged.as_ref().is_some_and(other) {
+    /// Takes in an answer of the error worker.
+    pub(in super::super) fn error_came(&mut self, result: ErrorResult) {
+        let slot = &mut self.chart.live.slots[result.slot];
+        let subject = |j: &ErrorResult| j.result.as_ref().ok().map(|v| v.subject.clone());
+        let other = |old: &ErrorResult| old.query != result.query || subject(old) != subject(&result);
+        if slot.error.as_ref().is_some_and(other) {
             slot.trail.clear();
         }
         let ms = spread(slot.times.clone()).median;
-        let verdict = judged.result.as_ref().ok();
-        let event = json!({ "slot": judged.slot, "request": judged.request, "part": judged.question.part,
-            "metric": judged.question.metric, "bounces": judged.question.bounces, "gpu_ms": ms,
-            "error": verdict.and_then(|v| v.error).map(|e| e.error),
-            "samples": verdict.and_then(|v| v.error).map(|e| e.samples),
-            "why": judged.result.as_ref().err() });
-        slot.judged = Some(judged);
-        // A single frame after a rest is slower than many: clocks are low. The judge is not disturbed by those that follow.
+        let measured = result.result.as_ref().ok();
+        let event = json!({ "slot": result.slot, "request": result.request, "part": result.query.part,
+            "metric": result.query.metric, "bounces": result.query.bounces, "gpu_ms": ms,
+            "error": measured.and_then(|v| v.error).map(|e| e.error),
+            "samples": measured.and_then(|v| v.error).map(|e| e.samples),
+            "why": result.result.as_ref().err() });
+        slot.error = Some(result);
+        // A single frame after a rest is slower than many: clocks are low. The error worker is not slowed by those that follow.
         if !self.chart.live.awaits() {
             self.engine.order(Order::Frames((MEASURED.as_secs_f64() * 1e3 / ms.max(0.1)).clamp(2.0, 32.0) as u32));
         }
-        self.event("judged", event);
+        self.event("error", event);
     }
 
     /// Gathers the reference of what A shows.
@@ -206,7 +206,7 @@ impl Workbench {
         };
         let experiment = keep::still(&self.desired, slot, &self.name, picture.time, scene);
         self.fixed_size = Some(experiment.size);
-        let (bounces, samples) = (self.question().bounces, self.chart.live.samples);
+        let (bounces, samples) = (self.query().bounces, self.chart.live.samples);
         let (home, gpu) = (self.home.clone(), self.gpu.clone());
         let job = Job { home, gpu, experiment, scene: scene.clone(), bounces, samples };
         self.chart.live.said.clear();

@@ -12,21 +12,23 @@ impl Workbench {
         for (slot, live) in lives.iter().enumerate().filter(|s| self.desired.slots[s.0].is_some()) {
             let state = &self.chart.live.slots[slot];
             let name = ["A", "B"][slot];
-            match state.judged.as_ref().map(|j| (&j.question, &j.result)) {
-                None if self.desired.clock.playing => drop(ui.weak(format!("{name}: judged when time stands still"))),
-                None => drop(ui.weak(format!("{name}: not judged yet"))),
+            match state.error.as_ref().map(|j| (&j.query, &j.result)) {
+                None if self.desired.clock.playing => {
+                    drop(ui.weak(format!("{name}: its error is measured when time stands still")))
+                }
+                None => drop(ui.weak(format!("{name}: its error is not measured yet"))),
                 Some((_, Err(why))) => drop(ui.weak(format!("{name}: {why}"))),
-                Some((question, Ok(verdict))) => match (&verdict.error, live) {
+                Some((query, Ok(measured))) => match (&measured.error, live) {
                     (Some(error), Some(live)) => {
                         let old = if live.fresh { "" } else { " (of the picture before)" };
-                        let noisy = question.metric == "relmse" && within_noise(error.error, Some(error.noise));
+                        let noisy = query.metric == "relmse" && within_noise(error.error, Some(error.noise));
                         let noisy = if noisy { ", within the reference's noise" } else { "" };
                         let text = format!("{name}: {:.3} ms, {title} {:.4e}{noisy}{old}", live.ms, error.error);
                         ui.colored_label(LIVE[slot], text).on_hover_text(format!(
                             "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
                                  {}, {} samples a pixel; relMSE of its halves {:.2e}.",
                             state.times.len(),
-                            bounces(question.bounces),
+                            bounces(query.bounces),
                             error.samples,
                             error.noise
                         ));
@@ -34,11 +36,11 @@ impl Workbench {
                     (Some(_), None) => drop(ui.weak(format!("{name}: the metric is not defined here"))),
                     (None, _) => {
                         missing = true;
-                        let (w, h) = verdict.subject.size;
+                        let (w, h) = measured.subject.size;
                         ui.label(format!(
                             "{name}: no reference of this picture ({}, {w}x{h}, {})",
-                            verdict.subject.scene,
-                            bounces(question.bounces)
+                            measured.subject.scene,
+                            bounces(query.bounces)
                         ));
                     }
                 },

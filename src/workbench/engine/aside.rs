@@ -1,35 +1,35 @@
 //! What is made of a picture aside, while frames go on: its error, a capture.
 
-use super::super::judge::{Case, Judged, Question};
+use super::super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
 use super::super::keep;
 use super::super::report::Report;
 use super::{Run, SETTLE, remembers};
 
 impl Run<'_> {
-    /// Hands what a slot shows to the judge. What is not there yet is asked for again.
-    pub(super) fn judge(&mut self, number: usize, question: Question) {
+    /// Sends what a slot shows to the error worker. A picture that is not there yet is asked for again.
+    pub(super) fn measure_error(&mut self, number: usize, query: ErrorQuery) {
         let (Some(desired), Some(scene)) = (&self.desired.slots[number], &self.scene) else { return };
         let slot = &self.slots[number];
         let shown = slot.session.as_ref().filter(|_| slot.key.as_ref() == Some(&self.key(desired, number)));
         let (Some(session), Some(loaded)) = (shown, &slot.loaded) else {
             let result = Err("what is asked for is not shown".into());
-            self.out.send(Report::Judged(Judged { slot: number, request: self.desired.number, question, result }));
+            self.out.send(Report::Error(ErrorResult { slot: number, request: self.desired.number, query, result }));
             return;
         };
-        let case = Case {
+        let request = ErrorRequest {
             slot: number,
             request: slot.answered,
             revision: self.desired.revision,
-            question,
+            query,
             lab: self.lab.clone(),
             loaded: loaded.clone(),
             seed: session.lend(),
-            experiment: keep::still(&self.desired, desired, "judged", self.clock.now, scene),
+            experiment: keep::still(&self.desired, desired, "error", self.clock.now, scene),
             scene: scene.clone(),
             lights: self.desired.lights.clone(),
             frames: if remembers(session) { SETTLE } else { 1 },
         };
-        let _ = self.cases.send(case);
+        let _ = self.error_requests.send(request);
     }
 
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.

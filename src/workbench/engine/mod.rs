@@ -10,7 +10,7 @@ mod frames;
 mod scenes;
 
 use super::builder::{self, Done, Job, Key};
-use super::judge::{self, Case, Question};
+use super::error_worker::{self, ErrorQuery, ErrorRequest};
 use super::report::{DeviceReport, Report};
 use super::request::{Look, RenderRequest};
 use crate::lab::{Home, Lab, LabError, Loaded, Session};
@@ -28,8 +28,8 @@ pub enum Order {
     Look,
     /// Save what slot A or B shows, under a name; with these resources.
     Capture(usize, String, Vec<String>),
-    /// Say how far what slot A or B shows is from its reference.
-    Judge(usize, Question),
+    /// Measure the error of what slot A or B shows against its reference.
+    MeasureError(usize, ErrorQuery),
     /// Render so many more frames of what is shown, to measure.
     Frames(u32),
     /// Stop the loading of a scene.
@@ -139,7 +139,7 @@ struct Run<'a> {
     desired: RenderRequest,
     slots: [Slot; 2],
     jobs: Sender<Job>,
-    cases: Sender<Case>,
+    error_requests: Sender<ErrorRequest>,
     scene: Option<Arc<Scene>>,
     /// What was loaded: name, revision; and how many scenes were.
     scene_key: Option<(String, u64)>,
@@ -209,16 +209,16 @@ fn session(
     let (done_out, done) = unbounded();
     let (loaded_out, loaded) = unbounded();
     let builder = std::thread::spawn(move || builder::run(&job_box, &done_out));
-    let (cases, case_box) = unbounded();
-    let told = out.clone();
-    let judge = std::thread::spawn(move || judge::run(&case_box, &|report| told.send(report)));
+    let (error_requests, error_inbox) = unbounded();
+    let results = out.clone();
+    let worker = std::thread::spawn(move || error_worker::run(&error_inbox, &|report| results.send(report)));
     let mut run = Run {
         lab,
         out,
         desired: RenderRequest::default(),
         slots: Default::default(),
         jobs,
-        cases,
+        error_requests,
         scene: None,
         scene_key: None,
         scene_number: 0,
@@ -267,7 +267,7 @@ fn session(
     }
     drop(run);
     // Builds in work hold the device; what they send goes nowhere.
-    while !(builder.is_finished() && judge.is_finished()) {
+    while !(builder.is_finished() && worker.is_finished()) {
         let _ = done.recv_timeout(Duration::from_millis(10));
     }
     messages.extend(gpu.messages());
@@ -306,7 +306,7 @@ impl Run<'_> {
                     }
                 }
                 Order::Capture(slot, name, resources) => self.capture(slot, name, resources),
-                Order::Judge(slot, question) => self.judge(slot, question),
+                Order::MeasureError(slot, query) => self.measure_error(slot, query),
                 Order::Frames(count) => self.disturb(count),
                 Order::RenderDoc => {
                     self.renderdoc = true;

@@ -1,4 +1,4 @@
-//! The error of what is shown against its cached reference, on a thread of its own: the picture is rendered afresh, as a
+//! The error worker: the error of what is shown against its cached reference, on a thread of its own: the picture is rendered afresh, as a
 //! sweep would, so that neither the picture's frames nor their times wait for it.
 
 use super::report::Report;
@@ -14,9 +14,9 @@ use crossbeam_channel::Receiver;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// What is asked about a picture.
+/// The error that is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Question {
+pub struct ErrorQuery {
     /// Part of the light, as the graph names it.
     pub part: String,
     /// Field of [`crate::metrics::Scores`].
@@ -27,16 +27,16 @@ pub struct Question {
     pub gathered: u64,
 }
 
-/// A picture and what is asked about it.
-pub struct Case {
+/// A picture whose error is asked for.
+pub struct ErrorRequest {
     /// 0 is A, 1 is B.
     pub slot: usize,
-    /// The request that it fulfils.
+    /// Number of the render request that the picture answers.
     pub request: u64,
     /// Revision of the files.
     pub revision: u64,
     /// What is asked.
-    pub question: Question,
+    pub query: ErrorQuery,
     /// The device.
     pub lab: Lab,
     /// The graph.
@@ -53,31 +53,31 @@ pub struct Case {
     pub frames: u32,
 }
 
-/// The answer.
+/// Answer to an [`ErrorRequest`].
 #[derive(Clone, Debug)]
-pub struct Judged {
+pub struct ErrorResult {
     /// 0 is A, 1 is B.
     pub slot: usize,
-    /// The request that was judged.
+    /// Number of the render request whose picture was measured.
     pub request: u64,
     /// What was asked.
-    pub question: Question,
+    pub query: ErrorQuery,
     /// The answer, or why there is none.
-    pub result: Result<Verdict, String>,
+    pub result: Result<PictureError, String>,
 }
 
-/// What is known of a picture.
+/// Subject and error of a picture.
 #[derive(Clone, Debug)]
-pub struct Verdict {
-    /// What is looked at.
+pub struct PictureError {
+    /// Scene, camera, size and time of the picture.
     pub subject: Subject,
     /// The error; absent without a reference.
-    pub error: Option<Measured>,
+    pub error: Option<ReferenceError>,
 }
 
 /// A picture's distance from its reference.
 #[derive(Clone, Copy, Debug)]
-pub struct Measured {
+pub struct ReferenceError {
     /// 0 is perfect; no number where the metric is not defined.
     pub error: f64,
     /// relMSE between the halves of the reference's samples.
@@ -86,9 +86,9 @@ pub struct Measured {
     pub samples: u64,
 }
 
-/// What one case leaves to the next.
+/// Loaded things that the next request may need again.
 #[derive(Default)]
-struct Memory {
+struct Cache {
     /// The graph of references, as of a revision of the files.
     traced: Option<(u64, Loaded)>,
     /// The scene's content, by the scene and its light.
@@ -97,99 +97,100 @@ struct Memory {
     reference: Option<(Arc<Scene>, String, Option<Arc<Reference>>)>,
 }
 
-/// Judges until the cases' sender is gone; of several that wait for a slot only the newest counts.
-pub(super) fn run(cases: &Receiver<Case>, tell: &dyn Fn(Report)) {
-    let mut memory = Memory::default();
-    while let Ok(first) = cases.recv() {
+/// Measures errors until the requests' sender is gone; of several requests for a side only the newest counts.
+pub(super) fn run(requests: &Receiver<ErrorRequest>, send: &dyn Fn(Report)) {
+    let mut loaded = Cache::default();
+    while let Ok(first) = requests.recv() {
         let mut newest = [None, None];
-        for case in std::iter::once(first).chain(cases.try_iter()) {
-            let slot = case.slot.min(1);
-            newest[slot] = Some(case);
+        for request in std::iter::once(first).chain(requests.try_iter()) {
+            let slot = request.slot.min(1);
+            newest[slot] = Some(request);
         }
-        for case in newest.into_iter().flatten() {
-            let (slot, request, question) = (case.slot, case.request, case.question.clone());
-            let result = memory.judge(case).map_err(|e| e.to_string());
-            tell(Report::Judged(Judged { slot, request, question, result }));
+        for latest in newest.into_iter().flatten() {
+            let (slot, request, query) = (latest.slot, latest.request, latest.query.clone());
+            let result = loaded.evaluate(latest).map_err(|e| e.to_string());
+            send(Report::Error(ErrorResult { slot, request, query, result }));
         }
     }
 }
 
-impl Memory {
-    fn judge(&mut self, case: Case) -> Result<Verdict, LabError> {
-        let subject = self.subject(&case)?;
-        let Some(reference) = self.reference(&case)? else { return Ok(Verdict { subject, error: None }) };
-        let Question { part, metric, .. } = case.question.clone();
+impl Cache {
+    fn evaluate(&mut self, request: ErrorRequest) -> Result<PictureError, LabError> {
+        let subject = self.subject(&request)?;
+        let Some(reference) = self.reference(&request)? else { return Ok(PictureError { subject, error: None }) };
+        let ErrorQuery { part, metric, .. } = request.query.clone();
         let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
-        let truth = reference.parts.get(&part).ok_or_else(|| wrong("the reference does not have it".into()))?;
-        let light = light_of(case, &part)?;
+        let expected = reference.parts.get(&part).ok_or_else(|| wrong("the reference does not have it".into()))?;
+        let light = light_of(request, &part)?;
         let error = if metric == "relmse" {
-            relmse(&light, &truth.mean).map_err(|e| wrong(e.0))?
+            relmse(&light, &expected.mean).map_err(|e| wrong(e.0))?
         } else {
-            let compared = Compared::new(&light, &truth.mean, Kind::of_part(&part)).map_err(|e| wrong(e.0))?;
+            let compared = Compared::new(&light, &expected.mean, Kind::of_part(&part)).map_err(|e| wrong(e.0))?;
             let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures".into()))?;
             numbers(&scores).get(&metric).copied().unwrap_or(f64::NAN)
         };
-        let error = Measured { error: error_of(&metric, error), noise: truth.noise, samples: reference.samples };
-        Ok(Verdict { subject, error: Some(error) })
+        let error =
+            ReferenceError { error: error_of(&metric, error), noise: expected.noise, samples: reference.samples };
+        Ok(PictureError { subject, error: Some(error) })
     }
 
-    /// What is looked at, as sweeps write it down. The hash of a large scene takes a second: it is kept.
-    fn subject(&mut self, case: &Case) -> Result<Subject, LabError> {
-        let light = format!("{:?}", case.lights);
-        let known = self.hash.as_ref().filter(|h| Arc::ptr_eq(&h.0, &case.scene) && h.1 == light);
+    /// Scene, camera, size and time of the picture, as sweeps write them down. The hash of a large scene takes a second: it is kept.
+    fn subject(&mut self, request: &ErrorRequest) -> Result<Subject, LabError> {
+        let light = format!("{:?}", request.lights);
+        let known = self.hash.as_ref().filter(|h| Arc::ptr_eq(&h.0, &request.scene) && h.1 == light);
         let sha256 = match known {
             Some(known) => known.2.clone(),
             None => {
-                let hash = scene_hash(&*case.experiment.adapted(case.scene.clone())?);
-                self.hash = Some((case.scene.clone(), light, hash.clone()));
+                let hash = scene_hash(&*request.experiment.adapted(request.scene.clone())?);
+                self.hash = Some((request.scene.clone(), light, hash.clone()));
                 hash
             }
         };
         Ok(Subject {
-            scene: case.scene.name.clone(),
+            scene: request.scene.name.clone(),
             sha256,
-            camera: placed_text(&camera_of(&case.experiment, &case.scene)?),
-            size: case.experiment.size,
-            time: format!("{:?}", case.experiment.time),
+            camera: placed_text(&camera_of(&request.experiment, &request.scene)?),
+            size: request.experiment.size,
+            time: format!("{:?}", request.experiment.time),
         })
     }
 
     /// The cached reference, read once for everything that it does not depend on.
-    fn reference(&mut self, case: &Case) -> Result<Option<Arc<Reference>>, LabError> {
-        let Case { experiment, scene, question, .. } = case;
-        let home = &case.lab.home;
-        if self.traced.as_ref().is_none_or(|t| t.0 != case.revision) {
-            self.traced = Some((case.revision, home.load(GRAPH).map_err(LabError::Input)?));
+    fn reference(&mut self, request: &ErrorRequest) -> Result<Option<Arc<Reference>>, LabError> {
+        let ErrorRequest { experiment, scene, query, .. } = request;
+        let home = &request.lab.home;
+        if self.traced.as_ref().is_none_or(|t| t.0 != request.revision) {
+            self.traced = Some((request.revision, home.load(GRAPH).map_err(LabError::Input)?));
         }
         let shared = self.traced.iter().flat_map(|t| &t.1.graph.params.list);
-        let params = params_of(&case.loaded.graph, experiment)?;
+        let params = params_of(&request.loaded.graph, experiment)?;
         let shared: Vec<String> = shared
             .filter_map(|p| Some(format!("{} {:?}", p.name, params.values.get(params.index(&p.name)?)?)))
             .collect();
         let key = format!(
             "{:?} {:?} {:?} {:?} {} {} {} {}",
-            case.lights,
+            request.lights,
             experiment.camera,
             experiment.size,
             experiment.time,
-            question.bounces,
-            question.gathered,
-            case.revision,
+            query.bounces,
+            query.gathered,
+            request.revision,
             shared.join(" ")
         );
         if let Some(known) = self.reference.as_ref().filter(|r| Arc::ptr_eq(&r.0, scene) && r.1 == key) {
             return Ok(known.2.clone());
         }
         let lit = experiment.adapted(scene.clone())?;
-        let found = find(home, experiment, &lit, question.bounces)?.map(Arc::new);
+        let found = find(home, experiment, &lit, query.bounces)?.map(Arc::new);
         self.reference = Some((scene.clone(), key, found.clone()));
         Ok(found)
     }
 }
 
 /// A part of the picture's light, from a fresh start.
-fn light_of(case: Case, part: &str) -> Result<Linear, LabError> {
-    let Case { lab, loaded, seed, experiment, scene, lights, frames, .. } = case;
+fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
+    let ErrorRequest { lab, loaded, seed, experiment, scene, lights, frames, .. } = request;
     let missing = || LabError::Request(format!("the graph '{}' does not make the part '{part}'", loaded.graph.name));
     let named = crate::lab::parts_of(&loaded.graph).into_iter().find(|p| p.0 == part);
     let (_, texture) = named.ok_or_else(missing)?;
