@@ -22,7 +22,7 @@ fn number(event: &Value, name: &str) -> f64 {
     event[name].as_f64().unwrap_or_else(|| panic!("no {name} in {event}"))
 }
 
-/// The error of A's picture, once it has been told after the first `since` events and `is` what was waited for.
+/// The error of A's picture, once it was reported after the first `since` events and `is` what was waited for.
 #[track_caller]
 fn error(desk: &mut Desk, since: usize, what: &str, is: impl Fn(f64) -> bool) -> f64 {
     let measured =

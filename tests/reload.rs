@@ -188,7 +188,7 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
     frames(&mut session, 1);
     assert_eq!(floats(&mut session, "sized", 0)[0][0], 1.0);
 
-    // Switched on, it is compiled, and its mistake is told.
+    // Switched on, it is compiled, and its mistake is reported.
     let mut params = session.params.clone();
     params.set("twice", "true").unwrap();
     assert!(!session.set_params(&bench.lab, &params).unwrap(), "it needs a shader that is not there");

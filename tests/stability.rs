@@ -137,7 +137,7 @@ fn a_still_scene_is_still() {
 }
 
 /// A path tracer with other random numbers as the method: two pictures of s samples each differ by 2/s, the two halves of
-/// one by 4/s of a sample's variance, so E_t is .71 of the noise that is told, and not told apart from it.
+/// one by 4/s of a sample's variance, so E_t is .71 of the noise that is message, and not told apart from it.
 #[test]
 fn the_reference_as_a_method_is_at_its_own_noise() {
     let home = home();
@@ -354,8 +354,8 @@ fn equal_cost() {
     assert!(out("index.html").contains(&svg) && out("index.html").contains("What stability costs"));
     // What was chosen is taken again.
     let before = ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out);
-    let told = succeeds(&mut stability(home.path(), &file, "out", &[]));
-    assert!(told.contains("9 done, 0 failed"), "{told}");
+    let message = succeeds(&mut stability(home.path(), &file, "out", &[]));
+    assert!(message.contains("9 done, 0 failed"), "{message}");
     assert_eq!(before, ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out));
 }
 
@@ -383,8 +383,8 @@ fn killed_and_continued() {
     child.wait().unwrap();
     let before = finished();
     assert!((2..9).contains(&before.len()), "{} of 9 were finished", before.len());
-    let told = succeeds(&mut stability(home.path(), &file, "out", &[]));
-    assert!(told.contains(&format!("{} are finished already", before.len())), "{told}");
+    let message = succeeds(&mut stability(home.path(), &file, "out", &[]));
+    assert!(message.contains(&format!("{} are finished already", before.len())), "{message}");
     let after = finished();
     assert_eq!(after.len(), 9);
     assert!(before.iter().all(|(name, bytes)| after[name] == *bytes), "what was finished is kept as it was");
@@ -404,12 +404,12 @@ fn a_sheet_of_failures() {
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replacen("methods:", "pictures: \"diffuse\", methods:", 1)).unwrap();
     let picture = home.path().join("failures.jpg");
-    let told = succeeds(&mut stability(home.path(), &file, "out", &["--sheet", picture.to_str().unwrap()]));
+    let message = succeeds(&mut stability(home.path(), &file, "out", &["--sheet", picture.to_str().unwrap()]));
     let bytes = std::fs::read(&picture).unwrap();
     assert!(bytes.len() < 200_000, "{} bytes", bytes.len());
     let sheet = image::load_from_memory(&bytes).unwrap().to_luma8();
     let rows: Vec<Vec<&str>> =
-        told.lines().filter(|l| l.starts_with("| ")).skip(1).map(|l| l.split(" | ").collect()).collect();
+        message.lines().filter(|l| l.starts_with("| ")).skip(1).map(|l| l.split(" | ").collect()).collect();
     let names: Vec<(&str, &str)> = rows.iter().map(|r| (r[0], &r[2][..5])).collect();
     assert_eq!(names, [("| fine", "relMS"), ("| fine", "E_t o"), ("| coarse", "relMS"), ("| coarse", "E_t o")]);
     // The number is the largest of the method's cases of one frame.
@@ -473,29 +473,29 @@ fn shipped_suites() {
     }
 }
 
-/// Mistakes are told before anything is measured.
+/// Mistakes are message before anything is measured.
 #[test]
 fn mistakes() {
     let home = home();
-    let told = |methods: &str, cases: &str, more: &[&str]| {
+    let message = |methods: &str, cases: &str, more: &[&str]| {
         let file = suite(home.path(), methods, cases);
         fails(&mut stability(home.path(), &file, "out", more))
     };
     let has = |text: String, part: &str| assert!(text.contains(part), "{text}");
-    has(told("\"a\": {}", "\"x\": (motion: Light(name: \"sun\"))", &[]), "has no light 'sun'; it has lamp");
+    has(message("\"a\": {}", "\"x\": (motion: Light(name: \"sun\"))", &[]), "has no light 'sun'; it has lamp");
     has(
-        told("\"a\": {}", "\"x\": (set: { \"scene\": \"cornell\" }, motion: Actors(step: 0.1))", &[]),
+        message("\"a\": {}", "\"x\": (set: { \"scene\": \"cornell\" }, motion: Actors(step: 0.1))", &[]),
         "nothing is animated",
     );
-    has(told("\"a\": {}", "\"x\": ()", &["--only", "y"]), "the suite's cases are x");
-    has(told("\"a\": { \"voxel_dimm\": 3 }", "\"x\": ()", &[]), "voxel_dim");
-    has(told("\"a\": {}", "\"x\": (methods: [\"b\"])", &[]), "none of the suite's");
-    has(told("\"a\": {}", "\"x\": (motion: Camera(dolley: 1))", &[]), "dolley");
+    has(message("\"a\": {}", "\"x\": ()", &["--only", "y"]), "the suite's cases are x");
+    has(message("\"a\": { \"voxel_dimm\": 3 }", "\"x\": ()", &[]), "voxel_dim");
+    has(message("\"a\": {}", "\"x\": (methods: [\"b\"])", &[]), "none of the suite's");
+    has(message("\"a\": {}", "\"x\": (motion: Camera(dolley: 1))", &[]), "dolley");
     has(
-        told("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
+        message("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
         "needs two frames more, there are 4",
     );
-    let moves = |text: &str| told("\"a\": {}", &format!("\"x\": (motion: Parameter(name: {text}))"), &[]);
+    let moves = |text: &str| message("\"a\": {}", &format!("\"x\": (motion: Parameter(name: {text}))"), &[]);
     has(moves("\"volume_ofset\", step: (1, 0, 0)"), "volume_offset");
     has(moves("\"volume_offset\", step: 1"), "expected 3 numbers");
     has(moves("\"volume_offset\""), "either a `step` or `values`");
@@ -515,13 +515,13 @@ fn mistakes() {
     has(equal("\"voxel_dim\", values: [32], methods: [\"a\"]"), "'a' is the suite's first method");
     has(equal("\"voxel_dimm\", values: [32], methods: [\"b\"]"), "voxel_dim");
     has(equal("\"voxel_dim\", values: [3], methods: [\"b\"]"), "outside 16 to 512");
-    has(told("\"a\": {}", "\"x\": (motion: Cut(to: \"behind\", at: 1))", &[]), "no camera 'behind'");
-    has(told("\"a\": {}", "\"x\": (motion: Cut(to: \"default\", at: 0))", &[]), "`at` of 1 or more");
-    has(told("\"a\": {}", "\"x\": (motion: Path(file: \"none.ron\", step: 1))", &[]), "none.ron");
+    has(message("\"a\": {}", "\"x\": (motion: Cut(to: \"behind\", at: 1))", &[]), "no camera 'behind'");
+    has(message("\"a\": {}", "\"x\": (motion: Cut(to: \"default\", at: 0))", &[]), "`at` of 1 or more");
+    has(message("\"a\": {}", "\"x\": (motion: Path(file: \"none.ron\", step: 1))", &[]), "none.ron");
     let file = suite(home.path(), "\"a\": {}", "\"x\": ()");
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replacen("methods:", "pictures: \"glow\", methods:", 1)).unwrap();
     has(fails(&mut stability(home.path(), &file, "out", &[])), "no pictures of 'glow'");
-    has(told("", "\"x\": ()", &[]), "at least one method");
+    has(message("", "\"x\": ()", &[]), "at least one method");
     assert!(!home.path().join("out").exists(), "nothing was written");
 }

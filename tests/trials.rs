@@ -61,15 +61,15 @@ fn check(trial: &str, rows: &[Row]) {
         std::fs::write(&path, out.join("\n") + "\n").unwrap();
         return;
     }
-    let told: Vec<&str> = text.lines().filter(mine).collect();
-    assert_eq!(told.len(), rows.len(), "{trial}: docs/trials.md has other rows");
+    let documented: Vec<&str> = text.lines().filter(mine).collect();
+    assert_eq!(documented.len(), rows.len(), "{trial}: docs/trials.md has other rows");
     let mut wrong = String::new();
-    for ((told, line), r) in told.iter().zip(&lines).zip(rows) {
-        let (a, b): (Vec<&str>, Vec<&str>) = (told.split('|').collect(), line.split('|').collect());
+    for ((documented, line), r) in documented.iter().zip(&lines).zip(rows) {
+        let (a, b): (Vec<&str>, Vec<&str>) = (documented.split('|').collect(), line.split('|').collect());
         let number: f64 = a[4].trim().parse().unwrap();
         let near = (number - r.value).abs() <= 0.03 * number.abs().max(0.02);
         if !near || [1, 2, 3, 5, 6].iter().any(|i| a[*i] != b[*i]) {
-            let _ = writeln!(wrong, "told     {told}\nmeasured {line}");
+            let _ = writeln!(wrong, "documented     {documented}\nmeasured {line}");
         }
     }
     assert!(wrong.is_empty(), "docs/trials.md no longer says what is measured:\n{wrong}");

@@ -12,7 +12,7 @@ use std::fmt::Write;
 /// What a stage must lose or win to count, ms.
 pub const FLOOR_MS: f64 = 0.02;
 
-/// Most settings that are told one by one.
+/// Most settings that are named one by one.
 const TOLD: usize = 8;
 
 /// How a time stands to the recorded one.
@@ -156,12 +156,12 @@ impl Row {
 
 /// The stages that became slower, configuration by configuration, in one line; `None` without any.
 pub fn slower(compared: &[Compared]) -> Option<String> {
-    let told = |row: &Row| match row.ratio() {
+    let line = |row: &Row| match row.ratio() {
         Some(ratio) => format!("{} {ratio:.2} times", row.stage),
         None => row.stage.clone(),
     };
     let of = |c: &Compared| {
-        let list: Vec<String> = c.rows.iter().filter(|r| r.verdict == Verdict::Slower).map(told).collect();
+        let list: Vec<String> = c.rows.iter().filter(|r| r.verdict == Verdict::Slower).map(line).collect();
         (!list.is_empty()).then(|| format!("{} ({})", list.join(", "), c.title))
     };
     let list: Vec<String> = compared.iter().filter_map(of).collect();

@@ -49,7 +49,7 @@ pub struct Recorded {
     pub settings: IndexMap<String, String>,
     /// SHA-256 of the scene's content.
     pub scene_sha256: String,
-    /// Every parameter, for people: what differs today is told.
+    /// Every parameter, for people: what differs today is named.
     pub params: BTreeMap<String, String>,
     /// Median of the whole frame in every round, ms.
     pub total: Vec<f64>,

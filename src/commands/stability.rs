@@ -77,7 +77,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
     );
     let mut doing = String::new();
-    let mut tell = |progress: Progress| match progress {
+    let mut on_progress = |progress: Progress| match progress {
         Progress::Begins { todo, before } => {
             if before > 0 {
                 bar.suspend(|| say!("{before} are finished already, {todo} to go"));
@@ -105,7 +105,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         }
     };
     let reopen = || Lab::open(home.clone(), args.device.options());
-    let result = run_suite(&reopen, &super::open_scene, &suite, &options, &mut tell);
+    let result = run_suite(&reopen, &super::open_scene, &suite, &options, &mut on_progress);
     bar.finish_and_clear();
     let (tally, report) = result?;
     for r in &report.results {

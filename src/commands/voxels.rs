@@ -98,7 +98,7 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
                 mode.warnings = warnings;
                 mode.score = Some(found.score);
             }
-            // One of many that this device cannot run is told; the only one is an error.
+            // One of many that this device cannot run is reported; the only one is an error.
             Err(LabError::Input(why)) if args.all => {
                 mode.skipped = Some(why.iter().map(|d| d.message.clone()).collect::<Vec<_>>().join("; "));
             }

@@ -305,11 +305,11 @@ fn combine<E>(
     for (a, x) in some {
         for (b, y) in others.iter().filter(|(b, _)| b.iter().all(|b| a.iter().all(|a| a.0 != b.0))) {
             let ratio = |of: fn(&Trial) -> f64| of(x) * of(y) / of(&from).max(1e-30);
-            let told = Trial { cost: ratio(|t| t.cost), bounded: ratio(|t| t.bounded) };
+            let expected = Trial { cost: ratio(|t| t.cost), bounded: ratio(|t| t.bounded) };
             // A little beyond the bound may turn out to be within.
-            let near = Trial { bounded: told.bounded / 1.05, ..told };
+            let near = Trial { bounded: expected.bounded / 1.05, ..expected };
             if s.better(near, from) {
-                let merit = if from.bounded <= s.limits.bound { told.cost } else { told.bounded };
+                let merit = if from.bounded <= s.limits.bound { expected.cost } else { expected.bounded };
                 pairs.push((merit, a.iter().chain(b).copied().collect()));
             }
         }

@@ -78,7 +78,7 @@ function front(indices) {
   return order.filter((i) => { const e = errorOf(data.dots[i]); const better = e < least; least = Math.min(least, e); return better; });
 }
 
-function tell(index, event, pinned) {
+function describe(index, event, pinned) {
   const d = data.dots[index];
   tip.replaceChildren();
   tip.className = pinned ? "pinned" : "";
@@ -113,12 +113,12 @@ function tell(index, event, pinned) {
   tip.style.top = event.pageY + 14 + "px";
 }
 function hover(element, index) {
-  element.addEventListener("mouseenter", (e) => { if (state.held < 0) tell(index, e, false); });
+  element.addEventListener("mouseenter", (e) => { if (state.held < 0) describe(index, e, false); });
   element.addEventListener("mouseleave", () => { if (state.held < 0) tip.hidden = true; });
   element.addEventListener("click", (e) => {
     e.stopPropagation();
     state.held = index;
-    tell(index, e, true);
+    describe(index, e, true);
     update();
   });
 }

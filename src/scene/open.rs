@@ -14,7 +14,7 @@ const ASK: Duration = Duration::from_millis(20);
 impl Scene {
     /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb).
     ///
-    /// A model without lights gets a sun and a sky, one without cameras a camera `default`. `progress` is told
+    /// A model without lights gets a sun and a sky, one without cameras a camera `default`. `progress` is called with
     /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
     /// answers `Break`, the opening ends at once with [`SceneError::Cancelled`].
     pub fn open(spec: &str, progress: &dyn Fn(&str, f32) -> ControlFlow<()>) -> Result<Scene, SceneError> {

@@ -105,7 +105,7 @@ pub(super) fn costs(
     warm: &mut Warm,
     (suite, chart): (&Suite, &CostChart),
     options: &Options,
-    tell: &mut dyn FnMut(Progress),
+    on_progress: &mut dyn FnMut(Progress),
 ) -> Result<Vec<Cost>, LabError> {
     let charted = |m: &&Method| chart.groups.iter().any(|g| g.1.contains(&m.name));
     let names: Vec<&Method> =
@@ -151,7 +151,7 @@ pub(super) fn costs(
     }
     let mut lent = HashMap::new();
     let todo = between(&todo, &mut |job| {
-        tell(Progress::Times { method: &job.method, done: 0, of: ROUNDS * todo.len() });
+        on_progress(Progress::Times { method: &job.method, done: 0, of: ROUNDS * todo.len() });
         Ok((time(lab, warm, job, &mut lent), time(lab, warm, first, &mut lent)?.0))
     })?;
     let steps = ROUNDS * todo.len();
@@ -168,7 +168,7 @@ pub(super) fn costs(
             if candidate.failed.is_some() {
                 continue;
             }
-            tell(Progress::Times { method: &job.method, done: round * todo.len() + i, of: steps });
+            on_progress(Progress::Times { method: &job.method, done: round * todo.len() + i, of: steps });
             let cost = if job.work == first.work { Ok(first_cost) } else { time(lab, warm, job, &mut lent) };
             match cost {
                 Ok((ms, bytes)) => {

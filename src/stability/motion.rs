@@ -194,7 +194,7 @@ impl Motion {
         }
     }
 
-    /// Time from frame to frame as the method is told it, s.
+    /// Time from frame to frame as the method gets it, s.
     pub fn delta(&self) -> f64 {
         if let Motion::Actors { step, .. } = self { *step } else { 0.0 }
     }
@@ -241,8 +241,8 @@ impl Motion {
         moment
     }
 
-    /// In a few words.
-    pub fn told(&self) -> String {
+    /// The motion in a few words.
+    pub fn describe(&self) -> String {
         match self {
             Motion::Still => "still".into(),
             Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {

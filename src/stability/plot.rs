@@ -114,7 +114,7 @@ impl Plot<'_> {
                 let _ = write!(out, "<td>{}</td><td{off}>{ratio}</td>", number(r.ms));
                 let _ = write!(out, "<td>{}</td>", r.memory_bytes.map_or(String::new(), mebibytes));
                 for score in [r.error, r.change] {
-                    let noisy = if score.is_some_and(|s| s.untold()) { " class=\"noise\"" } else { "" };
+                    let noisy = if score.is_some_and(|s| s.within_noise()) { " class=\"noise\"" } else { "" };
                     let (value, noise) = (number(score.map(|s| s.value)), number(score.map(|s| s.noise)));
                     let _ = write!(out, "<td{noisy}>{value}</td><td>{noise}</td>");
                 }
@@ -134,7 +134,7 @@ impl Plot<'_> {
 }
 
 impl Score {
-    fn untold(&self) -> bool {
+    fn within_noise(&self) -> bool {
         self.value < NOISE_FACTOR * self.noise
     }
 }
@@ -293,7 +293,7 @@ fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
                 let at = (error.value, change.value);
                 let bars = [vec![(error.without, at.1), at], vec![(at.0, change.without), at]];
                 chart.draw_series(bars.map(|bar| PathElement::new(bar, color.stroke_width(1))))?;
-                let hollow = error.untold() || change.untold();
+                let hollow = error.within_noise() || change.within_noise();
                 let inside = if hollow { WHITE.filled() } else { color.filled() };
                 chart.draw_series([Circle::new(at, 5, inside), Circle::new(at, 5, color.stroke_width(2))])?;
                 // Labels stand beside their dots, on the left above the bar, and below those of dots that are close.

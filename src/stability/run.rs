@@ -24,7 +24,7 @@ use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-/// What a suite tells while it runs.
+/// Progress that a suite reports while it runs.
 pub enum Progress<'a> {
     /// Methods in cases: to measure, and finished before.
     Begins {
@@ -69,7 +69,7 @@ pub fn run(
     open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
     suite: &Suite,
     options: &Options,
-    tell: &mut dyn FnMut(Progress),
+    on_progress: &mut dyn FnMut(Progress),
 ) -> Result<(Tally, Report), LabError> {
     let mut lab = reopen()?;
     let mut warm = Warm::default();
@@ -79,7 +79,7 @@ pub fn run(
     let mut jobs = plan(&home, &lab.gpu.info, &mut lister, &mut warm, suite, options)?;
     let mut costs = Vec::new();
     if let Some(chart) = &suite.chart {
-        costs = cost::costs(&lab, &mut lister, &mut warm, (suite, chart), options, tell)?;
+        costs = cost::costs(&lab, &mut lister, &mut warm, (suite, chart), options, on_progress)?;
         let chosen = cost::chosen(suite, chart, &costs);
         jobs = plan(&home, &lab.gpu.info, &mut lister, &mut warm, &chosen, options)?;
     }
@@ -90,15 +90,15 @@ pub fn run(
     let mut runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), reference, pictures };
     let finished: Vec<Option<Record>> = jobs.iter().map(|j| folder.read(&j.id)).collect();
     let before = finished.iter().flatten().count();
-    tell(Progress::Begins { todo: jobs.len() - before, before });
+    on_progress(Progress::Begins { todo: jobs.len() - before, before });
     let mut results = Vec::new();
     let mut tally = Tally::default();
     for (job, kept) in jobs.iter().zip(finished) {
         let record = match kept {
             Some(record) => record,
             None => {
-                tell(Progress::Runs(job));
-                let result = runner.measure(&lab, &mut warm, job, tell);
+                on_progress(Progress::Runs(job));
+                let result = runner.measure(&lab, &mut warm, job, on_progress);
                 if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
                     warm.leave_device();
                     lab = reopen()?;
@@ -110,7 +110,7 @@ pub fn run(
                 };
                 let record = record_of(&lab, job, outcome);
                 folder.write(&record, picture.as_deref())?;
-                tell(Progress::Finished(&record));
+                on_progress(Progress::Finished(&record));
                 // As the next run will read it: numbers that JSON rounds in the last place are the same in all tables.
                 folder.read(&record.id).unwrap_or(record)
             }
@@ -159,7 +159,7 @@ fn record_of(lab: &Lab, job: &Job, outcome: Outcome) -> Record {
         case: job.case.name.clone(),
         variant: job.case.variant.clone(),
         about: job.case.about.clone(),
-        motion: job.case.motion.told(),
+        motion: job.case.motion.describe(),
         method: job.method.clone(),
         scene: job.scene.name.clone(),
         size: job.experiment.size.into(),
@@ -192,7 +192,7 @@ impl Runner {
         lab: &Lab,
         warm: &mut Warm,
         job: &Job,
-        tell: &mut dyn FnMut(Progress),
+        on_progress: &mut dyn FnMut(Progress),
     ) -> Result<(Measured, Option<Vec<u8>>), LabError> {
         let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
         let motion = &job.case.motion;
@@ -225,7 +225,7 @@ impl Runner {
             let truth = match (&before, self.reference) {
                 (_, false) => None,
                 (Some((_, Some(truth))), true) if !changed => Some(truth.clone()),
-                _ => Some(self.truths.get(lab, warm, job, &moment, &mut |now| tell(Progress::Gathers(now)))?),
+                _ => Some(self.truths.get(lab, warm, job, &moment, &mut |now| on_progress(Progress::Gathers(now)))?),
             };
             if let Some(truth) = &truth {
                 if frame > 0 && truth.samples != samples {
@@ -240,9 +240,9 @@ impl Runner {
             let earlier = before.as_ref().and_then(|b| b.1.as_ref());
             for (part, x) in session.parts()? {
                 let lost = x.rgb.iter().filter(|c| !c.iter().all(|v| v.is_finite())).count();
-                let told = format!("pixels of '{part}' are no number and left out of its scores");
-                if lost > 0 && !warnings.iter().any(|w| w.ends_with(&told)) {
-                    warnings.push(format!("frame {frame}, perhaps others too: {lost} {told}"));
+                let note = format!("pixels of '{part}' are no number and left out of its scores");
+                if lost > 0 && !warnings.iter().any(|w| w.ends_with(&note)) {
+                    warnings.push(format!("frame {frame}, perhaps others too: {lost} {note}"));
                 }
                 let known = known(&part, truth.as_deref(), earlier.map(|t| &**t), changed);
                 let own = series.entry(part.clone()).or_insert_with(|| PartSeries::new(&part));

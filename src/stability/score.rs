@@ -1,4 +1,4 @@
-//! The definitions, on pictures and sequences at hand; docs/stability.md tells them with their sources.
+//! The definitions, on pictures and sequences at hand; docs/stability.md explains them with their sources.
 
 use crate::metrics::colour::luminance;
 use crate::metrics::{Kind, Linear};

@@ -58,7 +58,7 @@ impl Truths {
         warm: &mut Warm,
         job: &Job,
         moment: &Moment,
-        tell: &mut dyn FnMut(Gathered),
+        on_progress: &mut dyn FnMut(Gathered),
     ) -> Result<Arc<Truth>, LabError> {
         let key = key(lab, warm, job, moment)?;
         if let Some(found) = self.found.get(&key) {
@@ -79,7 +79,7 @@ impl Truths {
         let goal = Goal::Samples(self.tracing.samples);
         let (reference, mut halves) =
             self.tracer.gather(lab, &experiment, &scene, self.tracing.bounces, goal, &mut |now| {
-                tell(now);
+                on_progress(now);
                 ControlFlow::Continue(())
             })?;
         let samples = reference.samples;

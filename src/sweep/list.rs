@@ -161,7 +161,7 @@ pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-/// The same mistake comes back with every combination: it is told once.
+/// The same mistake comes back with every combination: it is reported once.
 fn add_new(errors: &mut Vec<Diagnostic>, list: Vec<Diagnostic>) {
     for diagnostic in list {
         if !errors.contains(&diagnostic) {

@@ -31,7 +31,7 @@ impl<'s> References<'s> {
         lab: &Lab,
         warm: &mut Warm,
         point: &Listed,
-        tell: &mut dyn FnMut(Progress),
+        on_progress: &mut dyn FnMut(Progress),
     ) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
         let key = key(lab, warm, point)?;
         if let Some(found) = self.found.get(&key) {
@@ -45,7 +45,7 @@ impl<'s> References<'s> {
             let found = match self.samples {
                 Some(samples) => {
                     Some(gather(lab, &point.experiment, &point.scene, *bounces, Goal::Samples(samples), &mut |now| {
-                        tell(Progress::Gathers(now));
+                        on_progress(Progress::Gathers(now));
                         ControlFlow::Continue(())
                     })?)
                 }

@@ -38,7 +38,7 @@ pub struct Options {
     pub samples: Option<u64>,
 }
 
-/// What a sweep tells while it runs.
+/// Progress that a sweep reports while it runs.
 pub enum Progress<'a> {
     /// Points of this shard: to measure, and finished before.
     Begins {
@@ -76,7 +76,7 @@ pub fn run(
     open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
     sweep: &Sweep,
     options: &Options,
-    tell: &mut dyn FnMut(Progress),
+    on_progress: &mut dyn FnMut(Progress),
 ) -> Result<Tally, LabError> {
     let mut lab = reopen()?;
     let home = lab.home.clone();
@@ -84,7 +84,7 @@ pub fn run(
     let mut lister = Lister::new(&home, open_scene);
     let (points, equal) = list(&mut lister, &mut warm, sweep, options.frames)?;
     if equal > 0 {
-        tell(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
+        on_progress(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
     }
     let folder = Folder(options.folder.clone());
     folder.clean();
@@ -97,7 +97,7 @@ pub fn run(
     let mut elsewhere = 0;
     for point in mine {
         let record = folder.read(&point.id);
-        let known = references.get(&lab, &mut warm, point, tell)?;
+        let known = references.get(&lab, &mut warm, point, on_progress)?;
         let samples: BTreeMap<u32, u64> = known.iter().map(|(bounces, r)| (*bounces, r.samples)).collect();
         match record.as_ref().map(|r| (&r.outcome, &r.device)) {
             // A reference that has come or grown since makes other scores.
@@ -110,19 +110,19 @@ pub fn run(
         }
     }
     if elsewhere > 0 {
-        tell(Progress::Note(format!(
+        on_progress(Progress::Note(format!(
             "{elsewhere} points were measured on another device; name another folder with -o to measure them here"
         )));
     }
-    tell(Progress::Begins { todo: todo.len(), before: tally.done + tally.failed });
+    on_progress(Progress::Begins { todo: todo.len(), before: tally.done + tally.failed });
     for point in todo {
-        let known = references.get(&lab, &mut warm, point, tell)?;
+        let known = references.get(&lab, &mut warm, point, on_progress)?;
         let attempt =
             |lab: &Lab, warm: &mut Warm| measure(lab, warm, &point.experiment, &point.scene, options.frames, &known);
         let mut result = attempt(&lab, &mut warm);
         if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
             // Often the point before it is to blame; if it is this one, it fails again.
-            tell(Progress::Note(String::from("the device was lost; it is opened again")));
+            on_progress(Progress::Note(String::from("the device was lost; it is opened again")));
             warm.leave_device();
             lab = reopen()?;
             result = attempt(&lab, &mut warm);
@@ -141,7 +141,7 @@ pub fn run(
             Outcome::Done(_) => tally.done += 1,
             Outcome::Failed(_) => tally.failed += 1,
         }
-        tell(Progress::Finished(point, &record));
+        on_progress(Progress::Finished(point, &record));
     }
     let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
     write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;

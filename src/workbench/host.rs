@@ -1,4 +1,4 @@
-//! What a host (a window, a screenshot) asks: pixels to show, and what to tell scripts.
+//! What a host (a window, a screenshot) asks: pixels to show, and the events that scripts read.
 
 use super::{NewPixels, Workbench, events};
 use serde_json::json;
@@ -36,7 +36,7 @@ impl Workbench {
         self.pixels.clear();
     }
 
-    /// Tells where the widgets are, for scripts; `true` if there is more to tell.
+    /// Logs where the widgets are, for scripts; `true` if there is more to log.
     pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
         self.events.as_mut().is_some_and(|e| {
             e.place(self.view.place, scale);

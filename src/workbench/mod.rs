@@ -261,8 +261,8 @@ impl Workbench {
         }
     }
 
-    /// Tells the engine, if it does not know the desired state.
-    fn tell(&mut self) {
+    /// Sends the desired state to the engine, if it changed.
+    fn send_request(&mut self) {
         let mut desired = self.desired.clone();
         desired.number = self.sent.number;
         if differs(&desired, &self.sent) {
@@ -322,7 +322,7 @@ impl Workbench {
             self.comparison_of = None;
         }
         self.compare();
-        self.tell();
+        self.send_request();
         self.request_errors(ui);
     }
 

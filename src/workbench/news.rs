@@ -151,6 +151,6 @@ impl Workbench {
         let (low, high) = scene.bounds();
         self.diagonal = (high - low).length().max(1e-3);
         self.scene = Some(scene);
-        self.tell();
+        self.send_request();
     }
 }

@@ -21,7 +21,7 @@ impl Workbench {
         for path in &changed.experiments {
             self.experiment_changed(path);
         }
-        self.tell();
+        self.send_request();
     }
 
     /// The open experiment's file was edited: its values take the place of those here.
@@ -79,7 +79,7 @@ impl Workbench {
                 self.open_scene(&spec);
             }
         }
-        self.tell();
+        self.send_request();
     }
 
     /// The present experiment, as slot A shows it.

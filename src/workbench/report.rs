@@ -1,4 +1,4 @@
-//! What the engine tells the window.
+//! Messages from the engine to the window.
 
 use crate::graph::load::Graph;
 use crate::graph::param::Params;

@@ -31,7 +31,7 @@ pub struct Job {
 pub struct Gather {
     /// How far it is; nothing before the first samples.
     pub state: Option<Gathered>,
-    /// Whether it was told to stop.
+    /// Whether it was asked to stop.
     pub cancelled: bool,
     cancel: Arc<AtomicBool>,
     news: Receiver<News>,

@@ -20,10 +20,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Most dots whose places are told to scripts.
-const MAX_TOLD: usize = 2000;
+/// Most dots whose places are logged for scripts.
+const MAX_LOGGED: usize = 2000;
 /// Least time between two tellings.
-const TOLD_AGE: Duration = Duration::from_millis(100);
+const LOG_AGE: Duration = Duration::from_millis(100);
 
 /// State of this tab.
 #[derive(Default)]
@@ -37,9 +37,9 @@ pub struct Chart {
     chosen: Chosen,
     live: live::State,
     thumbnail: thumbnail::Thumbnail,
-    /// What scripts were told last.
-    told: Value,
-    told_at: Option<Instant>,
+    /// The dots as logged last.
+    logged: Value,
+    logged_at: Option<Instant>,
 }
 
 impl Workbench {
@@ -80,7 +80,7 @@ impl Workbench {
                 self.load_point(dot);
             }
         }
-        self.tell_dots(ui, &data, &drawn.places, &differences);
+        self.log_dots(ui, &data, &drawn.places, &differences);
     }
 
     fn folder_row(&mut self, ui: &mut Ui) {
@@ -179,29 +179,29 @@ impl Workbench {
         }
     }
 
-    /// Tells scripts where the dots are, in points.
-    fn tell_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[&str]) {
+    /// Logs where the dots are, in points, for scripts.
+    fn log_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[&str]) {
         if self.events.is_none() {
             return;
         }
         let chosen = &self.chart.chosen;
-        let dots = chosen.dots.iter().zip(places).zip(&chosen.on_front).take(MAX_TOLD).map(|((s, at), front)| {
+        let dots = chosen.dots.iter().zip(places).zip(&chosen.on_front).take(MAX_LOGGED).map(|((s, at), front)| {
             json!({ "id": data.dots[s.index].id, "at": [at.x.round(), at.y.round()], "ms": s.ms, "error": s.error,
                 "front": front })
         });
-        let told = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric, "differs": differences,
+        let logged = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric, "differs": differences,
             "dots": dots.collect::<Vec<_>>() });
-        if told == self.chart.told {
+        if logged == self.chart.logged {
             return;
         }
         // The dots move as long as the diamond does.
-        let age = self.chart.told_at.map_or(TOLD_AGE, |t| t.elapsed());
-        if age < TOLD_AGE {
-            ui.ctx().request_repaint_after(TOLD_AGE - age);
+        let age = self.chart.logged_at.map_or(LOG_AGE, |t| t.elapsed());
+        if age < LOG_AGE {
+            ui.ctx().request_repaint_after(LOG_AGE - age);
         } else {
-            self.chart.told_at = Some(Instant::now());
-            self.chart.told = told.clone();
-            self.event("dots", told);
+            self.chart.logged_at = Some(Instant::now());
+            self.chart.logged = logged.clone();
+            self.event("dots", logged);
         }
     }
 

@@ -111,7 +111,7 @@ impl Run<'_> {
                 let slot = &mut self.slots[number];
                 if let Some(mut old) = slot.session.take() {
                     let finished = old.finish()?;
-                    self.tell(number, finished);
+                    self.report_frames(number, finished);
                     session.succeed(&mut old)?;
                 }
                 let slot = &mut self.slots[number];

@@ -1,4 +1,4 @@
-//! Frames that are due, and what is told of them.
+//! Frames that are due, and the reports about them.
 
 use super::super::renderdoc;
 use super::super::report::{PictureReport, Report};
@@ -76,12 +76,12 @@ impl Run<'_> {
         if let Some(begun) = captured {
             self.out.send(Report::Trouble(renderdoc::end(begun)));
         }
-        self.tell(number, finished);
+        self.report_frames(number, finished);
         self.look(number)?;
         self.check(number)
     }
 
-    pub(super) fn tell(&mut self, number: usize, finished: Vec<FrameTimes>) {
+    pub(super) fn report_frames(&mut self, number: usize, finished: Vec<FrameTimes>) {
         let slot = &mut self.slots[number];
         for times in finished {
             let Some(submitted) = slot.submitted.pop_front() else { continue };

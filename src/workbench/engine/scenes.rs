@@ -38,7 +38,7 @@ impl Run<'_> {
                 }
                 ControlFlow::Continue(())
             });
-            // A load that was replaced by another has nobody to tell.
+            // A load that was replaced by another has nobody to report to.
             if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
                 let _ = loaded.send(scene.map(Arc::new));
             }
