@@ -196,7 +196,7 @@ impl Host {
             ..RawInput::default()
         };
         input.viewports.entry(input.viewport_id).or_default().native_pixels_per_point = Some(scale);
-        self.workbench.pump();
+        self.workbench.poll_events();
         let begun = Instant::now();
         let (workbench, textures) = (&mut self.workbench, &self.textures);
         let output = self.context.run_ui(input, |ui| workbench.ui(ui, textures));

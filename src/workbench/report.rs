@@ -69,7 +69,7 @@ pub struct PictureReport {
     pub cpu_ms: f64,
 }
 
-/// News from the engine.
+/// A message from the engine.
 pub enum Report {
     /// A device was opened.
     Device(DeviceReport),

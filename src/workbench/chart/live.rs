@@ -215,7 +215,7 @@ impl Workbench {
     }
 
     /// Takes in how far the gathering is.
-    pub(super) fn gather_news(&mut self) {
+    pub(super) fn poll_gather(&mut self) {
         let Some(result) = self.chart.live.gather.as_mut().and_then(Gather::take) else { return };
         let gather = self.chart.live.gather.take();
         self.chart.live.messages.extend(gather.into_iter().flat_map(|g| g.stop(Duration::from_secs(5))));

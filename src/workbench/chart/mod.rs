@@ -205,12 +205,12 @@ impl Workbench {
         }
     }
 
-    /// Takes in what threads of this tab have to say.
-    pub(super) fn chart_news(&mut self) {
+    /// Takes in the messages of the threads of this tab.
+    pub(super) fn poll_chart(&mut self) {
         if self.chart.folder.as_mut().is_some_and(Folder::take) {
             self.chart.chosen.forget();
         }
-        self.gather_news();
+        self.poll_gather();
     }
 
     /// Whether something is about to come.

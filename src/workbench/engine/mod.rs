@@ -46,7 +46,7 @@ pub enum Order {
 pub struct Engine {
     desired: Arc<Mutex<RenderRequest>>,
     orders: Sender<Order>,
-    /// News.
+    /// Messages from the engine.
     pub reports: Receiver<Report>,
     thread: Option<std::thread::JoinHandle<Vec<String>>>,
 }

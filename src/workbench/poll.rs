@@ -1,4 +1,4 @@
-//! What other threads have to say: the engine, the watch over files, what is worked out aside.
+//! Messages from other threads: the engine, the watch over files, comparisons, the inspector.
 
 use super::compare::MODES;
 use super::report::{PictureReport, Report};
@@ -12,8 +12,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 impl Workbench {
-    /// Takes in what other threads have to say. Returns how soon to ask again, if something is about to come.
-    pub fn pump(&mut self) -> Option<Duration> {
+    /// Takes in the messages of other threads. Returns how soon to poll again, if a message is about to come.
+    pub fn poll_events(&mut self) -> Option<Duration> {
         while let Ok(report) = self.engine.reports.try_recv() {
             self.report(report);
         }
@@ -32,7 +32,7 @@ impl Workbench {
             self.pixels.retain(|p| p.0 != INSPECTOR);
             self.pixels.push(pixels);
         }
-        self.chart_news();
+        self.poll_chart();
         match self.watch.take() {
             Ok(changed) => {
                 self.files_changed(&changed);
