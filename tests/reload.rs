@@ -78,7 +78,7 @@ impl Bench {
         let experiment = self.experiment(params);
         let loaded = self.lab.home.load(&experiment.graph).map_err(LabError::Input)?;
         let wanted = vec!["count".into(), "sized".into()];
-        self.lab.build(&experiment, &loaded, self.scene.clone(), wanted, old.map(Session::seed).as_ref())
+        self.lab.build(&experiment, &loaded, self.scene.clone(), wanted, old.map(Session::reusable_parts).as_ref())
     }
 
     fn reload(&self, params: &str, old: &mut Session) -> Session {
@@ -181,8 +181,8 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
     let loaded = bench.lab.home.load_for(&once, &bench.scene).unwrap();
     assert_eq!(loaded.warnings, []);
     let wanted = || vec!["count".into(), "sized".into()];
-    let build = |experiment: &Experiment, seed: Option<&Session>| {
-        bench.lab.build(experiment, &loaded, bench.scene.clone(), wanted(), seed.map(Session::seed).as_ref())
+    let build = |experiment: &Experiment, reuse: Option<&Session>| {
+        bench.lab.build(experiment, &loaded, bench.scene.clone(), wanted(), reuse.map(Session::reusable_parts).as_ref())
     };
     let mut session = build(&once, None).unwrap();
     frames(&mut session, 1);
@@ -224,9 +224,9 @@ fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
         let experiment = experiment("cornell", (64, 48), &[&small[..], step].concat());
         let loaded = lab.home.load(&experiment.graph).unwrap();
         let wanted = vec!["display".to_string()];
-        let seed = live.as_ref().map(Session::seed);
-        let mut next = lab.build(&experiment, &loaded, cornell.clone(), wanted.clone(), seed.as_ref()).unwrap();
-        drop(seed);
+        let reuse = live.as_ref().map(Session::reusable_parts);
+        let mut next = lab.build(&experiment, &loaded, cornell.clone(), wanted.clone(), reuse.as_ref()).unwrap();
+        drop(reuse);
         if let Some(old) = &mut live {
             next.succeed(old).unwrap();
         }

@@ -314,7 +314,8 @@ fn scrolling_sees_every_change() {
             if !kept.set_params(&lab, &params).unwrap() {
                 let loaded = lab.home.load_for(&wanted, &kept.scene).unwrap();
                 let names = ["voxelIndex", "voxelColor"].map(String::from).to_vec();
-                let mut next = lab.build(&wanted, &loaded, kept.scene.clone(), names, Some(&kept.seed())).unwrap();
+                let mut next =
+                    lab.build(&wanted, &loaded, kept.scene.clone(), names, Some(&kept.reusable_parts())).unwrap();
                 next.succeed(&mut kept).unwrap();
                 kept = next;
             }

@@ -12,7 +12,7 @@ pub use record::{RECORD_SCHEMA, Record, Recorded, check_record, record_file};
 pub use tables::{csv, text};
 
 use crate::graph::run::FrameTimes;
-use crate::lab::{Lab, LabError, Seed, Session};
+use crate::lab::{Lab, LabError, ReusableParts, Session};
 use crate::measure::{Frames, Timed, Warm, timed};
 use crate::stats::{self, DeviceStats, Spread, Stats, spread};
 use crate::sweep::Listed;
@@ -70,7 +70,7 @@ pub struct Times {
 /// What a configuration has gathered so far.
 #[derive(Default)]
 struct Gathered {
-    seed: Option<Seed>,
+    reuse: Option<ReusableParts>,
     /// Frames of every round.
     rounds: Vec<Vec<FrameTimes>>,
     /// Frames before those measured, in the round with the fewest.
@@ -94,13 +94,13 @@ pub fn bench(
 ) -> Result<Bench, LabError> {
     let mut all: Vec<Gathered> = points.iter().map(|_| Gathered::default()).collect();
     for round in 0..rounds {
-        let mut last: Option<Seed> = None;
+        let mut last: Option<ReusableParts> = None;
         for (point, gathered) in points.iter().zip(&mut all) {
             let failed_before = matches!(gathered.result, Some(Err(_)));
             if !failed_before {
                 let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
-                let seed = gathered.seed.as_ref().or(last.as_ref());
-                match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], seed) {
+                let reuse = gathered.reuse.as_ref().or(last.as_ref());
+                match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], reuse) {
                     Ok(Timed { mut session, times, warmup }) => {
                         gathered.warmup = gathered.warmup.map_or(Some(warmup), |least| Some(least.min(warmup)));
                         gathered.rounds.push(times);
@@ -113,8 +113,8 @@ pub fn bench(
                             gathered.result = Some(Ok(times_of(&session, stats, &all, &gathered.rounds)));
                         }
                         // The next configuration's first turn starts from this one's pipelines and scene.
-                        last = (round == 0).then(|| session.lend());
-                        gathered.seed = Some(session.lend());
+                        last = (round == 0).then(|| session.share());
+                        gathered.reuse = Some(session.share());
                     }
                     Err(error) => gathered.result = Some(Err(error.to_string())),
                 }

@@ -3,7 +3,7 @@
 use super::search::Trial;
 use super::{Axis, at};
 use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError, Loaded, Seed};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts};
 use crate::measure::{Frames, Timed, timed};
 use crate::metrics::{Compared, Kind, Linear, relmse};
 use crate::reference::Reference;
@@ -78,7 +78,7 @@ pub struct Evaluator<'a> {
     subject: &'a Subject<'a>,
     texture: String,
     truth: &'a Linear,
-    seed: Option<Seed>,
+    reuse: Option<ReusableParts>,
     /// Why the last setting could not be run.
     pub refused: Option<String>,
 }
@@ -93,7 +93,7 @@ impl<'a> Evaluator<'a> {
         let texture = parts.iter().find(|p| p.0 == subject.part).map(|p| p.1.clone());
         match (texture, subject.reference.parts.get(subject.part)) {
             (Some(texture), Some(truth)) => {
-                Ok(Evaluator { subject, texture, truth: &truth.mean, seed: None, refused: None })
+                Ok(Evaluator { subject, texture, truth: &truth.mean, reuse: None, refused: None })
             }
             _ => {
                 let all: Vec<&str> = parts.iter().map(|p| p.0.as_str()).collect();
@@ -123,18 +123,18 @@ impl<'a> Evaluator<'a> {
         let s = self.subject;
         // The linear picture is made for the display anyway; other parts cost time to write, and get frames of their own.
         let together = s.loaded.graph.hdr.as_ref() == Some(&self.texture);
-        let beside = if together { std::slice::from_ref(&self.texture) } else { &[] };
+        let extra = if together { std::slice::from_ref(&self.texture) } else { &[] };
         let Timed { mut session, times, .. } =
-            timed(s.lab, s.loaded, experiment, &s.scene, s.frames, beside, self.seed.as_ref())?;
+            timed(s.lab, s.loaded, experiment, &s.scene, s.frames, extra, self.reuse.as_ref())?;
         let ms = spread(times.iter().map(|t| t.gpu_ms).collect()).median;
         if let Some(message) = session.failed_checks()?.into_iter().next() {
             self.refused = Some(message);
             return Ok(None);
         }
-        self.seed = Some(session.lend());
+        self.reuse = Some(session.share());
         if !together {
-            let seed = self.seed.as_ref();
-            session = s.lab.build(experiment, s.loaded, s.scene.clone(), vec![self.texture.clone()], seed)?;
+            let reuse = self.reuse.as_ref();
+            session = s.lab.build(experiment, s.loaded, s.scene.clone(), vec![self.texture.clone()], reuse)?;
             for _ in 0..s.frames.warmup + s.frames.count {
                 session.frame(0.0)?;
             }

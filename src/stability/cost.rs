@@ -8,7 +8,7 @@ use super::file::{Method, Suite};
 use super::plan::{Job, Options, plan};
 use super::record::{json, lasting};
 use super::run::{Progress, cell_of, median, place};
-use crate::lab::{Lab, LabError, Seed};
+use crate::lab::{Lab, LabError, ReusableParts};
 use crate::measure::{Warm, WarmUp};
 use crate::oracle;
 use crate::sweep::Lister;
@@ -149,10 +149,10 @@ pub(super) fn costs(
     if todo.is_empty() {
         return Ok(costs);
     }
-    let mut lent = HashMap::new();
+    let mut shared = HashMap::new();
     let todo = between(&todo, &mut |job| {
         on_progress(Progress::Times { method: &job.method, done: 0, of: ROUNDS * todo.len() });
-        Ok((time(lab, warm, job, &mut lent), time(lab, warm, first, &mut lent)?.0))
+        Ok((time(lab, warm, job, &mut shared), time(lab, warm, first, &mut shared)?.0))
     })?;
     let steps = ROUNDS * todo.len();
     for round in 0..ROUNDS {
@@ -162,14 +162,14 @@ pub(super) fn costs(
         for (i, (cost, candidate, job)) in todo.iter().enumerate() {
             if before != Some(*cost) {
                 before = Some(*cost);
-                first_cost = time(lab, warm, first, &mut lent)?;
+                first_cost = time(lab, warm, first, &mut shared)?;
             }
             let candidate = &mut costs[*cost].candidates[*candidate];
             if candidate.failed.is_some() {
                 continue;
             }
             on_progress(Progress::Times { method: &job.method, done: round * todo.len() + i, of: steps });
-            let cost = if job.work == first.work { Ok(first_cost) } else { time(lab, warm, job, &mut lent) };
+            let cost = if job.work == first.work { Ok(first_cost) } else { time(lab, warm, job, &mut shared) };
             match cost {
                 Ok((ms, bytes)) => {
                     candidate.ms.push(ms);
@@ -249,13 +249,13 @@ pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite 
 }
 
 /// Times a job. Every session is a new one: memory holds one at a time.
-fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>) -> Timed {
+fn time(lab: &Lab, warm: &mut Warm, job: &Job, shared: &mut HashMap<String, ReusableParts>) -> Timed {
     let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
     let mut wanted: Vec<String> = loaded.graph.output.iter().chain(&loaded.graph.hdr).take(1).cloned().collect();
     if job.case.motion.in_voxels() {
         wanted.extend(oracle::wanted(&loaded.graph)?);
     }
-    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, lent.get(&job.method))?;
+    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, shared.get(&job.method))?;
     let cell = cell_of(&mut session, job)?;
     let mut lights = job.scene.lights.clone();
     // Sessions are built between the frames of one and the next: a GPU that waits for them falls to a low clock.
@@ -271,6 +271,6 @@ fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>)
     let frames = times.split_off(times.len().saturating_sub(FRAMES as usize));
     let sums = frames.iter().map(|t| t.passes.iter().map(|p| p.1).sum()).collect();
     let bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
-    lent.insert(job.method.clone(), session.lend());
+    shared.insert(job.method.clone(), session.share());
     Ok((median(sums), bytes))
 }

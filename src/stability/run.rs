@@ -11,7 +11,7 @@ use super::series::{Known, PartSeries};
 use super::truth::{Tracing, Truth, Truths};
 use super::{chart, cost, page, table};
 use crate::graph::param::Value;
-use crate::lab::{Lab, LabError, Seed, Session, parts_of};
+use crate::lab::{Lab, LabError, ReusableParts, Session, parts_of};
 use crate::measure::Warm;
 use crate::metrics::Linear;
 use crate::oracle::{self, Surfaces};
@@ -87,7 +87,7 @@ pub fn run(
     let samples = options.samples.unwrap_or(suite.samples);
     let tracing = Tracing { samples, bounces: suite.bounces, seed: suite.seed };
     let (reference, pictures) = (options.reference, suite.pictures.clone());
-    let mut runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), reference, pictures };
+    let mut runner = Runner { truths: Truths::new(tracing), shared: HashMap::new(), reference, pictures };
     let finished: Vec<Option<Record>> = jobs.iter().map(|j| folder.read(&j.id)).collect();
     let before = finished.iter().flatten().count();
     on_progress(Progress::Begins { todo: jobs.len() - before, before });
@@ -102,7 +102,7 @@ pub fn run(
                 if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
                     warm.leave_device();
                     lab = reopen()?;
-                    runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), ..runner };
+                    runner = Runner { truths: Truths::new(tracing), shared: HashMap::new(), ..runner };
                 }
                 let (outcome, picture) = match result {
                     Ok((measured, picture)) => (Outcome::Done(Box::new(measured)), picture),
@@ -173,7 +173,7 @@ fn record_of(lab: &Lab, job: &Job, outcome: Outcome) -> Record {
 /// What one method in a case leaves to the next: references, and each method's pipelines.
 struct Runner {
     truths: Truths,
-    lent: HashMap<String, Seed>,
+    shared: HashMap<String, ReusableParts>,
     reference: bool,
     /// The part whose worst frames are kept.
     pictures: String,
@@ -200,8 +200,8 @@ impl Runner {
         if job.case.voxels && loaded.graph.voxels.is_some() || motion.in_voxels() {
             wanted.extend(oracle::wanted(&loaded.graph)?);
         }
-        let seed = self.lent.get(&job.method);
-        let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, seed)?;
+        let reuse = self.shared.get(&job.method);
+        let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, reuse)?;
         let cell = cell_of(&mut session, job)?;
         let (mut times, mut warnings) = (Vec::new(), Vec::new());
         let mut series: BTreeMap<String, PartSeries> = BTreeMap::new();
@@ -259,7 +259,7 @@ impl Runner {
         let times: Vec<f64> = times.iter().skip(job.case.warmup).map(|t| t.gpu_ms).collect();
         let last = before.map_or(job.start.time, |b| b.0.time);
         let voxels = voxels(&mut session, job, last, &mut warnings)?;
-        self.lent.insert(job.method.clone(), session.lend());
+        self.shared.insert(job.method.clone(), session.share());
         let (event, switched) = (motion.event(), matches!(motion, Motion::Switch { .. }));
         let memory_bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
         let parts = series.into_iter().map(|(name, s)| (name, s.finish(event, switched))).collect();

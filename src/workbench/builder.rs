@@ -1,7 +1,7 @@
 //! Builds sessions aside, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits for it.
 
 use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError, Loaded, Seed, Session};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::scene::Scene;
 use crossbeam_channel::{Receiver, Sender};
 use std::sync::Arc;
@@ -35,7 +35,7 @@ pub struct Job {
     /// The scene.
     pub scene: Arc<Scene>,
     /// Parts of the session in use.
-    pub seed: Option<Seed>,
+    pub reuse: Option<ReusableParts>,
     /// The graph, if its files did not change since it was loaded.
     pub loaded: Option<Loaded>,
     /// Whether this is only the preview.
@@ -85,7 +85,7 @@ fn build(job: Job) -> Result<(Box<Session>, Loaded), LabError> {
     let has = |name: &String| graph.textures.iter().any(|t| t.0 == *name) || graph.buffers.iter().any(|b| b.0 == *name);
     let mut wanted = vec![output.clone()];
     wanted.extend(job.key.wanted.iter().filter(|n| has(n)).cloned());
-    let mut session = job.lab.build(&job.experiment, &loaded, job.scene, wanted, job.seed.as_ref())?;
+    let mut session = job.lab.build(&job.experiment, &loaded, job.scene, wanted, job.reuse.as_ref())?;
     session.show(&output);
     Ok((Box::new(session), loaded))
 }

@@ -4,7 +4,7 @@
 use super::report::Report;
 use crate::capture::scene_hash;
 use crate::experiment::{Experiment, placed_text};
-use crate::lab::{Lab, LabError, Loaded, Seed, Session, camera_of, params_of};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of, params_of};
 use crate::metrics::{Compared, Kind, Linear, relmse};
 use crate::reference::{GRAPH, Reference, find};
 use crate::report::error_of;
@@ -41,8 +41,8 @@ pub struct ErrorRequest {
     pub lab: Lab,
     /// The graph.
     pub loaded: Loaded,
-    /// What the session that is shown lends.
-    pub seed: Seed,
+    /// Parts of the session that is shown.
+    pub reuse: ReusableParts,
     /// Everything that decides the picture.
     pub experiment: Experiment,
     /// The scene with its own light.
@@ -190,11 +190,11 @@ impl Cache {
 
 /// A part of the picture's light, from a fresh start.
 fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
-    let ErrorRequest { lab, loaded, seed, experiment, scene, lights, frames, .. } = request;
+    let ErrorRequest { lab, loaded, reuse, experiment, scene, lights, frames, .. } = request;
     let missing = || LabError::Request(format!("the graph '{}' does not make the part '{part}'", loaded.graph.name));
     let named = crate::lab::parts_of(&loaded.graph).into_iter().find(|p| p.0 == part);
     let (_, texture) = named.ok_or_else(missing)?;
-    let mut session: Session = lab.build(&experiment, &loaded, scene, vec![texture], Some(&seed))?;
+    let mut session: Session = lab.build(&experiment, &loaded, scene, vec![texture], Some(&reuse))?;
     if let Some((lights, sky)) = lights
         && !session.set_lights(&lights, sky)
     {

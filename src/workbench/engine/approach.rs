@@ -78,8 +78,8 @@ impl Run<'_> {
             }
         }
         // B starts with what it can share with A, and the other way round.
-        let beside = self.slots[1 - number].session.as_ref().filter(|_| self.slots[number].session.is_none());
-        let lent = beside.map(|s| s.lend());
+        let other = self.slots[1 - number].session.as_ref().filter(|_| self.slots[number].session.is_none());
+        let shared = other.map(|s| s.share());
         let preview_exists = self.lab.home.folders().passes.join("preview.ron").is_file();
         let slot = &mut self.slots[number];
         if slot.building.is_some() {
@@ -93,10 +93,10 @@ impl Run<'_> {
             experiment.params.clear();
         }
         let loaded = slot.loaded.clone().filter(|_| !slot.preview && slot.key.as_ref().is_some_and(same_files));
-        let seed = slot.session.as_ref().map(|s| s.seed()).or(lent);
+        let reuse = slot.session.as_ref().map(|s| s.reusable_parts()).or(shared);
         slot.building = Some(Instant::now());
         let lab = self.lab.clone();
-        let _ = self.jobs.send(Job { slot: number, key, experiment, scene, seed, loaded, preview, lab });
+        let _ = self.jobs.send(Job { slot: number, key, experiment, scene, reuse, loaded, preview, lab });
         Ok(())
     }
 
@@ -144,8 +144,8 @@ impl Run<'_> {
                 {
                     let experiment = self.desired.experiment(desired);
                     self.slots[number].building = Some(Instant::now());
-                    let (seed, loaded, lab) = (None, None, self.lab.clone());
-                    let job = Job { slot: number, key, experiment, scene, seed, loaded, preview: false, lab };
+                    let (reuse, loaded, lab) = (None, None, self.lab.clone());
+                    let job = Job { slot: number, key, experiment, scene, reuse, loaded, preview: false, lab };
                     let _ = self.jobs.send(job);
                 }
                 return Ok(());

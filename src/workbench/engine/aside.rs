@@ -23,7 +23,7 @@ impl Run<'_> {
             query,
             lab: self.lab.clone(),
             loaded: loaded.clone(),
-            seed: session.lend(),
+            reuse: session.share(),
             experiment: keep::still(&self.desired, desired, "error", self.clock.now, scene),
             scene: scene.clone(),
             lights: self.desired.lights.clone(),
