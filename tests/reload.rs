@@ -83,7 +83,7 @@ impl Bench {
 
     fn reload(&self, params: &str, old: &mut Session) -> Session {
         let mut new = self.session(params, Some(old)).unwrap();
-        new.succeed(old).unwrap();
+        new.swap_in(old).unwrap();
         new
     }
 }
@@ -197,7 +197,7 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
     assert!(found[0].place.file.ends_with("again.comp"), "{found:?}");
     bench.write("shaders/again.comp", AGAIN);
     let mut next = build(&twice, Some(&session)).unwrap();
-    next.succeed(&mut session).unwrap();
+    next.swap_in(&mut session).unwrap();
     assert_eq!(next.program.change, Change { kept: 2, built: 1, resized: 0 });
     frames(&mut next, 1);
     assert_eq!(floats(&mut next, "sized", 0)[0][0], 2.0);
@@ -228,7 +228,7 @@ fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
         let mut next = lab.build(&experiment, &loaded, cornell.clone(), wanted.clone(), reuse.as_ref()).unwrap();
         drop(reuse);
         if let Some(old) = &mut live {
-            next.succeed(old).unwrap();
+            next.swap_in(old).unwrap();
         }
         frames(&mut next, 1);
         if !step.contains(&("temporal", "true")) {

@@ -316,7 +316,7 @@ fn scrolling_sees_every_change() {
                 let names = ["voxelIndex", "voxelColor"].map(String::from).to_vec();
                 let mut next =
                     lab.build(&wanted, &loaded, kept.scene.clone(), names, Some(&kept.reusable_parts())).unwrap();
-                next.succeed(&mut kept).unwrap();
+                next.swap_in(&mut kept).unwrap();
                 kept = next;
             }
             run(&mut kept, 1);

@@ -130,7 +130,7 @@ impl Lab {
         Ok((self.build(experiment, &loaded, scene, wanted, None)?, warnings))
     }
 
-    /// Makes a session, from parts of one in use where they fit; see [`Session::succeed`]. Shaders that `loaded` lacks
+    /// Makes a session, from parts of one in use where they fit; see [`Session::swap_in`]. Shaders that `loaded` lacks
     /// and the experiment runs are compiled.
     ///
     /// # Errors
@@ -275,7 +275,7 @@ impl Session {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn succeed(&mut self, old: &mut Session) -> Result<(), LabError> {
+    pub fn swap_in(&mut self, old: &mut Session) -> Result<(), LabError> {
         self.program.succeed(&mut old.program)?;
         self.viewpoint = old.viewpoint.clone();
         self.time = old.time;

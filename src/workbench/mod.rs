@@ -1,4 +1,4 @@
-//! The workbench: an engine that renders aside, and the interface that says what it shall render.
+//! The workbench: an engine that renders in the background, and the interface that says what it renders.
 //!
 //! Nothing here knows a window system: [`crate::window`] and offscreen screenshots are two hosts of the same interface.
 

@@ -140,7 +140,7 @@ impl Workbench {
     }
 
     /// Whether a slot shows something whose error was not asked for.
-    fn is_due(&self, slot: usize, query: &ErrorQuery) -> bool {
+    fn needs_error(&self, slot: usize, query: &ErrorQuery) -> bool {
         let shows = self.slots[slot].picture.as_ref().is_some_and(|p| !p.preview && p.request >= self.sent.number);
         let asked = self.chart.live.slots[slot].asked.as_ref();
         let known = asked.is_some_and(|a| a.0 >= self.sent.number && a.1 == *query);
@@ -148,9 +148,9 @@ impl Workbench {
     }
 
     /// Whether an error is about to be asked for.
-    pub(super) fn error_is_due(&self) -> bool {
+    pub(super) fn error_pending(&self) -> bool {
         let query = self.query();
-        !self.desired.clock.playing && (0..2).any(|slot| self.is_due(slot, &query))
+        !self.desired.clock.playing && (0..2).any(|slot| self.needs_error(slot, &query))
     }
 
     /// Asks for the errors of pictures that have come to rest.
@@ -158,7 +158,7 @@ impl Workbench {
         if self.chart.live.since.0 != self.sent.number {
             self.chart.live.since = (self.sent.number, Instant::now());
         }
-        if self.tab != Tab::Chart || !self.error_is_due() {
+        if self.tab != Tab::Chart || !self.error_pending() {
             return;
         }
         let stood = self.chart.live.since.1.elapsed();
@@ -168,7 +168,7 @@ impl Workbench {
         }
         let query = self.query();
         for slot in 0..2 {
-            if self.is_due(slot, &query) {
+            if self.needs_error(slot, &query) {
                 self.chart.live.slots[slot].asked = Some((self.sent.number, query.clone()));
                 self.engine.order(Order::MeasureError(slot, query.clone()));
             }

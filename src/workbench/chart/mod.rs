@@ -216,7 +216,7 @@ impl Workbench {
     /// Whether something is about to come.
     pub(super) fn chart_awaits(&self) -> bool {
         let reading = self.chart.folder.as_ref().is_some_and(|f| f.data.is_none());
-        self.tab == super::Tab::Chart && (reading || self.chart.live.awaits() || self.error_is_due())
+        self.tab == super::Tab::Chart && (reading || self.chart.live.awaits() || self.error_pending())
     }
 }
 

@@ -1,4 +1,4 @@
-//! Frames that are due, and the reports about them.
+//! Frames that are left to render, and the reports about them.
 
 use super::super::renderdoc;
 use super::super::report::{PictureReport, Report};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 impl Run<'_> {
-    /// Renders what is due, A and B in turns, so that neither always finds the clocks raised by the other.
+    /// Renders the frames that are left, A and B in turns, so that neither always finds the clocks raised by the other.
     pub(super) fn render(&mut self) -> Result<(), LabError> {
         if self.awaits_build() {
             return Ok(());
@@ -19,7 +19,7 @@ impl Run<'_> {
         self.turn += 1;
         for i in 0..2 {
             let number = (i + self.turn) % 2;
-            if self.slots[number].session.is_some() && self.slots[number].due > 0 {
+            if self.slots[number].session.is_some() && self.slots[number].frames_left > 0 {
                 self.frame(number, rest)?;
             }
         }
@@ -39,7 +39,7 @@ impl Run<'_> {
         if clock.steps != self.clock.steps {
             self.clock.now += clock.step.unwrap_or(1.0 / 60.0) * clock.steps.saturating_sub(self.clock.steps) as f64;
             self.clock.steps = clock.steps;
-            self.disturb(1);
+            self.request_frames(1);
         }
         goes
     }
@@ -65,13 +65,13 @@ impl Run<'_> {
         let captured = std::mem::take(&mut self.renderdoc).then(renderdoc::begin);
         let delta = if self.desired.clock.playing { self.desired.clock.step.unwrap_or(0.0) } else { 0.0 };
         let mut finished: Vec<FrameTimes> = session.frame(delta)?.into_iter().collect();
-        slot.due -= 1;
+        slot.frames_left -= 1;
         if !rest {
-            slot.due = slot.due.max(1);
+            slot.frames_left = slot.frames_left.max(1);
         }
         // Long frames gain nothing from another one ahead, and an edit would wait for it; a still picture must not wait
         // for the next change.
-        let ahead = u64::from(!(software || slot.last_ms > LONG || slot.due == 0 || captured.is_some()));
+        let ahead = u64::from(!(software || slot.last_ms > LONG || slot.frames_left == 0 || captured.is_some()));
         finished.extend(session.program.finish_to(ahead)?);
         if let Some(begun) = captured {
             self.out.send(Report::Trouble(renderdoc::end(begun)));
@@ -108,7 +108,7 @@ impl Run<'_> {
     fn look(&mut self, number: usize) -> Result<(), LabError> {
         let slot = &mut self.slots[number];
         let Some(session) = slot.session.as_mut().filter(|_| !slot.preview) else { return Ok(()) };
-        let now = slot.due == 0 || self.last_look.elapsed() > Duration::from_millis(150);
+        let now = slot.frames_left == 0 || self.last_look.elapsed() > Duration::from_millis(150);
         let look = self.desired.look.as_ref().filter(|l| l.slot == number);
         if !now || (look.is_none() && self.desired.table.is_none()) {
             return Ok(());
@@ -138,7 +138,7 @@ impl Run<'_> {
     /// Asks the graph's checks once for each build.
     fn check(&mut self, number: usize) -> Result<(), LabError> {
         let slot = &mut self.slots[number];
-        if slot.due > 0 || slot.preview || slot.checked == slot.key {
+        if slot.frames_left > 0 || slot.preview || slot.checked == slot.key {
             return Ok(());
         }
         slot.checked.clone_from(&slot.key);

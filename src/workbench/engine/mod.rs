@@ -4,9 +4,9 @@
 //! millisecond each way) and buys that the window answers while a frame takes seconds, and that a shader which hangs
 //! or kills its device takes nothing else with it.
 
-mod approach;
-mod aside;
+mod background;
 mod frames;
+mod reconcile;
 mod scenes;
 
 use super::builder::{self, Done, Job, Key};
@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 /// What the window asks of the engine, besides the desired state.
 pub enum Order {
     /// The desired state changed.
-    Look,
+    Reconcile,
     /// Save what slot A or B shows, under a name; with these resources.
     Capture(usize, String, Vec<String>),
     /// Measure the error of what slot A or B shows against its reference.
@@ -66,7 +66,7 @@ impl Engine {
     /// Works towards this from now on.
     pub fn request(&self, request: RenderRequest) {
         *self.desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = request;
-        self.order(Order::Look);
+        self.order(Order::Reconcile);
     }
 
     /// Gives an order.
@@ -127,7 +127,7 @@ struct Slot {
     /// The last request that the session, or the failure to build one, answers.
     answered: u64,
     /// Frames still to render before the slot rests.
-    due: u32,
+    frames_left: u32,
     lights: bool,
     checked: Option<Key>,
     looked: Option<Look>,
@@ -178,7 +178,7 @@ fn run(
                 for order in inbox {
                     match order {
                         Order::Quit => return messages,
-                        Order::Restart | Order::Look => break,
+                        Order::Restart | Order::Reconcile => break,
                         _ => {}
                     }
                 }
@@ -276,7 +276,7 @@ fn session(
 
 impl Run<'_> {
     fn busy(&self) -> bool {
-        self.slots.iter().any(|s| s.session.is_some() && s.due > 0)
+        self.slots.iter().any(|s| s.session.is_some() && s.frames_left > 0)
     }
 
     /// Whether a build is about to be done, so that beginning a long frame of what it replaces would only delay it.
@@ -307,12 +307,12 @@ impl Run<'_> {
                 }
                 Order::Capture(slot, name, resources) => self.capture(slot, name, resources),
                 Order::MeasureError(slot, query) => self.measure_error(slot, query),
-                Order::Frames(count) => self.disturb(count),
+                Order::Frames(count) => self.request_frames(count),
                 Order::RenderDoc => {
                     self.renderdoc = true;
-                    self.disturb(1);
+                    self.request_frames(1);
                 }
-                Order::Look | Order::Quit | Order::Restart => {}
+                Order::Reconcile | Order::Quit | Order::Restart => {}
             }
         }
         let latest = desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
@@ -337,10 +337,10 @@ impl Run<'_> {
                 slot.lights = true;
             }
         }
-        // Files, parameters and sizes disturb a slot when what they lead to has been built.
-        let seen = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.look.clone(), w.table);
-        if seen(&self.desired) != seen(&old) || self.desired.lights != old.lights || self.desired.path != old.path {
-            self.disturb(1);
+        // Files, parameters and sizes ask for frames when what they lead to has been built.
+        let view = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.look.clone(), w.table);
+        if view(&self.desired) != view(&old) || self.desired.lights != old.lights || self.desired.path != old.path {
+            self.request_frames(1);
         }
         for i in 0..2 {
             if self.desired.slots[i].is_none() {
@@ -349,16 +349,16 @@ impl Run<'_> {
         }
         self.load_scene();
         for i in 0..2 {
-            self.approach(i)?;
+            self.reconcile(i)?;
         }
         Ok(())
     }
 
-    /// Frames are due: as many as it takes until those with a memory have settled.
-    fn disturb(&mut self, least: u32) {
+    /// Asks for frames: as many as it takes until graphs with history have settled.
+    fn request_frames(&mut self, least: u32) {
         for slot in &mut self.slots {
-            let settle = if slot.session.as_ref().is_some_and(|s| remembers(s)) { SETTLE } else { 1 };
-            slot.due = slot.due.max(least.max(settle));
+            let settle = if slot.session.as_ref().is_some_and(|s| has_history(s)) { SETTLE } else { 1 };
+            slot.frames_left = slot.frames_left.max(least.max(settle));
         }
     }
 }
@@ -373,6 +373,6 @@ const PATIENCE: Duration = Duration::from_millis(300);
 const SETTLE: u32 = 16;
 
 /// Whether a frame uses what the frame before left.
-fn remembers(session: &Session) -> bool {
+fn has_history(session: &Session) -> bool {
     session.program.plan.textures.iter().any(|t| t.history && !t.usage.is_empty())
 }

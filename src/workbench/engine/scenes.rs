@@ -53,7 +53,7 @@ impl Run<'_> {
                 self.scene_number += 1;
                 self.out.send(Report::Loaded(scene));
                 for i in 0..2 {
-                    self.approach(i)?;
+                    self.reconcile(i)?;
                 }
             }
             Err(SceneError::Cancelled) => {

@@ -1,9 +1,9 @@
-//! What is made of a picture aside, while frames go on: its error, a capture.
+//! Work on the shown picture in the background, while frames go on: its error, a capture.
 
 use super::super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
 use super::super::keep;
 use super::super::report::Report;
-use super::{Run, SETTLE, remembers};
+use super::{Run, SETTLE, has_history};
 
 impl Run<'_> {
     /// Sends what a slot shows to the error worker. A picture that is not there yet is asked for again.
@@ -27,7 +27,7 @@ impl Run<'_> {
             experiment: keep::still(&self.desired, desired, "error", self.clock.now, scene),
             scene: scene.clone(),
             lights: self.desired.lights.clone(),
-            frames: if remembers(session) { SETTLE } else { 1 },
+            frames: if has_history(session) { SETTLE } else { 1 },
         };
         let _ = self.error_requests.send(request);
     }
@@ -36,7 +36,7 @@ impl Run<'_> {
     pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
         let (Some(desired), Some(scene)) = (self.desired.slots[number].clone(), self.scene.clone()) else { return };
         let experiment = keep::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
-        let settle = self.slots[number].session.as_ref().is_some_and(|s| remembers(s));
+        let settle = self.slots[number].session.as_ref().is_some_and(|s| has_history(s));
         let frames = if settle { SETTLE as usize } else { 1 };
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");

@@ -1,4 +1,4 @@
-//! From what a slot shows to what is desired: values set, or a build that takes its place.
+//! Reconciling what a slot shows with the desired state: values are set, or a build is swapped in.
 
 use super::super::builder::{Done, Job, Key};
 use super::super::report::{Outline, Report};
@@ -33,8 +33,8 @@ impl Run<'_> {
         }
     }
 
-    /// Brings a slot nearer to what is desired: sets values, or starts a build.
-    pub(super) fn approach(&mut self, number: usize) -> Result<(), LabError> {
+    /// Reconciles a slot with the desired state: sets values, or starts a build.
+    pub(super) fn reconcile(&mut self, number: usize) -> Result<(), LabError> {
         let Some(desired) = self.desired.slots[number].clone() else { return Ok(()) };
         let Some(scene) = self.scene.clone() else { return Ok(()) };
         if self.desired.size.0 == 0 || self.desired.size.1 == 0 {
@@ -67,7 +67,7 @@ impl Run<'_> {
                     slot.failed = None;
                     slot.answered = self.desired.number;
                     self.out.send(Report::Set { slot: number, params });
-                    self.disturb(1);
+                    self.request_frames(1);
                     return Ok(());
                 }
                 Ok(None) => {}
@@ -112,7 +112,7 @@ impl Run<'_> {
                 if let Some(mut old) = slot.session.take() {
                     let finished = old.finish()?;
                     self.report_frames(number, finished);
-                    session.succeed(&mut old)?;
+                    session.swap_in(&mut old)?;
                 }
                 let slot = &mut self.slots[number];
                 slot.preview = done.preview;
@@ -133,7 +133,7 @@ impl Run<'_> {
                     let outline = Arc::new(outline);
                     self.out.send(Report::Built { slot: number, outline, change, ms, revision, objects });
                 }
-                self.disturb(1);
+                self.request_frames(1);
             }
             Err(error) if done.preview => {
                 // Whatever is wrong will be said by the graph itself; here is none to fall back to.
@@ -152,7 +152,7 @@ impl Run<'_> {
             }
             Err(error) => self.fail(number, done.key, error)?,
         }
-        self.approach(number)
+        self.reconcile(number)
     }
 
     /// Says what is wrong; what ran runs on. Only a lost device is an error of the engine.
