@@ -47,15 +47,15 @@ impl Workbench {
 
     /// Comparisons that the graph offers: each is one click.
     fn comparisons(&mut self, ui: &mut Ui) {
-        let Some(outline) = self.slots[0].outline.clone() else { return };
-        for compare in &outline.graph.compare {
+        let Some(info) = self.slots[0].info.clone() else { return };
+        for compare in &info.graph.compare {
             let button = ui.button(&compare.value.title).on_hover_text(&compare.value.help);
             if button.clicked() {
                 let base = self.desired.slots[0].clone().unwrap_or_default();
                 let make = |values: &Entries<RawText>| {
                     let mut slot = base.clone();
                     for (name, text) in &values.0 {
-                        if let Some(param) = outline.graph.params.list.iter().find(|p| p.name == name.value)
+                        if let Some(param) = info.graph.params.list.iter().find(|p| p.name == name.value)
                             && let Ok(value) = param.parse(&text.value.0)
                         {
                             edit::set(&mut slot, param, &value);

@@ -116,14 +116,14 @@ impl Workbench {
     fn save_as(&self, name: &str, replace: bool) -> Result<PathBuf, LabError> {
         let name = checked_name(name)?;
         let slot = self.desired.slots[self.panel_slot].as_ref().or(self.desired.slots[0].as_ref());
-        let outline = self.slots[self.panel_slot].outline.as_ref().or(self.slots[0].outline.as_ref());
-        let (Some(slot), Some(outline)) = (slot, outline) else {
+        let info = self.slots[self.panel_slot].info.as_ref().or(self.slots[0].info.as_ref());
+        let (Some(slot), Some(info)) = (slot, info) else {
             return Err(LabError::Request("there is nothing to save yet: no graph has been built".into()));
         };
         let time = self.slots[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
         let experiment = keep::experiment(&self.desired, slot, &name, time, self.scene.as_deref());
         let path = self.experiment_path(&name);
-        crate::experiment::write(&experiment, &outline.graph.params, &path, replace)?;
+        crate::experiment::write(&experiment, &info.graph.params, &path, replace)?;
         Ok(path)
     }
 
@@ -137,10 +137,10 @@ impl Workbench {
                 self.capture();
             }
         });
-        let Some(outline) = self.slots[0].outline.clone() else { return };
+        let Some(info) = self.slots[0].info.clone() else { return };
         egui::CollapsingHeader::new(format!("resources ({})", self.gallery.resources.len())).show(ui, |ui| {
             ui.weak("kept as EXR beside the picture");
-            for (name, _) in &outline.graph.textures {
+            for (name, _) in &info.graph.textures {
                 let mut chosen = self.gallery.resources.contains(name);
                 if ui.checkbox(&mut chosen, name).changed() {
                     self.gallery.resources.retain(|r| r != name);

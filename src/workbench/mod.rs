@@ -43,7 +43,7 @@ use egui::{TextureId, Ui, Vec2};
 use engine::{Engine, Order};
 use events::Events;
 use opening::slot_of;
-use report::{DeviceReport, Outline, PictureReport};
+use report::{DeviceReport, GraphInfo, PictureReport};
 use request::RenderRequest;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -68,7 +68,7 @@ type Compared = (Mode, Option<Map>);
 /// What is known of A or B.
 #[derive(Default)]
 struct Slot {
-    outline: Option<Arc<Outline>>,
+    info: Option<Arc<GraphInfo>>,
     /// Errors of the last build.
     errors: Vec<Diagnostic>,
     /// Messages of the graph's checks.
@@ -244,9 +244,9 @@ impl Workbench {
 
     /// Sets the parameter that the graph names for clicks.
     fn point_at(&mut self, at: Option<Vec2>) {
-        let Some(outline) = self.slots[0].outline.clone() else { return };
-        let Some(name) = &outline.graph.pointer else { return };
-        let Some(param) = outline.graph.params.list.iter().find(|p| p.name == *name) else { return };
+        let Some(info) = self.slots[0].info.clone() else { return };
+        let Some(name) = &info.graph.pointer else { return };
+        let Some(param) = info.graph.params.list.iter().find(|p| p.name == *name) else { return };
         let at = at.map_or([-1.0; 2], |p| [f64::from(p.x.floor()), f64::from(p.y.floor())]);
         for slot in self.desired.slots.iter_mut().flatten() {
             edit::set(slot, param, &crate::graph::param::Value::Vector(at.to_vec()));
@@ -255,8 +255,8 @@ impl Workbench {
 
     /// Opens the tables, when what was clicked on fills one.
     fn show_tables(&mut self) {
-        let fills = |o: &Arc<Outline>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
-        if self.slots[0].outline.as_ref().is_some_and(fills) {
+        let fills = |o: &Arc<GraphInfo>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
+        if self.slots[0].info.as_ref().is_some_and(fills) {
             self.tab = Tab::Tables;
         }
     }
@@ -285,7 +285,7 @@ impl Workbench {
                 || self.slots[i]
                     .picture
                     .as_ref()
-                    .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.slots[i].outline.is_some())
+                    .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.slots[i].info.is_some())
         };
         shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits()
     }
@@ -365,14 +365,14 @@ impl Workbench {
             self.panel_slot = 0;
         }
         let number = self.panel_slot;
-        let outline = self.slots[number].outline.clone().or(self.slots[0].outline.clone());
-        let Some(outline) = outline else {
+        let info = self.slots[number].info.clone().or(self.slots[0].info.clone());
+        let Some(info) = info else {
             ui.weak(self.waiting_text());
             return;
         };
         let other = self.desired.slots[1 - number].clone();
         if let Some(slot) = &mut self.desired.slots[number] {
-            self.panel.show(ui, &outline.graph.params, slot, other.as_ref());
+            self.panel.show(ui, &info.graph.params, slot, other.as_ref());
         }
     }
 

@@ -175,7 +175,7 @@ impl Workbench {
 
     /// Renders the sequence by the program's own command, beside the window, from files of its own.
     fn start_sequence(&mut self) -> Result<(), LabError> {
-        let (Some(slot), Some(outline)) = (&self.desired.slots[0], &self.slots[0].outline) else {
+        let (Some(slot), Some(info)) = (&self.desired.slots[0], &self.slots[0].info) else {
             return Err(LabError::Request("no graph has been built yet".into()));
         };
         let failed = |e: std::io::Error| LabError::Request(format!("cannot write the sequence's settings: {e}"));
@@ -186,7 +186,7 @@ impl Workbench {
             experiment.scene = scene.canonicalize().map_err(failed)?.to_string_lossy().into_owned();
         }
         let file = folder.path().join("sequence.ron");
-        crate::experiment::write(&experiment, &outline.graph.params, &file, false)?;
+        crate::experiment::write(&experiment, &info.graph.params, &file, false)?;
         let mut command = std::process::Command::new(std::env::current_exe().map_err(failed)?);
         command.current_dir(&self.root).env("CONELAB_HOME", &self.root);
         command.arg("render").arg(&file).arg("--sequence").arg(&self.paths.sequence);

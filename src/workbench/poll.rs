@@ -50,7 +50,7 @@ impl Workbench {
                 self.chart.restarted();
                 self.trouble = None;
             }
-            Report::Built { slot, outline, change, ms, revision, objects } => {
+            Report::Built { slot, info, change, ms, revision, objects } => {
                 let Change { kept, built, resized } = change;
                 self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
                 self.event(
@@ -58,9 +58,9 @@ impl Workbench {
                     json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
                         "revision": revision, "objects": objects }),
                 );
-                self.times.built(slot, &outline);
+                self.times.built(slot, &info);
                 self.mended(slot);
-                self.slots[slot].outline = Some(outline);
+                self.slots[slot].info = Some(info);
             }
             Report::Failed { slot, diagnostics, revision } => {
                 let texts: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();

@@ -21,9 +21,9 @@ pub struct DeviceReport {
     pub driver: String,
 }
 
-/// A graph as it runs now.
+/// The graph of a slot as it runs now.
 #[derive(Clone)]
-pub struct Outline {
+pub struct GraphInfo {
     /// The graph.
     pub graph: Arc<Graph>,
     /// Its parameters with the values they were built with.
@@ -78,7 +78,7 @@ pub enum Report {
         /// 0 is A, 1 is B.
         slot: usize,
         /// What runs.
-        outline: Arc<Outline>,
+        info: Arc<GraphInfo>,
         /// What was kept.
         change: Change,
         /// From the start of the build to the swap.

@@ -163,9 +163,8 @@ impl Workbench {
         let name = format!("{}-{short}", folder::name(&folder.path));
         match Experiment::from_text(&folder.path.join(format!("{name}.ron")), &dot.experiment) {
             Ok(mut experiment) => {
-                if let Some(outline) = self.slots[0].outline.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph))
-                {
-                    without_defaults(&mut experiment, &outline.graph.params);
+                if let Some(info) = self.slots[0].info.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph)) {
+                    without_defaults(&mut experiment, &info.graph.params);
                 }
                 self.fixed_size = Some(experiment.size);
                 self.open(&experiment);

@@ -1,7 +1,7 @@
 //! Reconciling what a slot shows with the desired state: values are set, or a build is swapped in.
 
 use super::super::builder::{Done, Job, Key};
-use super::super::report::{Outline, Report};
+use super::super::report::{GraphInfo, Report};
 use super::super::request::SideRequest;
 use super::Run;
 use crate::graph::source::{Diagnostic, Place};
@@ -119,7 +119,7 @@ impl Run<'_> {
                 slot.lights = true;
                 slot.looked = None;
                 slot.failed = None;
-                let outline = outline(&session, &loaded);
+                let info = info(&session, &loaded);
                 let change = session.program.change;
                 slot.session = Some(session);
                 slot.loaded = Some(loaded);
@@ -130,8 +130,8 @@ impl Run<'_> {
                     let ms = done.start.elapsed().as_secs_f64() * 1e3;
                     let revision = done.key.revision;
                     let objects = Arc::strong_count(&self.lab.gpu);
-                    let outline = Arc::new(outline);
-                    self.out.send(Report::Built { slot: number, outline, change, ms, revision, objects });
+                    let info = Arc::new(info);
+                    self.out.send(Report::Built { slot: number, info, change, ms, revision, objects });
                 }
                 self.request_frames(1);
             }
@@ -171,7 +171,7 @@ impl Run<'_> {
     }
 }
 
-fn outline(session: &Session, loaded: &Loaded) -> Outline {
+fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
     let plan = &session.program.plan;
     let mut passes: Vec<usize> = Vec::new();
     let mut writes: Vec<(usize, Vec<String>)> = Vec::new();
@@ -192,7 +192,7 @@ fn outline(session: &Session, loaded: &Loaded) -> Outline {
             }
         }
     }
-    Outline {
+    GraphInfo {
         graph: loaded.graph.clone(),
         params: session.params.clone(),
         textures: plan.textures.clone(),

@@ -89,9 +89,9 @@ impl Workbench {
             painter.rect_stroke(cell, 0.0, Stroke::new(1.0, Color32::YELLOW), egui::StrokeKind::Outside);
         }
         let look = &done.decoded.look;
-        let outline = self.slots[look.slot.min(1)].outline.as_ref();
-        let index = outline.and_then(|o| o.graph.textures.iter().position(|t| t.0 == look.texture));
-        let volume = outline.zip(index).is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
+        let info = self.slots[look.slot.min(1)].info.as_ref();
+        let index = info.and_then(|o| o.graph.textures.iter().position(|t| t.0 == look.texture));
+        let volume = info.zip(index).is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
         let place: Vec<String> = image::texel(look, volume, x, y).iter().map(ToString::to_string).collect();
         let channels: Vec<String> = ["R", "G", "B", "A"].iter().zip(values).map(|(n, v)| format!("{n} {v}")).collect();
         let text = format!("({})\n{}", place.join(", "), channels.join("\n"));

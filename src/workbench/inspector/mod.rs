@@ -7,7 +7,7 @@ mod statistics;
 mod views;
 mod work;
 
-use super::report::Outline;
+use super::report::GraphInfo;
 use super::request::Look;
 use super::{INSPECTOR, Workbench};
 use crate::graph::plan::TexturePlan;
@@ -120,11 +120,11 @@ impl Workbench {
                 ui.selectable_value(&mut self.inspector.look.slot, 1, "B");
             });
         }
-        let Some(outline) = self.slots[self.inspector.look.slot].outline.clone() else {
+        let Some(info) = self.slots[self.inspector.look.slot].info.clone() else {
             ui.weak(self.waiting_text());
             return;
         };
-        let plan = self.choose(ui, &outline);
+        let plan = self.choose(ui, &info);
         let Some(plan) = plan else {
             ui.weak("The graph has no textures");
             return;
@@ -142,19 +142,19 @@ impl Workbench {
     }
 
     /// Texture, mip, layer or slice.
-    fn choose(&mut self, ui: &mut Ui, outline: &Outline) -> Option<TexturePlan> {
-        let names: Vec<&str> = outline.graph.textures.iter().map(|t| t.0.as_str()).collect();
+    fn choose(&mut self, ui: &mut Ui, info: &GraphInfo) -> Option<TexturePlan> {
+        let names: Vec<&str> = info.graph.textures.iter().map(|t| t.0.as_str()).collect();
         if !names.contains(&self.inspector.look.texture.as_str()) {
-            let preferred = outline.graph.hdr.as_deref().or(outline.graph.output.as_deref());
+            let preferred = info.graph.hdr.as_deref().or(info.graph.output.as_deref());
             let name = preferred.or(names.first().copied())?.to_string();
             self.inspector.open(self.inspector.look.slot, name);
         }
         let mut chosen = None;
         let box_ = egui::ComboBox::from_id_salt("texture").width(ui.available_width() - 8.0);
-        let label = describe(outline, &self.inspector.look.texture);
+        let label = describe(info, &self.inspector.look.texture);
         box_.height(500.0).selected_text(label).show_ui(ui, |ui| {
             for name in &names {
-                if ui.selectable_label(*name == self.inspector.look.texture, describe(outline, name)).clicked() {
+                if ui.selectable_label(*name == self.inspector.look.texture, describe(info, name)).clicked() {
                     chosen = Some((*name).to_string());
                 }
             }
@@ -163,8 +163,8 @@ impl Workbench {
             self.inspector.open(self.inspector.look.slot, name);
         }
         let look = &mut self.inspector.look;
-        let index = outline.graph.textures.iter().position(|t| t.0 == look.texture)?;
-        let plan = outline.textures.get(index)?.clone();
+        let index = info.graph.textures.iter().position(|t| t.0 == look.texture)?;
+        let plan = info.textures.get(index)?.clone();
         let last = |n: u32| n.saturating_sub(1);
         look.mip = look.mip.min(last(plan.mips));
         look.layer = look.layer.min(last(plan.layers));
@@ -279,9 +279,9 @@ fn short_number(x: f64) -> String {
 }
 
 /// Name, size and format of a texture.
-fn describe(outline: &Outline, name: &str) -> String {
-    let index = outline.graph.textures.iter().position(|t| t.0 == name);
-    let Some(p) = index.and_then(|i| outline.textures.get(i)) else { return name.to_string() };
+fn describe(info: &GraphInfo, name: &str) -> String {
+    let index = info.graph.textures.iter().position(|t| t.0 == name);
+    let Some(p) = index.and_then(|i| info.textures.get(i)) else { return name.to_string() };
     let [x, y, z] = p.extent;
     let size = if p.volume { format!("{x}×{y}×{z}") } else { format!("{x}×{y}") };
     let layers = if p.layers > 1 { format!(", {} layers", p.layers) } else { String::new() };

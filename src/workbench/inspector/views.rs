@@ -19,14 +19,14 @@ impl Workbench {
     /// A button for each view of the graph.
     pub(super) fn view_buttons(&mut self, ui: &mut Ui) {
         let slot = self.inspector.look.slot;
-        let Some(outline) = self.slots[slot].outline.clone() else { return };
-        if outline.graph.views.is_empty() {
+        let Some(info) = self.slots[slot].info.clone() else { return };
+        if info.graph.views.is_empty() {
             return;
         }
         let mut chosen = None;
         let mut back = false;
         ui.horizontal_wrapped(|ui| {
-            for (i, view) in outline.graph.views.iter().enumerate() {
+            for (i, view) in info.graph.views.iter().enumerate() {
                 if ui.button(&view.value.title).on_hover_text(&view.value.help).clicked() {
                     chosen = Some(i);
                 }
@@ -39,10 +39,10 @@ impl Workbench {
         if back {
             self.leave_view();
         }
-        let Some(view) = chosen.and_then(|i| outline.graph.views.get(i)) else { return };
+        let Some(view) = chosen.and_then(|i| info.graph.views.get(i)) else { return };
         let Some(desired) = self.desired.slots[slot].as_mut() else { return };
         for (name, text) in &view.value.set.0 {
-            let Some(param) = outline.graph.params.list.iter().find(|p| p.name == name.value) else { continue };
+            let Some(param) = info.graph.params.list.iter().find(|p| p.name == name.value) else { continue };
             let Ok(value) = param.parse(&text.value.0) else { continue };
             let before = &mut self.inspector.before.0;
             if !before.iter().any(|b| b.0 == slot && b.1 == name.value) {

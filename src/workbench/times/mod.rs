@@ -4,7 +4,7 @@ mod chart;
 mod export;
 mod history;
 
-use super::report::{Outline, PictureReport};
+use super::report::{GraphInfo, PictureReport};
 use super::{Tab, Workbench};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
 use history::{Frame, History, Row};
@@ -44,14 +44,14 @@ impl Times {
     }
 
     /// A slot runs something new: its times so far are of something else.
-    pub fn built(&mut self, slot: usize, outline: &Outline) {
-        let pass = |i: &usize| outline.graph.passes.get(*i).map(|p| (*i, p.value.name.value.clone()));
-        self.slots[slot] = History::new(outline.passes.iter().filter_map(pass).collect());
+    pub fn built(&mut self, slot: usize, info: &GraphInfo) {
+        let pass = |i: &usize| info.graph.passes.get(*i).map(|p| (*i, p.value.name.value.clone()));
+        self.slots[slot] = History::new(info.passes.iter().filter_map(pass).collect());
         self.made = None;
         if slot == 0 {
-            self.memory.clone_from(&outline.memory);
+            self.memory.clone_from(&info.memory);
             self.memory.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-            self.scene_bytes = outline.scene_bytes;
+            self.scene_bytes = info.scene_bytes;
         }
     }
 
@@ -157,16 +157,15 @@ impl Workbench {
     }
 
     fn pass_writes(&self, slot: usize, name: &str) -> &[String] {
-        let Some(outline) = &self.slots[slot].outline else { return &[] };
-        let named =
-            |w: &&(usize, Vec<String>)| outline.graph.passes.get(w.0).is_some_and(|p| p.value.name.value == name);
-        outline.writes.iter().find(named).map_or(&[], |w| &w.1)
+        let Some(info) = &self.slots[slot].info else { return &[] };
+        let named = |w: &&(usize, Vec<String>)| info.graph.passes.get(w.0).is_some_and(|p| p.value.name.value == name);
+        info.writes.iter().find(named).map_or(&[], |w| &w.1)
     }
 
     /// Opens the first texture that a pass writes in the inspector.
     fn inspect_pass(&mut self, slot: usize, name: &str) {
-        let Some(outline) = self.slots[slot].outline.clone() else { return };
-        let texture = |n: &&String| outline.graph.textures.iter().any(|t| t.0 == **n);
+        let Some(info) = self.slots[slot].info.clone() else { return };
+        let texture = |n: &&String| info.graph.textures.iter().any(|t| t.0 == **n);
         let Some(texture) = self.pass_writes(slot, name).iter().find(texture).cloned() else {
             self.status = format!("{name} writes no texture");
             return;
