@@ -26,7 +26,7 @@ fn number(event: &Value, name: &str) -> f64 {
 #[track_caller]
 fn error(desk: &mut Desk, since: usize, what: &str, is: impl Fn(f64) -> bool) -> f64 {
     let measured =
-        desk.wait(since, what, |e| e["event"] == "error" && e["slot"] == 0 && e["error"].as_f64().is_some_and(&is));
+        desk.wait(since, what, |e| e["event"] == "error" && e["side"] == 0 && e["error"].as_f64().is_some_and(&is));
     assert!(number(&measured, "gpu_ms") > 0.0, "{measured}");
     number(&measured, "error")
 }

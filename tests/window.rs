@@ -272,7 +272,7 @@ fn a_and_b_are_told_apart_on_the_screen_and_in_numbers() {
     desk.click("", "FLIP");
     let mark = desk.now();
     desk.click("", "raster | tessellated");
-    desk.wait(mark, "B built", |e| e["event"] == "built" && e["slot"] == 1);
+    desk.wait(mark, "B built", |e| e["event"] == "built" && e["side"] == 1);
     desk.other_picture(mark, 1, &other);
     desk.wait(mark, "FLIP", |e| e["event"] == "compared" && number(e, "mean") > 0.0);
     desk.click("", "A | B");

@@ -27,7 +27,7 @@ pub struct Key {
 /// Something to build.
 pub struct Job {
     /// 0 is A, 1 is B.
-    pub slot: usize,
+    pub side: usize,
     /// What from.
     pub key: Key,
     /// The same, as an experiment.
@@ -47,7 +47,7 @@ pub struct Job {
 /// What became of it.
 pub struct Done {
     /// 0 is A, 1 is B.
-    pub slot: usize,
+    pub side: usize,
     /// What from.
     pub key: Key,
     /// Whether this is only the preview.
@@ -62,9 +62,9 @@ pub struct Done {
 pub fn run(jobs: &Receiver<Job>, done: &Sender<Done>) {
     for job in jobs {
         let start = Instant::now();
-        let (slot, key, preview) = (job.slot, job.key.clone(), job.preview);
+        let (side, key, preview) = (job.side, job.key.clone(), job.preview);
         let result = build(job);
-        if done.send(Done { slot, key, preview, start, result }).is_err() {
+        if done.send(Done { side, key, preview, start, result }).is_err() {
             return;
         }
     }

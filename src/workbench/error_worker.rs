@@ -30,7 +30,7 @@ pub struct ErrorQuery {
 /// A picture whose error is asked for.
 pub struct ErrorRequest {
     /// 0 is A, 1 is B.
-    pub slot: usize,
+    pub side: usize,
     /// Number of the render request that the picture answers.
     pub request: u64,
     /// Revision of the files.
@@ -57,7 +57,7 @@ pub struct ErrorRequest {
 #[derive(Clone, Debug)]
 pub struct ErrorResult {
     /// 0 is A, 1 is B.
-    pub slot: usize,
+    pub side: usize,
     /// Number of the render request whose picture was measured.
     pub request: u64,
     /// What was asked.
@@ -103,13 +103,13 @@ pub(super) fn run(requests: &Receiver<ErrorRequest>, send: &dyn Fn(Report)) {
     while let Ok(first) = requests.recv() {
         let mut newest = [None, None];
         for request in std::iter::once(first).chain(requests.try_iter()) {
-            let slot = request.slot.min(1);
-            newest[slot] = Some(request);
+            let side = request.side.min(1);
+            newest[side] = Some(request);
         }
         for latest in newest.into_iter().flatten() {
-            let (slot, request, query) = (latest.slot, latest.request, latest.query.clone());
+            let (side, request, query) = (latest.side, latest.request, latest.query.clone());
             let result = loaded.evaluate(latest).map_err(|e| e.to_string());
-            send(Report::Error(ErrorResult { slot, request, query, result }));
+            send(Report::Error(ErrorResult { side, request, query, result }));
         }
     }
 }

@@ -87,7 +87,7 @@ impl Workbench {
         }
     }
 
-    /// Saves what slot A (or B, when the panel shows it) says. An existing file is only replaced when asked for.
+    /// Saves what side A (or B, when the panel shows it) says. An existing file is only replaced when asked for.
     pub(super) fn save(&mut self, replace: bool) {
         if self.gallery.name.is_empty() {
             self.gallery.name.clone_from(&self.name);
@@ -115,13 +115,13 @@ impl Workbench {
 
     fn save_as(&self, name: &str, replace: bool) -> Result<PathBuf, LabError> {
         let name = checked_name(name)?;
-        let slot = self.desired.slots[self.panel_slot].as_ref().or(self.desired.slots[0].as_ref());
-        let info = self.slots[self.panel_slot].info.as_ref().or(self.slots[0].info.as_ref());
-        let (Some(slot), Some(info)) = (slot, info) else {
+        let side = self.desired.sides[self.panel_side].as_ref().or(self.desired.sides[0].as_ref());
+        let info = self.sides[self.panel_side].info.as_ref().or(self.sides[0].info.as_ref());
+        let (Some(side), Some(info)) = (side, info) else {
             return Err(LabError::Request("there is nothing to save yet: no graph has been built".into()));
         };
-        let time = self.slots[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
-        let experiment = keep::experiment(&self.desired, slot, &name, time, self.scene.as_deref());
+        let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
+        let experiment = keep::experiment(&self.desired, side, &name, time, self.scene.as_deref());
         let path = self.experiment_path(&name);
         crate::experiment::write(&experiment, &info.graph.params, &path, replace)?;
         Ok(path)
@@ -137,7 +137,7 @@ impl Workbench {
                 self.capture();
             }
         });
-        let Some(info) = self.slots[0].info.clone() else { return };
+        let Some(info) = self.sides[0].info.clone() else { return };
         egui::CollapsingHeader::new(format!("resources ({})", self.gallery.resources.len())).show(ui, |ui| {
             ui.weak("kept as EXR beside the picture");
             for (name, _) in &info.graph.textures {
@@ -152,7 +152,7 @@ impl Workbench {
         });
     }
 
-    /// Captures the slot that the panel shows.
+    /// Captures the side that the panel shows.
     pub(super) fn capture(&mut self) {
         let name = match self.gallery.capture_name.trim() {
             "" => self.name.clone(),
@@ -161,7 +161,7 @@ impl Workbench {
         match checked_name(&name) {
             Ok(name) => {
                 self.status = format!("capturing {name}");
-                self.engine.order(Order::Capture(self.panel_slot, name, self.gallery.resources.clone()));
+                self.engine.order(Order::Capture(self.panel_side, name, self.gallery.resources.clone()));
             }
             Err(e) => self.status = e.to_string(),
         }
@@ -265,7 +265,7 @@ impl Workbench {
                 self.open(&experiment);
                 self.status = format!("loaded {}", summary.name);
             }
-            Err(errors) => self.slots[0].errors = errors,
+            Err(errors) => self.sides[0].errors = errors,
         }
     }
 

@@ -33,7 +33,7 @@ impl State {
     /// opened.
     fn same(&self, other: &State, opened: bool) -> bool {
         let (a, b) = (&self.desired, &other.desired);
-        let edit = a.slots == b.slots && a.scene == b.scene && a.lights == b.lights;
+        let edit = a.sides == b.sides && a.scene == b.scene && a.lights == b.lights;
         let view = a.camera == b.camera && self.fixed_size == other.fixed_size && self.name == other.name;
         edit && (view || !opened)
     }
@@ -83,7 +83,7 @@ impl History {
 
 impl Workbench {
     fn state(&self) -> State {
-        let time = self.slots[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
+        let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
         State { desired: self.desired.clone(), name: self.name.clone(), fixed_size: self.fixed_size, time }
     }
 
@@ -103,7 +103,7 @@ impl Workbench {
             self.returning = desired.camera.is_some();
             self.desired.camera = desired.camera;
         }
-        self.desired.slots = desired.slots;
+        self.desired.sides = desired.sides;
         self.desired.lights = desired.lights;
         if opened {
             self.desired.camera = desired.camera;

@@ -16,7 +16,7 @@ impl Workbench {
 
     /// The host has shown them.
     pub fn painted(&mut self) {
-        if let Some(picture) = self.slots[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.0 == 0)) {
+        if let Some(picture) = self.sides[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.0 == 0)) {
             self.shown_revision = picture.revision;
         }
         if !self.pixels.is_empty() {
@@ -27,7 +27,7 @@ impl Workbench {
             let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
             let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
-            let request = self.slots[0].picture.as_ref().map_or(0, |p| p.request);
+            let request = self.sides[0].picture.as_ref().map_or(0, |p| p.request);
             self.event(
                 "painted",
                 json!({ "pictures": list, "fingerprints": prints, "request": request, "since_change_ms": since }),

@@ -10,15 +10,15 @@ use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A slot as an experiment of its own, with what differs from the scene's light.
+/// A side as an experiment of its own, with what differs from the scene's light.
 pub fn experiment(
     desired: &RenderRequest,
-    slot: &SideRequest,
+    side: &SideRequest,
     name: &str,
     time: f64,
     scene: Option<&Scene>,
 ) -> Experiment {
-    let mut experiment = Experiment { name: name.into(), time, ..desired.experiment(slot) };
+    let mut experiment = Experiment { name: name.into(), time, ..desired.experiment(side) };
     if let (Some((lights, sky)), Some(scene)) = (&desired.lights, scene) {
         experiment.sky = (*sky != scene.sky).then(|| (*sky).into());
         experiment.lights = lights
@@ -32,8 +32,8 @@ pub fn experiment(
 }
 
 /// Like [`experiment`], seen from where the camera's path is at that time.
-pub fn still(desired: &RenderRequest, slot: &SideRequest, name: &str, time: f64, scene: &Scene) -> Experiment {
-    let mut still = experiment(desired, slot, name, time, Some(scene));
+pub fn still(desired: &RenderRequest, side: &SideRequest, name: &str, time: f64, scene: &Scene) -> Experiment {
+    let mut still = experiment(desired, side, name, time, Some(scene));
     if let Some(path) = &desired.path {
         still.camera = CameraChoice::Placed(path.at(time));
     }

@@ -42,7 +42,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{TextureId, Ui, Vec2};
 use engine::{Engine, Order};
 use events::Events;
-use opening::slot_of;
+use opening::side_of;
 use report::{DeviceReport, GraphInfo, PictureReport};
 use request::RenderRequest;
 use std::path::{Path, PathBuf};
@@ -67,7 +67,7 @@ type Compared = (Mode, Option<Map>);
 
 /// What is known of A or B.
 #[derive(Default)]
-struct Slot {
+struct Side {
     info: Option<Arc<GraphInfo>>,
     /// Errors of the last build.
     errors: Vec<Diagnostic>,
@@ -112,7 +112,7 @@ pub struct Workbench {
     /// The request that the engine was sent last.
     sent: RenderRequest,
     name: String,
-    slots: [Slot; 2],
+    sides: [Side; 2],
     scene: Option<Arc<Scene>>,
     /// Of the scene's bounds, m; asking for them walks through all vertices.
     diagonal: f32,
@@ -123,7 +123,7 @@ pub struct Workbench {
     /// Whether undo goes to the scene that is loaded: its view and light are those of the desired state.
     returning: bool,
     panel: panel::Panel,
-    panel_slot: usize,
+    panel_side: usize,
     view: view::View,
     tab: Tab,
     times: times::Times,
@@ -169,7 +169,7 @@ impl Workbench {
         let engine = Engine::start(home.clone(), gpu.clone(), wake.clone());
         let mut watch = watch::Watch::new(&root, wake.clone());
         let desired = RenderRequest {
-            slots: [Some(slot_of(&experiment)), None],
+            sides: [Some(side_of(&experiment)), None],
             scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
             size: options.size.unwrap_or((0, 0)),
             clock: request::Clock { at: experiment.time, jumps: 1, ..request::Clock::default() },
@@ -184,7 +184,7 @@ impl Workbench {
             sent: RenderRequest::default(),
             desired,
             name: experiment.name.clone(),
-            slots: Default::default(),
+            sides: Default::default(),
             scene: None,
             diagonal: 1.0,
             experiment: Some(experiment),
@@ -193,7 +193,7 @@ impl Workbench {
             history: history::History::default(),
             returning: false,
             panel: panel::Panel::default(),
-            panel_slot: 0,
+            panel_side: 0,
             view: view::View::default(),
             tab: Tab::Surroundings,
             times: times::Times::default(),
@@ -231,7 +231,7 @@ impl Workbench {
 
     /// Whether the picture is older than the last good build or shows what no longer compiles.
     fn stale(&self) -> bool {
-        self.slots.iter().any(|s| !s.errors.is_empty())
+        self.sides.iter().any(|s| !s.errors.is_empty())
     }
 
     fn waiting_text(&self) -> String {
@@ -244,19 +244,19 @@ impl Workbench {
 
     /// Sets the parameter that the graph names for clicks.
     fn point_at(&mut self, at: Option<Vec2>) {
-        let Some(info) = self.slots[0].info.clone() else { return };
+        let Some(info) = self.sides[0].info.clone() else { return };
         let Some(name) = &info.graph.pointer else { return };
         let Some(param) = info.graph.params.list.iter().find(|p| p.name == *name) else { return };
         let at = at.map_or([-1.0; 2], |p| [f64::from(p.x.floor()), f64::from(p.y.floor())]);
-        for slot in self.desired.slots.iter_mut().flatten() {
-            edit::set(slot, param, &crate::graph::param::Value::Vector(at.to_vec()));
+        for side in self.desired.sides.iter_mut().flatten() {
+            edit::set(side, param, &crate::graph::param::Value::Vector(at.to_vec()));
         }
     }
 
     /// Opens the tables, when what was clicked on fills one.
     fn show_tables(&mut self) {
         let fills = |o: &Arc<GraphInfo>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
-        if self.slots[0].info.as_ref().is_some_and(fills) {
+        if self.sides[0].info.as_ref().is_some_and(fills) {
             self.tab = Tab::Tables;
         }
     }
@@ -281,11 +281,11 @@ impl Workbench {
     /// Whether everything requested is on screen.
     pub fn settled(&self) -> bool {
         let shown = |i: usize| {
-            self.desired.slots[i].is_none()
-                || self.slots[i]
+            self.desired.sides[i].is_none()
+                || self.sides[i]
                     .picture
                     .as_ref()
-                    .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.slots[i].info.is_some())
+                    .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.sides[i].info.is_some())
         };
         shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits()
     }
@@ -317,8 +317,8 @@ impl Workbench {
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
         self.remember(held);
-        if self.desired.slots[1].is_none() {
-            self.slots[1] = Slot::default();
+        if self.desired.sides[1].is_none() {
+            self.sides[1] = Side::default();
             self.comparison_of = None;
         }
         self.compare();
@@ -347,32 +347,32 @@ impl Workbench {
     fn parameters(&mut self, ui: &mut Ui) {
         // A panel that shrinks to what is in it stays small.
         ui.take_available_width();
-        if self.desired.slots[1].is_some() {
+        if self.desired.sides[1].is_some() {
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.panel_slot, 0, "A");
-                ui.selectable_value(&mut self.panel_slot, 1, "B");
+                ui.selectable_value(&mut self.panel_side, 0, "A");
+                ui.selectable_value(&mut self.panel_side, 1, "B");
                 if ui.small_button("A to B").clicked() {
-                    self.desired.slots[1] = self.desired.slots[0].clone();
+                    self.desired.sides[1] = self.desired.sides[0].clone();
                 }
                 if ui.small_button("B to A").clicked() {
-                    self.desired.slots[0] = self.desired.slots[1].clone();
+                    self.desired.sides[0] = self.desired.sides[1].clone();
                 }
                 if ui.small_button("swap").clicked() {
-                    self.desired.slots.swap(0, 1);
+                    self.desired.sides.swap(0, 1);
                 }
             });
         } else {
-            self.panel_slot = 0;
+            self.panel_side = 0;
         }
-        let number = self.panel_slot;
-        let info = self.slots[number].info.clone().or(self.slots[0].info.clone());
+        let number = self.panel_side;
+        let info = self.sides[number].info.clone().or(self.sides[0].info.clone());
         let Some(info) = info else {
             ui.weak(self.waiting_text());
             return;
         };
-        let other = self.desired.slots[1 - number].clone();
-        if let Some(slot) = &mut self.desired.slots[number] {
-            self.panel.show(ui, &info.graph.params, slot, other.as_ref());
+        let other = self.desired.sides[1 - number].clone();
+        if let Some(side) = &mut self.desired.sides[number] {
+            self.panel.show(ui, &info.graph.params, side, other.as_ref());
         }
     }
 
@@ -435,7 +435,7 @@ impl Workbench {
 
 /// Whether two requests differ in anything but their number.
 fn differs(a: &RenderRequest, b: &RenderRequest) -> bool {
-    a.slots != b.slots
+    a.sides != b.sides
         || a.scene != b.scene
         || a.lights != b.lights
         || a.camera != b.camera

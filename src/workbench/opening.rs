@@ -31,23 +31,23 @@ impl Workbench {
         }
         match Experiment::read(path) {
             Ok(experiment) => {
-                self.slots[0].errors.clear();
-                if slot_of(&experiment) != self.desired.slots[0].clone().unwrap_or_default()
+                self.sides[0].errors.clear();
+                if side_of(&experiment) != self.desired.sides[0].clone().unwrap_or_default()
                     || experiment.scene != self.desired.scene
                 {
                     self.open(&experiment);
                     self.status = format!("read {} again", path.display());
                 }
             }
-            Err(errors) => self.slots[0].errors = errors,
+            Err(errors) => self.sides[0].errors = errors,
         }
     }
 
-    /// Shows an experiment in slot A.
+    /// Shows an experiment in side A.
     pub(super) fn open(&mut self, experiment: &Experiment) {
         self.history.opens();
         self.name.clone_from(&experiment.name);
-        self.desired.slots[0] = Some(slot_of(experiment));
+        self.desired.sides[0] = Some(side_of(experiment));
         if self.desired.scene == experiment.scene {
             if let Some(scene) = &self.scene {
                 self.desired.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
@@ -82,15 +82,15 @@ impl Workbench {
         self.send_request();
     }
 
-    /// The present experiment, as slot A shows it.
+    /// The present experiment, as side A shows it.
     pub(super) fn bare(&self) -> Experiment {
-        let slot = self.desired.slots[0].clone().unwrap_or_default();
-        Experiment { name: self.name.clone(), ..self.desired.experiment(&slot) }
+        let side = self.desired.sides[0].clone().unwrap_or_default();
+        Experiment { name: self.name.clone(), ..self.desired.experiment(&side) }
     }
 }
 
-/// A slot that shows an experiment.
-pub(super) fn slot_of(experiment: &Experiment) -> SideRequest {
+/// A side that shows an experiment.
+pub(super) fn side_of(experiment: &Experiment) -> SideRequest {
     SideRequest {
         graph: experiment.graph.clone(),
         params: experiment.params.iter().map(|(name, value)| (name.value.clone(), value.clone())).collect(),

@@ -64,7 +64,7 @@ impl Workbench {
                                 self.paths.name = short(&file.to_string_lossy());
                                 self.paths.taken = false;
                             }
-                            Err(errors) => self.slots[0].errors = errors,
+                            Err(errors) => self.sides[0].errors = errors,
                         }
                         ui.close();
                     }
@@ -103,7 +103,7 @@ impl Workbench {
     }
 
     fn path_keys(&mut self, ui: &mut Ui) {
-        let now = self.slots[0].picture.as_ref().map_or(0.0, |p| p.time);
+        let now = self.sides[0].picture.as_ref().map_or(0.0, |p| p.time);
         ui.horizontal(|ui| {
             let add = ui.button("add key").on_hover_text("The camera as it stands now, a second after the last key");
             if let Some(camera) = self.desired.camera.as_ref().filter(|_| add.clicked()) {
@@ -175,12 +175,12 @@ impl Workbench {
 
     /// Renders the sequence by the program's own command, beside the window, from files of its own.
     fn start_sequence(&mut self) -> Result<(), LabError> {
-        let (Some(slot), Some(info)) = (&self.desired.slots[0], &self.slots[0].info) else {
+        let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
             return Err(LabError::Request("no graph has been built yet".into()));
         };
         let failed = |e: std::io::Error| LabError::Request(format!("cannot write the sequence's settings: {e}"));
         let folder = tempfile::Builder::new().prefix("conelab-sequence-").tempdir().map_err(failed)?;
-        let mut experiment = super::keep::experiment(&self.desired, slot, "sequence", 0.0, self.scene.as_deref());
+        let mut experiment = super::keep::experiment(&self.desired, side, "sequence", 0.0, self.scene.as_deref());
         let scene = PathBuf::from(&experiment.scene);
         if scene.is_file() {
             experiment.scene = scene.canonicalize().map_err(failed)?.to_string_lossy().into_owned();

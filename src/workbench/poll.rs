@@ -50,25 +50,25 @@ impl Workbench {
                 self.chart.restarted();
                 self.trouble = None;
             }
-            Report::Built { slot, info, change, ms, revision, objects } => {
+            Report::Built { side, info, change, ms, revision, objects } => {
                 let Change { kept, built, resized } = change;
                 self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
                 self.event(
                     "built",
-                    json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
+                    json!({ "side": side, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
                         "revision": revision, "objects": objects }),
                 );
-                self.times.built(slot, &info);
-                self.mended(slot);
-                self.slots[slot].info = Some(info);
+                self.times.built(side, &info);
+                self.mended(side);
+                self.sides[side].info = Some(info);
             }
-            Report::Failed { slot, diagnostics, revision } => {
+            Report::Failed { side, diagnostics, revision } => {
                 let texts: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
-                self.event("failed", json!({ "slot": slot, "errors": texts, "revision": revision }));
-                self.slots[slot].errors = diagnostics;
+                self.event("failed", json!({ "side": side, "errors": texts, "revision": revision }));
+                self.sides[side].errors = diagnostics;
             }
-            Report::Set { slot, .. } => {
-                self.mended(slot);
+            Report::Set { side, .. } => {
+                self.mended(side);
             }
             Report::Picture(picture) => self.picture_came(picture),
             Report::Loading(what, part) => self.loading = Some((what, part)),
@@ -80,7 +80,7 @@ impl Workbench {
             }
             Report::Texels(look, texels) => self.inspector.note(look, *texels, &self.wake),
             Report::Table(table, bytes) => self.tables.note(table, bytes),
-            Report::Checks(slot, failed) => self.slots[slot].checks = failed,
+            Report::Checks(side, failed) => self.sides[side].checks = failed,
             Report::Captured(result) => {
                 let ok = result.is_ok();
                 let text = match result {
@@ -101,31 +101,31 @@ impl Workbench {
         }
     }
 
-    fn mended(&mut self, slot: usize) {
-        if !self.slots[slot].errors.is_empty() {
-            self.slots[slot].errors.clear();
-            self.event("mended", json!({ "slot": slot }));
+    fn mended(&mut self, side: usize) {
+        if !self.sides[side].errors.is_empty() {
+            self.sides[side].errors.clear();
+            self.event("mended", json!({ "side": side }));
         }
     }
 
     fn picture_came(&mut self, picture: PictureReport) {
-        if self.desired.slots[picture.slot].is_none() {
+        if self.desired.sides[picture.side].is_none() {
             return;
         }
         self.times.note(&picture);
         self.chart.note(&picture);
-        let number = picture.slot;
+        let number = picture.side;
         self.pixels.retain(|p| p.0 != number);
         self.pixels.push((number, picture.size, picture.bytes.clone()));
         if self.events.is_some() {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
-            let fields = json!({ "slot": number, "preview": picture.preview, "frame": picture.frame,
+            let fields = json!({ "side": number, "preview": picture.preview, "frame": picture.frame,
                 "request": picture.request, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
                 "since_change_ms": since,
                 "fingerprint": events::fingerprint(&picture.bytes) });
             self.event("picture", fields);
         }
-        self.slots[number].picture = Some(picture);
+        self.sides[number].picture = Some(picture);
     }
 
     fn loaded(&mut self, scene: Arc<Scene>) {

@@ -21,7 +21,7 @@ pub struct DeviceReport {
     pub driver: String,
 }
 
-/// The graph of a slot as it runs now.
+/// The graph of a side as it runs now.
 #[derive(Clone)]
 pub struct GraphInfo {
     /// The graph.
@@ -46,14 +46,14 @@ pub struct GraphInfo {
 #[derive(Clone)]
 pub struct PictureReport {
     /// 0 is A, 1 is B.
-    pub slot: usize,
+    pub side: usize,
     /// The request that it fulfils.
     pub request: u64,
     /// Revision of the files that it was made from.
     pub revision: u64,
     /// Whether it is the preview, shown until the graph's own picture is there.
     pub preview: bool,
-    /// Counts the slot's frames.
+    /// Counts the side's frames.
     pub frame: u64,
     /// Time of the scene, s.
     pub time: f64,
@@ -73,10 +73,10 @@ pub struct PictureReport {
 pub enum Report {
     /// A device was opened.
     Device(DeviceReport),
-    /// A slot runs something new. The times are those of the whole build, ms, and of the wait from the change to it.
+    /// A side runs something new. The times are those of the whole build, ms, and of the wait from the change to it.
     Built {
         /// 0 is A, 1 is B.
-        slot: usize,
+        side: usize,
         /// What runs.
         info: Arc<GraphInfo>,
         /// What was kept.
@@ -91,16 +91,16 @@ pub enum Report {
     /// A build failed; what ran before runs on.
     Failed {
         /// 0 is A, 1 is B.
-        slot: usize,
+        side: usize,
         /// What is wrong.
         diagnostics: Vec<Diagnostic>,
         /// The sources' revision.
         revision: u64,
     },
-    /// A slot's parameters were set without building anything.
+    /// A side's parameters were set without building anything.
     Set {
         /// 0 is A, 1 is B.
-        slot: usize,
+        side: usize,
         /// The values.
         params: Params,
     },
@@ -114,7 +114,7 @@ pub enum Report {
     LoadFailed(String),
     /// Texels that were looked for.
     Texels(Look, Box<Texels>),
-    /// Bytes of a table's buffer, of slot A.
+    /// Bytes of a table's buffer, of side A.
     Table(usize, Vec<u8>),
     /// Messages of the graph's checks that failed.
     Checks(usize, Vec<String>),

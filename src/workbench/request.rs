@@ -34,7 +34,7 @@ pub struct Clock {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
     /// 0 or 1.
-    pub slot: usize,
+    pub side: usize,
     /// Name of the texture.
     pub texture: String,
     /// Mip level.
@@ -51,7 +51,7 @@ pub struct Look {
 #[derive(Clone, Debug, Default)]
 pub struct RenderRequest {
     /// A and, when compared, B.
-    pub slots: [Option<SideRequest>; 2],
+    pub sides: [Option<SideRequest>; 2],
     /// Built-in name or path of the scene.
     pub scene: String,
     /// Lights and sky that differ from the scene's own.
@@ -72,27 +72,27 @@ pub struct RenderRequest {
     pub scene_revision: u64,
     /// What the inspector looks into.
     pub look: Option<Look>,
-    /// The table shown, by the number that the graph gives it, of slot A.
+    /// The table shown, by the number that the graph gives it, of side A.
     pub table: Option<usize>,
     /// Counts requests.
     pub number: u64,
 }
 
 impl RenderRequest {
-    /// The experiment of a slot, as a session is made from it.
-    pub fn experiment(&self, slot: &SideRequest) -> Experiment {
+    /// The experiment of a side, as a session is made from it.
+    pub fn experiment(&self, side: &SideRequest) -> Experiment {
         let mut sources = Sources::default();
-        let text = slot.params.iter().map(|(n, v)| format!("{n}: {v}")).collect::<Vec<_>>().join("\n");
+        let text = side.params.iter().map(|(n, v)| format!("{n}: {v}")).collect::<Vec<_>>().join("\n");
         let file = sources.add("the panel".as_ref(), text);
         let mut offset = 0;
         let mut params = Vec::new();
-        for (name, value) in &slot.params {
+        for (name, value) in &side.params {
             params.push((Loc { value: name.clone(), at: At { file, offset } }, value.clone()));
             offset += u32::try_from(name.len() + value.len() + 3).unwrap_or(0);
         }
         Experiment {
             name: "workbench".into(),
-            graph: slot.graph.clone(),
+            graph: side.graph.clone(),
             scene: self.scene.clone(),
             camera: self
                 .camera

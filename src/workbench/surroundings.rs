@@ -75,7 +75,7 @@ impl Workbench {
                 clock.at = 0.0;
                 clock.jumps += 1;
             }
-            ui.label(format!("{:.3} s", self.slots[0].picture.as_ref().map_or(0.0, |p| p.time)));
+            ui.label(format!("{:.3} s", self.sides[0].picture.as_ref().map_or(0.0, |p| p.time)));
         });
         ui.horizontal(|ui| {
             let mut fixed = clock.step.is_some();

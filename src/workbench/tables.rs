@@ -134,7 +134,7 @@ const ABOUT: [(CellKind, &str); 6] = [
 impl Workbench {
     /// The tab.
     pub(super) fn tables_tab(&mut self, ui: &mut Ui) {
-        let Some(info) = self.slots[0].info.clone() else {
+        let Some(info) = self.sides[0].info.clone() else {
             ui.weak(self.waiting_text());
             return;
         };

@@ -81,7 +81,7 @@ impl Workbench {
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
         self.area = [(area.width() * scale) as u32, (area.height() * scale) as u32];
-        let Some(a) = self.slots[0].picture.as_ref().map(|p| p.size) else {
+        let Some(a) = self.sides[0].picture.as_ref().map(|p| p.size) else {
             painter.text(
                 area.center(),
                 egui::Align2::CENTER_CENTER,
@@ -91,7 +91,7 @@ impl Workbench {
             );
             return;
         };
-        let both = self.desired.slots[1].is_some() && self.slots[1].picture.is_some();
+        let both = self.desired.sides[1].is_some() && self.sides[1].picture.is_some();
         let mut shown = fit(area, a, scale);
         let draw = |number: usize, rect: Rect, clip: Rect| {
             painter.with_clip_rect(clip.intersect(area)).image(textures[number], rect, WHOLE, Color32::WHITE);

@@ -229,39 +229,39 @@ impl Desk {
 
     /// The fingerprint of A's or B's picture once none follows for a while and it is on the screen.
     #[track_caller]
-    pub fn resting(&mut self, slot: usize) -> String {
-        let mut count = self.pictures(slot).len();
+    pub fn resting(&mut self, side: usize) -> String {
+        let mut count = self.pictures(side).len();
         let mut since = Instant::now();
         while since.elapsed() < Duration::from_millis(350) {
             std::thread::sleep(Duration::from_millis(10));
-            let now = self.pictures(slot).len();
+            let now = self.pictures(side).len();
             if now != count {
                 (count, since) = (now, Instant::now());
             }
         }
-        self.pictures(slot).pop().expect("a picture")
+        self.pictures(side).pop().expect("a picture")
     }
 
     /// Fingerprints of the pictures so far.
-    pub fn pictures(&mut self, slot: usize) -> Vec<String> {
+    pub fn pictures(&mut self, side: usize) -> Vec<String> {
         self.now();
-        let list = self.events.iter().filter(|e| e["event"] == "picture" && e["slot"] == slot && e["preview"] == false);
+        let list = self.events.iter().filter(|e| e["event"] == "picture" && e["side"] == side && e["preview"] == false);
         list.map(|e| e["fingerprint"].as_str().unwrap().to_string()).collect()
     }
 
     /// Waits for a picture with this fingerprint.
     #[track_caller]
-    pub fn picture(&mut self, since: usize, slot: usize, print: &str) {
+    pub fn picture(&mut self, since: usize, side: usize, print: &str) {
         self.wait(since, &format!("picture {print}"), |e| {
-            e["event"] == "picture" && e["slot"] == slot && e["fingerprint"] == print
+            e["event"] == "picture" && e["side"] == side && e["fingerprint"] == print
         });
     }
 
     /// Waits for a picture with another fingerprint, which it returns.
     #[track_caller]
-    pub fn other_picture(&mut self, since: usize, slot: usize, print: &str) -> String {
+    pub fn other_picture(&mut self, since: usize, side: usize, print: &str) -> String {
         let event = self.wait(since, &format!("picture other than {print}"), |e| {
-            e["event"] == "picture" && e["slot"] == slot && e["preview"] == false && e["fingerprint"] != print
+            e["event"] == "picture" && e["side"] == side && e["preview"] == false && e["fingerprint"] != print
         });
         event["fingerprint"].as_str().unwrap().to_string()
     }

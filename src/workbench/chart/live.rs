@@ -26,7 +26,7 @@ const SAMPLES: u64 = 256;
 
 /// What is known of A or B.
 #[derive(Default)]
-pub(super) struct Slot {
+pub(super) struct Side {
     /// GPU times of the frames of the last request, ms.
     pub(super) times: Vec<f64>,
     request: u64,
@@ -38,7 +38,7 @@ pub(super) struct Slot {
 
 /// The live part of the chart.
 pub struct State {
-    pub(super) slots: [Slot; 2],
+    pub(super) sides: [Side; 2],
     /// Number of the request that was sent last, and when it was first seen.
     since: (u64, Instant),
     pub(super) gather: Option<Gather>,
@@ -55,7 +55,7 @@ pub struct State {
 impl Default for State {
     fn default() -> State {
         State {
-            slots: Default::default(),
+            sides: Default::default(),
             since: (0, Instant::now()),
             gather: None,
             gathered: 0,
@@ -67,26 +67,26 @@ impl Default for State {
 }
 
 impl State {
-    /// Scene, camera, size and time of slot A's picture, as last measured.
+    /// Scene, camera, size and time of side A's picture, as last measured.
     pub fn subject(&self) -> Option<&Subject> {
-        self.slots[0].error.as_ref()?.result.as_ref().ok().map(|v| &v.subject)
+        self.sides[0].error.as_ref()?.result.as_ref().ok().map(|v| &v.subject)
     }
 
     /// Whether the error worker has not answered yet.
     pub fn awaits(&self) -> bool {
-        self.slots.iter().any(|s| s.asked.as_ref().is_some_and(|a| !s.answers(a)))
+        self.sides.iter().any(|s| s.asked.as_ref().is_some_and(|a| !s.answers(a)))
     }
 
-    /// Where a slot is; nothing as long as its error or time is not known.
-    pub fn dot(&self, slot: usize, sent: u64) -> Option<Live> {
-        let slot = &self.slots[slot];
-        let (ms, error) = slot.place()?;
-        let fresh = slot.error.as_ref().is_some_and(|j| j.request >= sent);
-        Some(Live { ms, error, fresh, trail: slot.trail.clone() })
+    /// Where a side is; nothing as long as its error or time is not known.
+    pub fn dot(&self, side: usize, sent: u64) -> Option<Live> {
+        let side = &self.sides[side];
+        let (ms, error) = side.place()?;
+        let fresh = side.error.as_ref().is_some_and(|j| j.request >= sent);
+        Some(Live { ms, error, fresh, trail: side.trail.clone() })
     }
 }
 
-impl Slot {
+impl Side {
     fn answers(&self, asked: &(u64, ErrorQuery)) -> bool {
         self.error.as_ref().is_some_and(|j| j.request >= asked.0 && j.query == asked.1)
     }
@@ -101,26 +101,26 @@ impl Slot {
 impl super::Chart {
     /// Takes in the time of a frame.
     pub fn note(&mut self, picture: &PictureReport) {
-        let Some(slot) = self.live.slots.get_mut(picture.slot).filter(|_| !picture.preview) else { return };
-        if slot.request != picture.request {
+        let Some(side) = self.live.sides.get_mut(picture.side).filter(|_| !picture.preview) else { return };
+        if side.request != picture.request {
             // The dot moves: what it leaves is where it was when its error was right.
-            if let Some(at) = slot.place().filter(|at| slot.trail.last() != Some(at)) {
-                slot.trail.push(at);
+            if let Some(at) = side.place().filter(|at| side.trail.last() != Some(at)) {
+                side.trail.push(at);
             }
-            let surplus = slot.trail.len().saturating_sub(TRAIL);
-            slot.trail.drain(..surplus);
-            slot.request = picture.request;
-            slot.times.clear();
+            let surplus = side.trail.len().saturating_sub(TRAIL);
+            side.trail.drain(..surplus);
+            side.request = picture.request;
+            side.times.clear();
         }
-        if slot.times.len() == KEPT {
-            slot.times.remove(0);
+        if side.times.len() == KEPT {
+            side.times.remove(0);
         }
-        slot.times.push(picture.gpu_ms);
+        side.times.push(picture.gpu_ms);
     }
 
     /// The device is another one: what it was asked is asked again.
     pub fn restarted(&mut self) {
-        self.live.slots.iter_mut().for_each(|s| s.asked = None);
+        self.live.sides.iter_mut().for_each(|s| s.asked = None);
     }
 
     /// Ends what is in work. Returns the validation messages of its device.
@@ -139,18 +139,18 @@ impl Workbench {
         ErrorQuery { part, metric, bounces, gathered: self.chart.live.gathered }
     }
 
-    /// Whether a slot shows something whose error was not asked for.
-    fn needs_error(&self, slot: usize, query: &ErrorQuery) -> bool {
-        let shows = self.slots[slot].picture.as_ref().is_some_and(|p| !p.preview && p.request >= self.sent.number);
-        let asked = self.chart.live.slots[slot].asked.as_ref();
+    /// Whether a side shows something whose error was not asked for.
+    fn needs_error(&self, side: usize, query: &ErrorQuery) -> bool {
+        let shows = self.sides[side].picture.as_ref().is_some_and(|p| !p.preview && p.request >= self.sent.number);
+        let asked = self.chart.live.sides[side].asked.as_ref();
         let known = asked.is_some_and(|a| a.0 >= self.sent.number && a.1 == *query);
-        self.desired.slots[slot].is_some() && shows && self.slots[slot].errors.is_empty() && !known
+        self.desired.sides[side].is_some() && shows && self.sides[side].errors.is_empty() && !known
     }
 
     /// Whether an error is about to be asked for.
     pub(super) fn error_pending(&self) -> bool {
         let query = self.query();
-        !self.desired.clock.playing && (0..2).any(|slot| self.needs_error(slot, &query))
+        !self.desired.clock.playing && (0..2).any(|side| self.needs_error(side, &query))
     }
 
     /// Asks for the errors of pictures that have come to rest.
@@ -167,30 +167,30 @@ impl Workbench {
             return;
         }
         let query = self.query();
-        for slot in 0..2 {
-            if self.needs_error(slot, &query) {
-                self.chart.live.slots[slot].asked = Some((self.sent.number, query.clone()));
-                self.engine.order(Order::MeasureError(slot, query.clone()));
+        for side in 0..2 {
+            if self.needs_error(side, &query) {
+                self.chart.live.sides[side].asked = Some((self.sent.number, query.clone()));
+                self.engine.order(Order::MeasureError(side, query.clone()));
             }
         }
     }
 
     /// Takes in an answer of the error worker.
     pub(in super::super) fn error_came(&mut self, result: ErrorResult) {
-        let slot = &mut self.chart.live.slots[result.slot];
+        let side = &mut self.chart.live.sides[result.side];
         let subject = |j: &ErrorResult| j.result.as_ref().ok().map(|v| v.subject.clone());
         let other = |old: &ErrorResult| old.query != result.query || subject(old) != subject(&result);
-        if slot.error.as_ref().is_some_and(other) {
-            slot.trail.clear();
+        if side.error.as_ref().is_some_and(other) {
+            side.trail.clear();
         }
-        let ms = spread(slot.times.clone()).median;
+        let ms = spread(side.times.clone()).median;
         let measured = result.result.as_ref().ok();
-        let event = json!({ "slot": result.slot, "request": result.request, "part": result.query.part,
+        let event = json!({ "side": result.side, "request": result.request, "part": result.query.part,
             "metric": result.query.metric, "bounces": result.query.bounces, "gpu_ms": ms,
             "error": measured.and_then(|v| v.error).map(|e| e.error),
             "samples": measured.and_then(|v| v.error).map(|e| e.samples),
             "why": result.result.as_ref().err() });
-        slot.error = Some(result);
+        side.error = Some(result);
         // A single frame after a rest is slower than many: clocks are low. The error worker is not slowed by those that follow.
         if !self.chart.live.awaits() {
             self.engine.order(Order::Frames((MEASURED.as_secs_f64() * 1e3 / ms.max(0.1)).clamp(2.0, 32.0) as u32));
@@ -200,11 +200,11 @@ impl Workbench {
 
     /// Gathers the reference of what A shows.
     pub(super) fn start_gathering(&mut self) {
-        let (Some(slot), Some(scene), Some(picture)) = (&self.desired.slots[0], &self.scene, &self.slots[0].picture)
+        let (Some(side), Some(scene), Some(picture)) = (&self.desired.sides[0], &self.scene, &self.sides[0].picture)
         else {
             return;
         };
-        let experiment = keep::still(&self.desired, slot, &self.name, picture.time, scene);
+        let experiment = keep::still(&self.desired, side, &self.name, picture.time, scene);
         self.fixed_size = Some(experiment.size);
         let (bounces, samples) = (self.query().bounces, self.chart.live.samples);
         let (home, gpu) = (self.home.clone(), self.gpu.clone());

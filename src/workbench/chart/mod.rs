@@ -56,7 +56,7 @@ impl Workbench {
             _ => Vec::new(),
         };
         let title = axis_title(self.chart.choice.metric);
-        let lives = [0, 1].map(|slot| self.chart.live.dot(slot, self.sent.number));
+        let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent.number));
         let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
         let shown = plot::Shown {
             chosen: &self.chart.chosen,
@@ -156,14 +156,14 @@ impl Workbench {
         });
     }
 
-    /// Shows a point's experiment in slot A, at its size: then its error can be compared.
+    /// Shows a point's experiment in side A, at its size: then its error can be compared.
     fn load_point(&mut self, dot: &Dot) {
         let Some(folder) = &self.chart.folder else { return };
         let short: String = dot.id.chars().take(8).collect();
         let name = format!("{}-{short}", folder::name(&folder.path));
         match Experiment::from_text(&folder.path.join(format!("{name}.ron")), &dot.experiment) {
             Ok(mut experiment) => {
-                if let Some(info) = self.slots[0].info.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph)) {
+                if let Some(info) = self.sides[0].info.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph)) {
                     without_defaults(&mut experiment, &info.graph.params);
                 }
                 self.fixed_size = Some(experiment.size);
@@ -174,7 +174,7 @@ impl Workbench {
                     json!({ "id": dot.id, "name": name, "params": experiment_params(&experiment) }),
                 );
             }
-            Err(errors) => self.slots[0].errors = errors,
+            Err(errors) => self.sides[0].errors = errors,
         }
     }
 

@@ -9,9 +9,9 @@ impl Workbench {
     /// What is known of A and B, and what can be done about what is not.
     pub(super) fn live_rows(&mut self, ui: &mut Ui, title: &str, lives: &[Option<Live>; 2]) {
         let mut missing = false;
-        for (slot, live) in lives.iter().enumerate().filter(|s| self.desired.slots[s.0].is_some()) {
-            let state = &self.chart.live.slots[slot];
-            let name = ["A", "B"][slot];
+        for (side, live) in lives.iter().enumerate().filter(|s| self.desired.sides[s.0].is_some()) {
+            let state = &self.chart.live.sides[side];
+            let name = ["A", "B"][side];
             match state.error.as_ref().map(|j| (&j.query, &j.result)) {
                 None if self.desired.clock.playing => {
                     drop(ui.weak(format!("{name}: its error is measured when time stands still")))
@@ -24,7 +24,7 @@ impl Workbench {
                         let noisy = query.metric == "relmse" && within_noise(error.error, Some(error.noise));
                         let noisy = if noisy { ", within the reference's noise" } else { "" };
                         let text = format!("{name}: {:.3} ms, {title} {:.4e}{noisy}{old}", live.ms, error.error);
-                        ui.colored_label(LIVE[slot], text).on_hover_text(format!(
+                        ui.colored_label(LIVE[side], text).on_hover_text(format!(
                             "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
                                  {}, {} samples a pixel; relMSE of its halves {:.2e}.",
                             state.times.len(),

@@ -6,19 +6,19 @@ use super::super::report::Report;
 use super::{Run, SETTLE, has_history};
 
 impl Run<'_> {
-    /// Sends what a slot shows to the error worker. A picture that is not there yet is asked for again.
+    /// Sends what a side shows to the error worker. A picture that is not there yet is asked for again.
     pub(super) fn measure_error(&mut self, number: usize, query: ErrorQuery) {
-        let (Some(desired), Some(scene)) = (&self.desired.slots[number], &self.scene) else { return };
-        let slot = &self.slots[number];
-        let shown = slot.session.as_ref().filter(|_| slot.key.as_ref() == Some(&self.key(desired, number)));
-        let (Some(session), Some(loaded)) = (shown, &slot.loaded) else {
+        let (Some(desired), Some(scene)) = (&self.desired.sides[number], &self.scene) else { return };
+        let side = &self.sides[number];
+        let shown = side.session.as_ref().filter(|_| side.key.as_ref() == Some(&self.key(desired, number)));
+        let (Some(session), Some(loaded)) = (shown, &side.loaded) else {
             let result = Err("what is asked for is not shown".into());
-            self.out.send(Report::Error(ErrorResult { slot: number, request: self.desired.number, query, result }));
+            self.out.send(Report::Error(ErrorResult { side: number, request: self.desired.number, query, result }));
             return;
         };
         let request = ErrorRequest {
-            slot: number,
-            request: slot.answered,
+            side: number,
+            request: side.answered,
             revision: self.desired.revision,
             query,
             lab: self.lab.clone(),
@@ -34,9 +34,9 @@ impl Run<'_> {
 
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
     pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
-        let (Some(desired), Some(scene)) = (self.desired.slots[number].clone(), self.scene.clone()) else { return };
+        let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone()) else { return };
         let experiment = keep::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
-        let settle = self.slots[number].session.as_ref().is_some_and(|s| has_history(s));
+        let settle = self.sides[number].session.as_ref().is_some_and(|s| has_history(s));
         let frames = if settle { SETTLE as usize } else { 1 };
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");

@@ -19,7 +19,7 @@ impl Run<'_> {
         self.turn += 1;
         for i in 0..2 {
             let number = (i + self.turn) % 2;
-            if self.slots[number].session.is_some() && self.slots[number].frames_left > 0 {
+            if self.sides[number].session.is_some() && self.sides[number].frames_left > 0 {
                 self.frame(number, rest)?;
             }
         }
@@ -46,32 +46,32 @@ impl Run<'_> {
 
     fn frame(&mut self, number: usize, rest: bool) -> Result<(), LabError> {
         let software = self.lab.gpu.info.kind == "cpu";
-        let slot = &mut self.slots[number];
-        let Some(session) = &mut slot.session else { return Ok(()) };
+        let side = &mut self.sides[number];
+        let Some(session) = &mut side.session else { return Ok(()) };
         if let Some(camera) = &self.desired.camera {
             session.set_camera(camera);
         }
         if let Some(path) = &self.desired.path {
             session.look(&path.at(self.clock.now));
         }
-        if std::mem::take(&mut slot.lights) {
+        if std::mem::take(&mut side.lights) {
             let own = session.scene.clone();
             let (lights, sky) = self.desired.lights.as_ref().map_or((&own.lights, own.sky), |(l, s)| (l, *s));
             session.set_lights(lights, sky);
         }
         session.set_time(self.clock.now);
-        slot.frame += 1;
-        slot.submitted.push_back(Submitted { request: slot.answered, time: self.clock.now, frame: slot.frame });
+        side.frame += 1;
+        side.submitted.push_back(Submitted { request: side.answered, time: self.clock.now, frame: side.frame });
         let captured = std::mem::take(&mut self.renderdoc).then(renderdoc::begin);
         let delta = if self.desired.clock.playing { self.desired.clock.step.unwrap_or(0.0) } else { 0.0 };
         let mut finished: Vec<FrameTimes> = session.frame(delta)?.into_iter().collect();
-        slot.frames_left -= 1;
+        side.frames_left -= 1;
         if !rest {
-            slot.frames_left = slot.frames_left.max(1);
+            side.frames_left = side.frames_left.max(1);
         }
         // Long frames gain nothing from another one ahead, and an edit would wait for it; a still picture must not wait
         // for the next change.
-        let ahead = u64::from(!(software || slot.last_ms > LONG || slot.frames_left == 0 || captured.is_some()));
+        let ahead = u64::from(!(software || side.last_ms > LONG || side.frames_left == 0 || captured.is_some()));
         finished.extend(session.program.finish_to(ahead)?);
         if let Some(begun) = captured {
             self.out.send(Report::Trouble(renderdoc::end(begun)));
@@ -82,17 +82,17 @@ impl Run<'_> {
     }
 
     pub(super) fn report_frames(&mut self, number: usize, finished: Vec<FrameTimes>) {
-        let slot = &mut self.slots[number];
+        let side = &mut self.sides[number];
         for times in finished {
-            let Some(submitted) = slot.submitted.pop_front() else { continue };
-            slot.last_ms = times.gpu_ms;
+            let Some(submitted) = side.submitted.pop_front() else { continue };
+            side.last_ms = times.gpu_ms;
             let Some(bytes) = times.picture else { continue };
-            let size = slot.session.as_ref().map_or(self.desired.size, |s| s.size());
+            let size = side.session.as_ref().map_or(self.desired.size, |s| s.size());
             self.out.send(Report::Picture(PictureReport {
-                slot: number,
+                side: number,
                 request: submitted.request,
-                revision: slot.key.as_ref().map_or(0, |k| k.revision),
-                preview: slot.preview,
+                revision: side.key.as_ref().map_or(0, |k| k.revision),
+                preview: side.preview,
                 frame: submitted.frame,
                 time: submitted.time,
                 size: [size.0, size.1],
@@ -106,10 +106,10 @@ impl Run<'_> {
 
     /// Reads what the inspector and the table show: at once when still, else some times a second.
     fn look(&mut self, number: usize) -> Result<(), LabError> {
-        let slot = &mut self.slots[number];
-        let Some(session) = slot.session.as_mut().filter(|_| !slot.preview) else { return Ok(()) };
-        let now = slot.frames_left == 0 || self.last_look.elapsed() > Duration::from_millis(150);
-        let look = self.desired.look.as_ref().filter(|l| l.slot == number);
+        let side = &mut self.sides[number];
+        let Some(session) = side.session.as_mut().filter(|_| !side.preview) else { return Ok(()) };
+        let now = side.frames_left == 0 || self.last_look.elapsed() > Duration::from_millis(150);
+        let look = self.desired.look.as_ref().filter(|l| l.side == number);
         if !now || (look.is_none() && self.desired.table.is_none()) {
             return Ok(());
         }
@@ -117,7 +117,7 @@ impl Run<'_> {
         if let Some(look) = look {
             match session.slice(&look.texture, look.mip, look.layer, look.axis, look.slice) {
                 Ok(texels) => {
-                    slot.looked = Some(look.clone());
+                    side.looked = Some(look.clone());
                     self.out.send(Report::Texels(look.clone(), Box::new(texels)));
                 }
                 Err(LabError::Vulkan(e)) => return Err(e.into()),
@@ -137,12 +137,12 @@ impl Run<'_> {
 
     /// Asks the graph's checks once for each build.
     fn check(&mut self, number: usize) -> Result<(), LabError> {
-        let slot = &mut self.slots[number];
-        if slot.frames_left > 0 || slot.preview || slot.checked == slot.key {
+        let side = &mut self.sides[number];
+        if side.frames_left > 0 || side.preview || side.checked == side.key {
             return Ok(());
         }
-        slot.checked.clone_from(&slot.key);
-        if let Some(session) = &mut slot.session {
+        side.checked.clone_from(&side.key);
+        if let Some(session) = &mut side.session {
             let failed = session.failed_checks()?;
             self.out.send(Report::Checks(number, failed));
         }

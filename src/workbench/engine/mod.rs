@@ -26,9 +26,9 @@ use std::time::{Duration, Instant};
 pub enum Order {
     /// The desired state changed.
     Reconcile,
-    /// Save what slot A or B shows, under a name; with these resources.
+    /// Save what side A or B shows, under a name; with these resources.
     Capture(usize, String, Vec<String>),
-    /// Measure the error of what slot A or B shows against its reference.
+    /// Measure the error of what side A or B shows against its reference.
     MeasureError(usize, ErrorQuery),
     /// Render so many more frames of what is shown, to measure.
     Frames(u32),
@@ -110,7 +110,7 @@ struct Submitted {
 }
 
 #[derive(Default)]
-struct Slot {
+struct Side {
     session: Option<Box<Session>>,
     loaded: Option<Loaded>,
     /// What the session was built from.
@@ -126,7 +126,7 @@ struct Slot {
     last_ms: f64,
     /// The last request that the session, or the failure to build one, answers.
     answered: u64,
-    /// Frames still to render before the slot rests.
+    /// Frames still to render before the side rests.
     frames_left: u32,
     lights: bool,
     checked: Option<Key>,
@@ -137,7 +137,7 @@ struct Run<'a> {
     lab: Lab,
     out: &'a Out,
     desired: RenderRequest,
-    slots: [Slot; 2],
+    sides: [Side; 2],
     jobs: Sender<Job>,
     error_requests: Sender<ErrorRequest>,
     scene: Option<Arc<Scene>>,
@@ -216,7 +216,7 @@ fn session(
         lab,
         out,
         desired: RenderRequest::default(),
-        slots: Default::default(),
+        sides: Default::default(),
         jobs,
         error_requests,
         scene: None,
@@ -276,13 +276,13 @@ fn session(
 
 impl Run<'_> {
     fn busy(&self) -> bool {
-        self.slots.iter().any(|s| s.session.is_some() && s.frames_left > 0)
+        self.sides.iter().any(|s| s.session.is_some() && s.frames_left > 0)
     }
 
     /// Whether a build is about to be done, so that beginning a long frame of what it replaces would only delay it.
     fn awaits_build(&self) -> bool {
         let soon = |since: Instant| since.elapsed() < PATIENCE;
-        self.slots.iter().any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
+        self.sides.iter().any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
     }
 
     fn handle(
@@ -305,8 +305,8 @@ impl Run<'_> {
                         cancel.store(true, Ordering::Relaxed);
                     }
                 }
-                Order::Capture(slot, name, resources) => self.capture(slot, name, resources),
-                Order::MeasureError(slot, query) => self.measure_error(slot, query),
+                Order::Capture(side, name, resources) => self.capture(side, name, resources),
+                Order::MeasureError(side, query) => self.measure_error(side, query),
                 Order::Frames(count) => self.request_frames(count),
                 Order::RenderDoc => {
                     self.renderdoc = true;
@@ -333,8 +333,8 @@ impl Run<'_> {
             self.clock.last = Instant::now();
         }
         if self.desired.lights != old.lights {
-            for slot in &mut self.slots {
-                slot.lights = true;
+            for side in &mut self.sides {
+                side.lights = true;
             }
         }
         // Files, parameters and sizes ask for frames when what they lead to has been built.
@@ -343,8 +343,8 @@ impl Run<'_> {
             self.request_frames(1);
         }
         for i in 0..2 {
-            if self.desired.slots[i].is_none() {
-                self.slots[i] = Slot { building: self.slots[i].building, ..Slot::default() };
+            if self.desired.sides[i].is_none() {
+                self.sides[i] = Side { building: self.sides[i].building, ..Side::default() };
             }
         }
         self.load_scene();
@@ -356,9 +356,9 @@ impl Run<'_> {
 
     /// Asks for frames: as many as it takes until graphs with history have settled.
     fn request_frames(&mut self, least: u32) {
-        for slot in &mut self.slots {
-            let settle = if slot.session.as_ref().is_some_and(|s| has_history(s)) { SETTLE } else { 1 };
-            slot.frames_left = slot.frames_left.max(least.max(settle));
+        for side in &mut self.sides {
+            let settle = if side.session.as_ref().is_some_and(|s| has_history(s)) { SETTLE } else { 1 };
+            side.frames_left = side.frames_left.max(least.max(settle));
         }
     }
 }

@@ -157,7 +157,7 @@ pub(super) mod tests {
     use super::*;
 
     pub fn decoded(name: &str, size: [u32; 2], bytes: Vec<u8>) -> Decoded {
-        let look = Look { slot: 0, texture: "t".into(), mip: 0, layer: 0, axis: 2, slice: 0 };
+        let look = Look { side: 0, texture: "t".into(), mip: 0, layer: 0, axis: 2, slice: 0 };
         let format = Format::named(name).unwrap();
         Decoded::new(look, Texels { extent: [size[0], size[1], 1], format, bytes })
     }
@@ -210,7 +210,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_slice_knows_where_it_lies() {
-        let look = |axis| Look { slot: 0, texture: "t".into(), mip: 0, layer: 0, axis, slice: 9 };
+        let look = |axis| Look { side: 0, texture: "t".into(), mip: 0, layer: 0, axis, slice: 9 };
         assert_eq!(texel(&look(0), true, 1, 2), [9, 1, 2]);
         assert_eq!(texel(&look(1), true, 1, 2), [1, 9, 2]);
         assert_eq!(texel(&look(2), true, 1, 2), [1, 2, 9]);

@@ -70,7 +70,7 @@ impl Workbench {
         self.under_pointer(&painter, pointer, shown, texel);
         let look = &self.inspector.look;
         let name =
-            format!("{} {}  mip {}  × {:.3}", ["A", "B"][look.slot.min(1)], look.texture, look.mip, texel * scale);
+            format!("{} {}  mip {}  × {:.3}", ["A", "B"][look.side.min(1)], look.texture, look.mip, texel * scale);
         note(&painter, area, area.left_top() + Vec2::new(6.0, 6.0), &name);
     }
 
@@ -89,7 +89,7 @@ impl Workbench {
             painter.rect_stroke(cell, 0.0, Stroke::new(1.0, Color32::YELLOW), egui::StrokeKind::Outside);
         }
         let look = &done.decoded.look;
-        let info = self.slots[look.slot.min(1)].info.as_ref();
+        let info = self.sides[look.side.min(1)].info.as_ref();
         let index = info.and_then(|o| o.graph.textures.iter().position(|t| t.0 == look.texture));
         let volume = info.zip(index).is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
         let place: Vec<String> = image::texel(look, volume, x, y).iter().map(ToString::to_string).collect();

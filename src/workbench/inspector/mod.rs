@@ -35,7 +35,7 @@ pub struct Inspector {
 impl Default for Inspector {
     fn default() -> Self {
         Inspector {
-            look: Look { slot: 0, texture: String::new(), mip: 0, layer: 0, axis: 2, slice: 0 },
+            look: Look { side: 0, texture: String::new(), mip: 0, layer: 0, axis: 2, slice: 0 },
             middle: true,
             tone: Tone::default(),
             fit: true,
@@ -49,19 +49,19 @@ impl Default for Inspector {
 
 impl Inspector {
     /// Chooses a texture.
-    pub fn open(&mut self, slot: usize, texture: String) {
+    pub fn open(&mut self, side: usize, texture: String) {
         if self.look.texture != texture {
             self.fit = true;
             self.sight = middle::Sight::default();
         }
         // A slice that no volume has becomes the one in the middle.
-        self.look = Look { slot, texture, mip: 0, layer: 0, axis: self.look.axis, slice: u32::MAX };
+        self.look = Look { side, texture, mip: 0, layer: 0, axis: self.look.axis, slice: u32::MAX };
     }
 
     /// Takes in the texels that were asked for.
     pub fn note(&mut self, look: Look, texels: Texels, wake: &Arc<dyn Fn() + Send + Sync>) {
         // What was asked for before the user chose anew would only hold up what is to come.
-        if look.texture != self.look.texture || look.slot != self.look.slot {
+        if look.texture != self.look.texture || look.side != self.look.side {
             return;
         }
         let fit = std::mem::take(&mut self.fit);
@@ -112,15 +112,15 @@ impl Workbench {
     /// The tab.
     pub(super) fn inspector_tab(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         self.view_buttons(ui);
-        if self.desired.slots[1].is_none() {
-            self.inspector.look.slot = 0;
+        if self.desired.sides[1].is_none() {
+            self.inspector.look.side = 0;
         } else {
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.inspector.look.slot, 0, "A");
-                ui.selectable_value(&mut self.inspector.look.slot, 1, "B");
+                ui.selectable_value(&mut self.inspector.look.side, 0, "A");
+                ui.selectable_value(&mut self.inspector.look.side, 1, "B");
             });
         }
-        let Some(info) = self.slots[self.inspector.look.slot].info.clone() else {
+        let Some(info) = self.sides[self.inspector.look.side].info.clone() else {
             ui.weak(self.waiting_text());
             return;
         };
@@ -147,7 +147,7 @@ impl Workbench {
         if !names.contains(&self.inspector.look.texture.as_str()) {
             let preferred = info.graph.hdr.as_deref().or(info.graph.output.as_deref());
             let name = preferred.or(names.first().copied())?.to_string();
-            self.inspector.open(self.inspector.look.slot, name);
+            self.inspector.open(self.inspector.look.side, name);
         }
         let mut chosen = None;
         let box_ = egui::ComboBox::from_id_salt("texture").width(ui.available_width() - 8.0);
@@ -160,7 +160,7 @@ impl Workbench {
             }
         });
         if let Some(name) = chosen {
-            self.inspector.open(self.inspector.look.slot, name);
+            self.inspector.open(self.inspector.look.side, name);
         }
         let look = &mut self.inspector.look;
         let index = info.graph.textures.iter().position(|t| t.0 == look.texture)?;
