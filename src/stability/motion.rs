@@ -110,12 +110,12 @@ pub enum Unit {
     Voxels,
 }
 
-/// What a frame sees: two frames with the same one have the same truth.
+/// State of the scene at a frame: two frames with equal states have the same reference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
-    /// From where.
+pub struct FrameState {
+    /// The camera.
     pub camera: PlacedCamera,
-    /// s.
+    /// Time of the scene, s.
     pub time: f64,
     /// The scene's lights.
     pub lights: Vec<Light>,
@@ -201,12 +201,12 @@ impl Motion {
 
     /// Frame `number`, where 0 is the first measured one and those before are negative: what moves has moved before. `cell`
     /// is the edge of a cell, m.
-    pub fn moment(&self, start: &Moment, number: i64, cell: f32) -> Moment {
+    pub fn frame_state(&self, start: &FrameState, number: i64, cell: f32) -> FrameState {
         let n = number as f32;
-        let mut moment = start.clone();
+        let mut state = start.clone();
         if number == 0 && !matches!(self, Motion::Switch { .. }) {
             // To the bit: cases that begin alike share a reference.
-            return moment;
+            return state;
         }
         match self {
             Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } | Motion::Path { .. } => {}
@@ -220,12 +220,12 @@ impl Motion {
                 let eye = eye + (forward * *dolly + right * *strafe + above * *rise) * length;
                 let turn = Quat::from_axis_angle(above, (n * yaw).to_radians())
                     * Quat::from_axis_angle(right, (n * pitch).to_radians());
-                moment.camera.eye = eye.into();
-                moment.camera.target = (eye + turn * view).into();
+                state.camera.eye = eye.into();
+                state.camera.target = (eye + turn * view).into();
             }
-            Motion::Actors { step, .. } => moment.time = start.time + number as f64 * step,
+            Motion::Actors { step, .. } => state.time = start.time + number as f64 * step,
             Motion::Light { name, shift, turn } => {
-                for light in moment.lights.iter_mut().filter(|l| l.name == *name) {
+                for light in state.lights.iter_mut().filter(|l| l.name == *name) {
                     light.position += Vec3::from(*shift) * n;
                     let turned = Quat::from_rotation_y((n * turn).to_radians()) * light.direction;
                     light.direction = if *turn == 0.0 { light.direction } else { turned.normalize_or(light.direction) };
@@ -233,12 +233,12 @@ impl Motion {
             }
             Motion::Switch { name, at, from, to } => {
                 let part = if number < *at as i64 { *from } else { *to };
-                for light in moment.lights.iter_mut().filter(|l| l.name == *name) {
+                for light in state.lights.iter_mut().filter(|l| l.name == *name) {
                     light.color *= part;
                 }
             }
         }
-        moment
+        state
     }
 
     /// The motion in a few words.

@@ -2,8 +2,8 @@
 
 use super::cameras::Cameras;
 use super::file::{Case, Method, Suite};
-use super::motion::Moment;
-use super::moved::Moved;
+use super::motion::FrameState;
+use super::param_track::ParamTrack;
 use crate::capture::{hex, scene_hash};
 use crate::experiment::{Experiment, check_size};
 use crate::graph::source::{At, Diagnostic, Loc};
@@ -58,11 +58,11 @@ pub struct Job {
     /// Its content as a number.
     pub scene_hash: String,
     /// Camera, time and light before anything moved.
-    pub start: Moment,
+    pub start: FrameState,
     /// Cameras that do not move on from the start.
     pub cameras: Option<Cameras>,
     /// The parameter that moves.
-    pub moved: Option<Moved>,
+    pub track: Option<ParamTrack>,
     /// Whether the graph of references has it too, so that the truth moves with it.
     pub truth_moves: bool,
     /// Frames measured.
@@ -157,9 +157,9 @@ fn job(
     let listed = lister.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
     case.motion.check(&listed.scene).map_err(wrong)?;
     let params = listed.experiment.params_over(&loaded.graph.params)?;
-    let moved = Moved::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
-    let truth_moves = match &moved {
-        Some(moved) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&moved.name).is_some(),
+    let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
+    let truth_moves = match &track {
+        Some(track) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&track.name).is_some(),
         None => false,
     };
     if let Some(at) = case.motion.event().filter(|at| frames.saturating_sub(2) < *at) {
@@ -173,7 +173,7 @@ fn job(
         }
         None => (listed.scene.clone(), listed.subject.sha256.clone()),
     };
-    let start = Moment {
+    let start = FrameState {
         camera: camera_of(&listed.experiment, &scene)?,
         time: listed.experiment.time,
         lights: scene.lights.clone(),
@@ -198,7 +198,7 @@ fn job(
         scene_hash: hash,
         start,
         cameras,
-        moved,
+        track,
         truth_moves,
         frames,
     })
@@ -217,11 +217,11 @@ fn number(facts: &[String]) -> String {
 }
 
 impl Job {
-    /// What frame `number` sees; see [`super::Motion::moment`].
-    pub fn moment(&self, number: i64, cell: f32) -> Moment {
-        let setting = self.moved.as_ref().filter(|_| self.truth_moves).map(|m| (m.name.clone(), m.at(number)));
-        let moment = self.case.motion.moment(&self.start, number, cell);
-        let camera = self.cameras.as_ref().map_or(moment.camera, |c| c.at(&self.start.camera, number));
-        Moment { camera, setting, ..moment }
+    /// What frame `number` sees; see [`super::Motion::frame_state`].
+    pub fn frame_state(&self, number: i64, cell: f32) -> FrameState {
+        let setting = self.track.as_ref().filter(|_| self.truth_moves).map(|m| (m.name.clone(), m.at(number)));
+        let state = self.case.motion.frame_state(&self.start, number, cell);
+        let camera = self.cameras.as_ref().map_or(state.camera, |c| c.at(&self.start.camera, number));
+        FrameState { camera, setting, ..state }
     }
 }

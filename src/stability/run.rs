@@ -2,7 +2,7 @@
 
 use super::chart_spec::CostChart;
 use super::file::Suite;
-use super::motion::{Moment, Motion};
+use super::motion::{FrameState, Motion};
 use super::pictures::Panels;
 use super::plan::{Job, Options, plan};
 use super::plot::Plot;
@@ -208,11 +208,11 @@ impl Runner {
         let mut worst: Option<Bad> = None;
         let mut samples = 0;
         let mut lights = job.scene.lights.clone();
-        let mut before: Option<(Moment, Option<Arc<Truth>>)> = None;
+        let mut before: Option<(FrameState, Option<Arc<Truth>>)> = None;
         let warmup = i64::try_from(job.case.warmup).unwrap_or(0);
         let frames = i64::try_from(job.frames).unwrap_or(1);
         for number in -warmup..frames {
-            let moment = place(lab, &mut session, job, number, cell, &mut lights)?;
+            let state = place(lab, &mut session, job, number, cell, &mut lights)?;
             times.extend(session.frame(motion.delta())?);
             let Ok(frame) = usize::try_from(number) else { continue };
             times.extend(session.finish()?);
@@ -221,11 +221,11 @@ impl Runner {
                     warnings.push(message);
                 }
             }
-            let changed = before.as_ref().is_none_or(|b| b.0 != moment);
+            let changed = before.as_ref().is_none_or(|b| b.0 != state);
             let truth = match (&before, self.reference) {
                 (_, false) => None,
                 (Some((_, Some(truth))), true) if !changed => Some(truth.clone()),
-                _ => Some(self.truths.get(lab, warm, job, &moment, &mut |now| on_progress(Progress::Gathers(now)))?),
+                _ => Some(self.truths.get(lab, warm, job, &state, &mut |now| on_progress(Progress::Gathers(now)))?),
             };
             if let Some(truth) = &truth {
                 if frame > 0 && truth.samples != samples {
@@ -254,7 +254,7 @@ impl Runner {
                     worst = Some(Bad { frame, bad, panels });
                 }
             }
-            before = Some((moment, truth));
+            before = Some((state, truth));
         }
         let times: Vec<f64> = times.iter().skip(job.case.warmup).map(|t| t.gpu_ms).collect();
         let last = before.map_or(job.start.time, |b| b.0.time);
@@ -319,20 +319,20 @@ pub(super) fn place(
     number: i64,
     cell: f32,
     lights: &mut Vec<Light>,
-) -> Result<Moment, LabError> {
-    let moment = job.moment(number, cell);
-    if let Some(moved) = &job.moved {
-        set(lab, session, &moved.name, moved.at(number))?;
+) -> Result<FrameState, LabError> {
+    let state = job.frame_state(number, cell);
+    if let Some(track) = &job.track {
+        set(lab, session, &track.name, track.at(number))?;
     }
-    session.look(&moment.camera);
-    session.set_time(moment.time);
-    if moment.lights != *lights {
-        if !session.set_lights(&moment.lights, job.scene.sky) {
+    session.look(&state.camera);
+    session.set_time(state.time);
+    if state.lights != *lights {
+        if !session.set_lights(&state.lights, job.scene.sky) {
             return Err(LabError::Request("a light that moves must keep its kind and its shadow".into()));
         }
-        lights.clone_from(&moment.lights);
+        lights.clone_from(&state.lights);
     }
-    Ok(moment)
+    Ok(state)
 }
 
 /// The voxels of the last frame against exact ones, if the case asks for it and the method can.

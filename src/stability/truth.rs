@@ -1,6 +1,6 @@
 //! References of frames.
 
-use super::motion::Moment;
+use super::motion::FrameState;
 use super::plan::Job;
 use crate::experiment::{CameraChoice, Experiment};
 use crate::lab::{Lab, LabError};
@@ -51,30 +51,30 @@ impl Truths {
         Truths { tracing, tracer: Tracer::default(), found: HashMap::new() }
     }
 
-    /// The reference of a moment of a job, from memory, from the disk, or traced now.
+    /// The reference of a frame state of a job, from memory, from the disk, or traced now.
     pub fn get(
         &mut self,
         lab: &Lab,
         warm: &mut Warm,
         job: &Job,
-        moment: &Moment,
+        state: &FrameState,
         on_progress: &mut dyn FnMut(Gathered),
     ) -> Result<Arc<Truth>, LabError> {
-        let key = key(lab, warm, job, moment)?;
+        let key = key(lab, warm, job, state)?;
         if let Some(found) = self.found.get(&key) {
             return Ok(found.clone());
         }
         let mut experiment: Experiment = job.experiment.clone();
-        experiment.camera = CameraChoice::Placed(moment.camera);
-        experiment.time = moment.time;
-        if let Some((name, value)) = &moment.setting {
+        experiment.camera = CameraChoice::Placed(state.camera);
+        experiment.time = state.time;
+        if let Some((name, value)) = &state.setting {
             experiment.set(name, &value.to_string());
         }
         // One seed for all frames: what noise they have is much the same, and goes out of their differences.
         experiment.set("seed", &self.tracing.seed.to_string());
-        let scene = match moment.lights == job.scene.lights {
+        let scene = match state.lights == job.scene.lights {
             true => job.scene.clone(),
-            false => Arc::new(Scene { lights: moment.lights.clone(), ..Scene::clone(&job.scene) }),
+            false => Arc::new(Scene { lights: state.lights.clone(), ..Scene::clone(&job.scene) }),
         };
         let goal = Goal::Samples(self.tracing.samples);
         let (reference, mut halves) =
@@ -101,13 +101,13 @@ impl Truths {
     }
 }
 
-/// What the reference of a moment depends on: what is looked at, and the parameters that its graph shares with that of
+/// What the reference of a frame state depends on: what is looked at, and the parameters that its graph shares with that of
 /// references.
-fn key(lab: &Lab, warm: &mut Warm, job: &Job, moment: &Moment) -> Result<String, LabError> {
+fn key(lab: &Lab, warm: &mut Warm, job: &Job, state: &FrameState) -> Result<String, LabError> {
     let shared = warm.graph(&lab.home, GRAPH)?.graph.params.clone();
     let own = &warm.graph(&lab.home, &job.experiment.graph)?.graph.params;
     let params = job.experiment.params_over(own)?;
     let values = params.list.iter().zip(&params.values).filter(|(p, _)| shared.index(&p.name).is_some());
     let values: Vec<String> = values.map(|(p, v)| format!("{}={v}", p.name)).collect();
-    Ok(format!("{} {:?} {moment:?} {}", job.scene_hash, job.experiment.size, values.join(" ")))
+    Ok(format!("{} {:?} {state:?} {}", job.scene_hash, job.experiment.size, values.join(" ")))
 }
