@@ -15,7 +15,7 @@ use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, ReusableParts, Session};
 use crate::measure::{Frames, Timed, Warm, timed};
 use crate::stats::{self, DeviceStats, Spread, Stats, spread};
-use crate::sweep::Listed;
+use crate::sweep::SweepPoint;
 use indexmap::IndexMap;
 use serde::Serialize;
 
@@ -87,7 +87,7 @@ pub fn bench(
     lab: &Lab,
     warm: &mut Warm,
     names: Vec<String>,
-    points: &[Listed],
+    points: &[SweepPoint],
     rounds: usize,
     frames: Frames,
     tick: &dyn Fn(),

@@ -7,7 +7,7 @@ use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::{Home, LabError};
 use crate::measure::{Frames, Warm};
 use crate::stats::DeviceStats;
-use crate::sweep::{Labels, Listed, Setting, read_json};
+use crate::sweep::{Labels, Setting, SweepPoint, read_json};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -97,7 +97,7 @@ impl Record {
     ///
     /// # Errors
     /// A configuration that failed; a device without timestamps.
-    pub fn of(bench: &Bench, points: &[Listed], home: &Home) -> Result<Record, LabError> {
+    pub fn of(bench: &Bench, points: &[SweepPoint], home: &Home) -> Result<Record, LabError> {
         let mut configurations = Vec::new();
         for (configuration, point) in bench.configurations.iter().zip(points) {
             let Some(times) = &configuration.times else {
@@ -218,8 +218,8 @@ impl Lines {
 }
 
 impl Recorded {
-    fn of(point: &Listed, times: &Times, home: &Home) -> Recorded {
-        let Listed { experiment, subject, .. } = point;
+    fn of(point: &SweepPoint, times: &Times, home: &Home) -> Recorded {
+        let SweepPoint { experiment, subject, .. } = point;
         let file = experiment.sources.paths().next().unwrap_or(Path::new(""));
         let scene = match Path::new(&experiment.scene).is_file() {
             true => from_root(home, Path::new(&experiment.scene)),

@@ -11,7 +11,7 @@ use super::run::{Progress, cell_of, median, place};
 use crate::lab::{Lab, LabError, ReusableParts};
 use crate::measure::{Warm, WarmUp};
 use crate::oracle;
-use crate::sweep::Lister;
+use crate::sweep::PointBuilder;
 use crate::vulkan::VulkanError;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -101,7 +101,7 @@ impl Cost {
 /// What is wrong with the suite; no device; a method that can be timed at none of its values.
 pub(super) fn costs(
     lab: &Lab,
-    lister: &mut Lister,
+    builder: &mut PointBuilder,
     warm: &mut Warm,
     (suite, chart): (&Suite, &CostChart),
     options: &Options,
@@ -117,7 +117,7 @@ pub(super) fn costs(
         ..suite.clone()
     };
     let options = Options { only: Vec::new(), ..options.clone() };
-    let jobs = plan(&lab.home, &lab.gpu.info, lister, warm, &timed, &options)?;
+    let jobs = plan(&lab.home, &lab.gpu.info, builder, warm, &timed, &options)?;
     let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
     let path = options.folder.join("cost.json");
     let kept = read(&path);

@@ -28,6 +28,6 @@ pub use motion::{FrameState, Motion, Unit};
 pub use param_track::ParamTrack;
 pub use plan::{Job, Options, plan};
 pub use record::{FrameScore, Measured, Outcome, PartResult, Record, Report, Worst};
-pub use run::{Progress, Tally, run};
+pub use run::{Counts, Progress, run};
 pub use score::{Change, Flicker, Step, change, display, flicker, settling, step};
 pub use sheet::{Failure, failures, sheet, table as failure_table};

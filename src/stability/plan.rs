@@ -11,7 +11,7 @@ use crate::lab::{Home, LabError, camera_of, parts_of};
 use crate::measure::{Frames, Warm};
 use crate::reference;
 use crate::scene::Scene;
-use crate::sweep::Lister;
+use crate::sweep::PointBuilder;
 use crate::vulkan::DeviceInfo;
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
@@ -76,7 +76,7 @@ pub struct Job {
 pub fn plan(
     home: &Home,
     device: &DeviceInfo,
-    lister: &mut Lister,
+    builder: &mut PointBuilder,
     warm: &mut Warm,
     suite: &Suite,
     options: &Options,
@@ -93,7 +93,7 @@ pub fn plan(
     let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
     for case in suite.cases.iter().filter(wanted) {
         for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
-            match job(home, device, lister, warm, suite, options, (method, case, &truth)) {
+            match job(home, device, builder, warm, suite, options, (method, case, &truth)) {
                 Ok(job) => jobs.push(job),
                 Err(LabError::Input(list)) => {
                     for diagnostic in list {
@@ -112,7 +112,7 @@ pub fn plan(
 fn job(
     home: &Home,
     device: &DeviceInfo,
-    lister: &mut Lister,
+    builder: &mut PointBuilder,
     warm: &mut Warm,
     suite: &Suite,
     options: &Options,
@@ -154,9 +154,9 @@ fn job(
         let (part, known) = (&suite.pictures, names.join(", "));
         return Err(wrong(format!("no pictures of '{part}': the parts of graph '{}' are {known}", loaded.graph.name)));
     }
-    let listed = lister.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
-    case.motion.check(&listed.scene).map_err(wrong)?;
-    let params = listed.experiment.params_over(&loaded.graph.params)?;
+    let point = builder.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
+    case.motion.check(&point.scene).map_err(wrong)?;
+    let params = point.experiment.params_over(&loaded.graph.params)?;
     let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
     let truth_moves = match &track {
         Some(track) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&track.name).is_some(),
@@ -165,23 +165,23 @@ fn job(
     if let Some(at) = case.motion.event().filter(|at| frames.saturating_sub(2) < *at) {
         return Err(wrong(format!("what happens at frame {at} needs two frames more, there are {frames}")));
     }
-    let cameras = Cameras::of(&case.motion, &listed.experiment, &listed.scene, &suite.folder)?;
-    let (scene, hash) = match case.motion.stage(&listed.scene) {
+    let cameras = Cameras::of(&case.motion, &point.experiment, &point.scene, &suite.folder)?;
+    let (scene, hash) = match case.motion.stage(&point.scene) {
         Some(staged) => {
             let hash = scene_hash(&staged);
             (Arc::new(staged), hash)
         }
-        None => (listed.scene.clone(), listed.subject.sha256.clone()),
+        None => (point.scene.clone(), point.subject.sha256.clone()),
     };
     let start = FrameState {
-        camera: camera_of(&listed.experiment, &scene)?,
-        time: listed.experiment.time,
+        camera: camera_of(&point.experiment, &scene)?,
+        time: point.experiment.time,
         lights: scene.lights.clone(),
         setting: None,
     };
     let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
     let work =
-        number(&[listed.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
+        number(&[point.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
     let id = number(&[
         work.clone(),
         format!("{samples:?} {} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels, suite.pictures),
@@ -193,7 +193,7 @@ fn job(
         work,
         method: method.name.clone(),
         case: case.clone(),
-        experiment: listed.experiment,
+        experiment: point.experiment,
         scene,
         scene_hash: hash,
         start,

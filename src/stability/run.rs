@@ -18,7 +18,7 @@ use crate::oracle::{self, Surfaces};
 use crate::reference::Gathered;
 use crate::scene::{Light, Scene};
 use crate::stats::DeviceStats;
-use crate::sweep::Lister;
+use crate::sweep::PointBuilder;
 use crate::vulkan::VulkanError;
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
@@ -52,7 +52,7 @@ pub enum Progress<'a> {
 
 /// How far a suite is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct Counts {
     /// Measured.
     pub done: usize,
     /// Failed.
@@ -70,18 +70,18 @@ pub fn run(
     suite: &Suite,
     options: &Options,
     on_progress: &mut dyn FnMut(Progress),
-) -> Result<(Tally, Report), LabError> {
+) -> Result<(Counts, Report), LabError> {
     let mut lab = reopen()?;
     let mut warm = Warm::default();
     let home = lab.home.clone();
     // Opens each scene once for all plans.
-    let mut lister = Lister::new(&home, open_scene);
-    let mut jobs = plan(&home, &lab.gpu.info, &mut lister, &mut warm, suite, options)?;
+    let mut builder = PointBuilder::new(&home, open_scene);
+    let mut jobs = plan(&home, &lab.gpu.info, &mut builder, &mut warm, suite, options)?;
     let mut costs = Vec::new();
     if let Some(chart) = &suite.chart {
-        costs = cost::costs(&lab, &mut lister, &mut warm, (suite, chart), options, on_progress)?;
+        costs = cost::costs(&lab, &mut builder, &mut warm, (suite, chart), options, on_progress)?;
         let chosen = cost::chosen(suite, chart, &costs);
-        jobs = plan(&home, &lab.gpu.info, &mut lister, &mut warm, &chosen, options)?;
+        jobs = plan(&home, &lab.gpu.info, &mut builder, &mut warm, &chosen, options)?;
     }
     let folder = Folder(options.folder.clone());
     let samples = options.samples.unwrap_or(suite.samples);
@@ -92,7 +92,7 @@ pub fn run(
     let before = finished.iter().flatten().count();
     on_progress(Progress::Begins { todo: jobs.len() - before, before });
     let mut results = Vec::new();
-    let mut tally = Tally::default();
+    let mut counts = Counts::default();
     for (job, kept) in jobs.iter().zip(finished) {
         let record = match kept {
             Some(record) => record,
@@ -116,8 +116,8 @@ pub fn run(
             }
         };
         match record.outcome {
-            Outcome::Done(_) => tally.done += 1,
-            Outcome::Failed(_) => tally.failed += 1,
+            Outcome::Done(_) => counts.done += 1,
+            Outcome::Failed(_) => counts.failed += 1,
         }
         results.push(record);
     }
@@ -131,7 +131,7 @@ pub fn run(
         results,
     };
     write(&report, suite.chart.as_ref(), options)?;
-    Ok((tally, report))
+    Ok((counts, report))
 }
 
 /// Tables, JSON, charts and the page.

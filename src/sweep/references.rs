@@ -1,6 +1,6 @@
 //! The references of a sweep's points.
 
-use super::list::Listed;
+use super::list::SweepPoint;
 use super::run::Progress;
 use crate::lab::{Lab, LabError};
 use crate::measure::Warm;
@@ -30,7 +30,7 @@ impl<'s> References<'s> {
         &mut self,
         lab: &Lab,
         warm: &mut Warm,
-        point: &Listed,
+        point: &SweepPoint,
         on_progress: &mut dyn FnMut(Progress),
     ) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
         let key = key(lab, warm, point)?;
@@ -60,7 +60,7 @@ impl<'s> References<'s> {
 
 /// What the reference of a point depends on: what is looked at, and the parameters that its graph shares with that of
 /// references.
-fn key(lab: &Lab, warm: &mut Warm, point: &Listed) -> Result<String, LabError> {
+fn key(lab: &Lab, warm: &mut Warm, point: &SweepPoint) -> Result<String, LabError> {
     let shared = warm.graph(&lab.home, GRAPH)?.graph.params.clone();
     let own = &warm.graph(&lab.home, &point.experiment.graph)?.graph.params;
     let params = point.experiment.params_over(own)?;

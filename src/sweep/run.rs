@@ -1,6 +1,6 @@
 //! Measuring the points of a sweep, one after another.
 
-use super::list::{Listed, Lister, list};
+use super::list::{PointBuilder, SweepPoint, list};
 use super::points::Sweep;
 use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, collect, write_file};
 use super::references::References;
@@ -52,12 +52,12 @@ pub enum Progress<'a> {
     /// A reference is being gathered.
     Gathers(Gathered),
     /// A point is finished.
-    Finished(&'a Listed, &'a Record),
+    Finished(&'a SweepPoint, &'a Record),
 }
 
 /// How far a shard is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct Counts {
     /// Measured.
     pub done: usize,
     /// Failed.
@@ -77,12 +77,12 @@ pub fn run(
     sweep: &Sweep,
     options: &Options,
     on_progress: &mut dyn FnMut(Progress),
-) -> Result<Tally, LabError> {
+) -> Result<Counts, LabError> {
     let mut lab = reopen()?;
     let home = lab.home.clone();
     let mut warm = Warm::default();
-    let mut lister = Lister::new(&home, open_scene);
-    let (points, equal) = list(&mut lister, &mut warm, sweep, options.frames)?;
+    let mut builder = PointBuilder::new(&home, open_scene);
+    let (points, equal) = list(&mut builder, &mut warm, sweep, options.frames)?;
     if equal > 0 {
         on_progress(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
     }
@@ -90,9 +90,9 @@ pub fn run(
     folder.clean();
     folder.write_manifest(&Manifest::new(sweep, options.frames, &points))?;
     let Shard { number, of } = options.shard;
-    let mine: Vec<&Listed> = points.iter().skip(number - 1).step_by(of).collect();
+    let mine: Vec<&SweepPoint> = points.iter().skip(number - 1).step_by(of).collect();
     let mut references = References::new(&sweep.bounces, options.samples);
-    let mut tally = Tally::default();
+    let mut counts = Counts::default();
     let mut todo = Vec::new();
     let mut elsewhere = 0;
     for point in mine {
@@ -103,9 +103,9 @@ pub fn run(
             // A reference that has come or grown since makes other scores.
             Some((Outcome::Done(found), device)) if found.references == samples => {
                 elsewhere += usize::from(device.name != lab.gpu.info.name);
-                tally.done += 1;
+                counts.done += 1;
             }
-            Some((Outcome::Failed(_), _)) if !options.again => tally.failed += 1,
+            Some((Outcome::Failed(_), _)) if !options.again => counts.failed += 1,
             _ => todo.push(point),
         }
     }
@@ -114,7 +114,7 @@ pub fn run(
             "{elsewhere} points were measured on another device; name another folder with -o to measure them here"
         )));
     }
-    on_progress(Progress::Begins { todo: todo.len(), before: tally.done + tally.failed });
+    on_progress(Progress::Begins { todo: todo.len(), before: counts.done + counts.failed });
     for point in todo {
         let known = references.get(&lab, &mut warm, point, on_progress)?;
         let attempt =
@@ -138,21 +138,21 @@ pub fn run(
         let record = record_of(&lab, &mut warm, options, point, outcome)?;
         folder.write(&record, measured.as_ref())?;
         match &record.outcome {
-            Outcome::Done(_) => tally.done += 1,
-            Outcome::Failed(_) => tally.failed += 1,
+            Outcome::Done(_) => counts.done += 1,
+            Outcome::Failed(_) => counts.failed += 1,
         }
         on_progress(Progress::Finished(point, &record));
     }
     let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
     write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
-    Ok(tally)
+    Ok(counts)
 }
 
 fn record_of(
     lab: &Lab,
     warm: &mut Warm,
     options: &Options,
-    point: &Listed,
+    point: &SweepPoint,
     outcome: Outcome,
 ) -> Result<Record, LabError> {
     let params = &warm.graph(&lab.home, &point.experiment.graph)?.graph.params;
