@@ -71,7 +71,7 @@ const errorOf = (d) => {
   return v === undefined || v === null ? undefined : state.metric === "energy_ratio" ? Math.abs(Math.log(v)) : v;
 };
 // The points that none of those shown beats in both time and error.
-function front(indices) {
+function pareto(indices) {
   const order = indices.filter((i) => errorOf(data.dots[i]) !== undefined)
     .sort((a, b) => data.dots[a].ms - data.dots[b].ms || errorOf(data.dots[a]) - errorOf(data.dots[b]));
   let least = Infinity;
@@ -172,7 +172,7 @@ function update() {
   document.getElementById("settings").textContent = data.settings[state.subject] || "";
   document.querySelectorAll("figure[data-passes]").forEach((f) => { f.hidden = Number(f.dataset.passes) !== state.subject; });
   const shown = data.dots.map((_, i) => i).filter((i) => kept(data.dots[i]));
-  const best = front(shown);
+  const best = pareto(shown);
   document.querySelectorAll("figure[data-chart]").forEach((figure) => {
     const chart = data.charts[Number(figure.dataset.chart)];
     figure.hidden = chart.subject !== state.subject || chart.part !== state.part || chart.metric !== state.metric;

@@ -1,7 +1,7 @@
 //! What of a sweep is charted.
 
 use super::folder::Folder;
-use crate::report::{Data, Scored, front};
+use crate::report::{Data, Scored, pareto};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -57,7 +57,7 @@ impl Chosen {
         if of != self.of {
             self.of = of;
             self.dots = data.as_ref().map_or(Vec::new(), |d| d.scored(choice.subject, &choice.part, choice.metric));
-            self.front = front(&self.dots.iter().map(|d| (d.ms, d.error)).collect::<Vec<_>>());
+            self.front = pareto(&self.dots.iter().map(|d| (d.ms, d.error)).collect::<Vec<_>>());
             self.on_front = vec![false; self.dots.len()];
             self.front.iter().for_each(|i| self.on_front[*i] = true);
         }
