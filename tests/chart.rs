@@ -64,7 +64,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     std::fs::write(&file, SWEEP).unwrap();
     succeeds(conelab(desk.home.path()).arg("sweep").arg(&file));
     let mark = desk.now();
-    desk.click("Button", "look again");
+    desk.click("Button", "refresh");
     let chart =
         desk.wait(mark, "dots", |e| e["event"] == "dots" && e["dots"].as_array().is_some_and(|d| !d.is_empty()));
     let dots = chart["dots"].as_array().unwrap();

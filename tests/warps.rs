@@ -221,7 +221,7 @@ fn every_warp_is_a_bijection() {
     for warp in &WARPS {
         let mut session = mapping_session(&lab, warp.set);
         for camera in cameras() {
-            session.look(&camera);
+            session.place_camera(&camera);
             let mapping = mapping(&lab, &mut session);
             let title = format!("{} from {:?}", warp.title, camera.eye);
             let size = if matches!(warp.shape, Shape::Box(_)) { SIZE } else { FAR };

@@ -437,7 +437,7 @@ fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
     let brighter = desk.resting(0);
 
     // A file that exists is not replaced by the first click.
-    desk.click("", "Keep");
+    desk.click("", "Save");
     let before = desk.file("configs/desk.ron");
     let mark = desk.now();
     desk.click("Button", "save");

@@ -18,7 +18,7 @@ pub struct ScreenshotArgs {
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long)]
     scene: Option<String>,
-    /// Size of the picture in the middle, pixels; as large as fits when absent.
+    /// Size of the picture in the viewport, pixels; as large as fits when absent.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
     /// Size of the whole interface, pixels.

@@ -356,8 +356,8 @@ impl Session {
     }
 
     /// Sees the next frames from another camera. The frame before stays known to what compares frames.
-    pub fn look(&mut self, placed: &PlacedCamera) {
-        self.viewpoint.look(placed, self.bounds);
+    pub fn place_camera(&mut self, placed: &PlacedCamera) {
+        self.viewpoint.place_camera(placed, self.bounds);
     }
 
     /// Waits for all frames.

@@ -303,7 +303,7 @@ pub(super) fn cell_of(session: &mut Session, job: &Job) -> Result<f32, LabError>
     if !job.case.motion.in_voxels() {
         return Ok(0.0);
     }
-    session.look(&job.start.camera);
+    session.place_camera(&job.start.camera);
     session.frame(0.0)?;
     session.finish()?;
     let (x, y, z) = job.start.camera.eye;
@@ -324,7 +324,7 @@ pub(super) fn place(
     if let Some(track) = &job.track {
         set(lab, session, &track.name, track.at(number))?;
     }
-    session.look(&state.camera);
+    session.place_camera(&state.camera);
     session.set_time(state.time);
     if state.lights != *lights {
         if !session.set_lights(&state.lights, job.scene.sky) {

@@ -1,7 +1,7 @@
 //! Saving experiments, captures, and the gallery of captures.
 
 use super::engine::Order;
-use super::{Workbench, keep, short};
+use super::{Workbench, save, short};
 use crate::capture::{self, Summary};
 use crate::experiment::{Experiment, checked_name};
 use crate::lab::LabError;
@@ -121,7 +121,7 @@ impl Workbench {
             return Err(LabError::Request("there is nothing to save yet: no graph has been built".into()));
         };
         let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
-        let experiment = keep::experiment(&self.desired, side, &name, time, self.scene.as_deref());
+        let experiment = save::experiment(&self.desired, side, &name, time, self.scene.as_deref());
         let path = self.experiment_path(&name);
         crate::experiment::write(&experiment, &info.graph.params, &path, replace)?;
         Ok(path)
@@ -177,7 +177,7 @@ impl Workbench {
             self.event("replayed", serde_json::json!({ "text": text }));
             self.gallery.replayed = text;
         }
-        if ui.small_button("look again").clicked() {
+        if ui.small_button("refresh").clicked() {
             self.gallery.forget();
         }
         let captures = self.gallery.captures.get_or_insert_with(|| capture::list(&folder)).clone();

@@ -16,7 +16,6 @@ mod help;
 mod history;
 mod host;
 mod inspector;
-mod keep;
 mod messages;
 mod motion;
 mod opening;
@@ -26,6 +25,7 @@ mod poll;
 mod renderdoc;
 pub mod report;
 pub mod request;
+mod save;
 mod surroundings;
 mod tables;
 mod times;
@@ -98,7 +98,7 @@ pub struct Options {
     pub experiment: PathBuf,
     /// Another scene than the experiment's.
     pub scene: Option<String>,
-    /// Picture size; that of the window's middle when absent.
+    /// Picture size; that of the viewport when absent.
     pub size: Option<(u32, u32)>,
     /// Where to log what happens.
     pub events: Option<PathBuf>,
@@ -306,7 +306,7 @@ impl Workbench {
             .default_size(320.0)
             .size_range(180.0..=760.0)
             .show(ui, |ui| self.right(ui, textures));
-        let inspecting = self.tab == Tab::Inspector && self.inspector.in_the_middle();
+        let inspecting = self.tab == Tab::Inspector && self.inspector.fills_viewport();
         egui::CentralPanel::no_frame().show(ui, |ui| match inspecting {
             true => self.inspected(ui, textures),
             false => self.picture(ui, textures),
@@ -326,7 +326,7 @@ impl Workbench {
         self.request_errors(ui);
     }
 
-    /// The picture has the size of the middle, once that has stood still for a moment.
+    /// The picture has the size of the viewport, once that has stood still for a moment.
     fn fit_size(&mut self, ui: &Ui) {
         let size = self.fixed_size.unwrap_or((self.area[0].max(1), self.area[1].max(1)));
         if size == self.desired.size || size.0 < 2 || size.1 < 2 {
@@ -385,14 +385,14 @@ impl Workbench {
                 (Tab::Inspector, "Inspect"),
                 (Tab::Tables, "Tables"),
                 (Tab::Paths, "Motion"),
-                (Tab::Gallery, "Keep"),
+                (Tab::Gallery, "Save"),
             ] {
                 ui.selectable_value(&mut self.tab, tab, name);
             }
         });
         ui.separator();
-        // What is not looked at need not be made.
-        (self.desired.look, self.desired.table) = (None, None);
+        // What no tab shows need not be made.
+        (self.desired.inspect, self.desired.table) = (None, None);
         match self.tab {
             Tab::Surroundings => self.surroundings(ui),
             Tab::Times => self.times_tab(ui),
@@ -444,7 +444,7 @@ fn differs(a: &RenderRequest, b: &RenderRequest) -> bool {
         || a.clock != b.clock
         || a.continuous != b.continuous
         || (a.revision, a.scene_revision) != (b.revision, b.scene_revision)
-        || a.look != b.look
+        || a.inspect != b.inspect
         || a.table != b.table
 }
 

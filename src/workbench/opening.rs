@@ -1,7 +1,7 @@
 //! What is opened: experiments, scenes, files that were edited or dropped on the window.
 
 use super::request::SideRequest;
-use super::{Workbench, keep, watch};
+use super::{Workbench, save, watch};
 use crate::experiment::Experiment;
 use crate::lab::viewpoint_of;
 use serde_json::json;
@@ -51,7 +51,7 @@ impl Workbench {
         if self.desired.scene == experiment.scene {
             if let Some(scene) = &self.scene {
                 self.desired.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
-                self.desired.lights = keep::lights(experiment, scene).unwrap_or_default();
+                self.desired.lights = save::lights(experiment, scene).unwrap_or_default();
             }
         } else {
             self.open_scene(&experiment.scene);

@@ -180,7 +180,7 @@ impl Workbench {
         };
         let failed = |e: std::io::Error| LabError::Request(format!("cannot write the sequence's settings: {e}"));
         let folder = tempfile::Builder::new().prefix("conelab-sequence-").tempdir().map_err(failed)?;
-        let mut experiment = super::keep::experiment(&self.desired, side, "sequence", 0.0, self.scene.as_deref());
+        let mut experiment = super::save::experiment(&self.desired, side, "sequence", 0.0, self.scene.as_deref());
         let scene = PathBuf::from(&experiment.scene);
         if scene.is_file() {
             experiment.scene = scene.canonicalize().map_err(failed)?.to_string_lossy().into_owned();

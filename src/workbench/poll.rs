@@ -2,7 +2,7 @@
 
 use super::compare::MODES;
 use super::report::{PictureReport, Report};
-use super::{COMPARISON, INSPECTOR, Workbench, events, keep};
+use super::{COMPARISON, INSPECTOR, Workbench, events, save};
 use crate::experiment::{CameraChoice, Experiment};
 use crate::graph::successor::Change;
 use crate::lab::{Viewpoint, viewpoint_of};
@@ -78,7 +78,7 @@ impl Workbench {
                 self.event("load failed", json!({ "why": why }));
                 self.trouble = Some(why);
             }
-            Report::Texels(look, texels) => self.inspector.note(look, *texels, &self.wake),
+            Report::Texels(target, texels) => self.inspector.note(target, *texels, &self.wake),
             Report::Table(table, bytes) => self.tables.note(table, bytes),
             Report::Checks(side, failed) => self.sides[side].checks = failed,
             Report::Captured(result) => {
@@ -136,7 +136,7 @@ impl Workbench {
         if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
             let fallback = Experiment { camera: CameraChoice::Named("default".into()), ..self.bare() };
             let experiment = self.experiment.take().unwrap_or(fallback);
-            match keep::lights(&experiment, &scene) {
+            match save::lights(&experiment, &scene) {
                 Ok(lights) => self.desired.lights = lights,
                 Err(e) => self.trouble = Some(e.to_string()),
             }

@@ -8,7 +8,7 @@ use crate::graph::successor::Change;
 use crate::lab::Texels;
 use crate::scene::Scene;
 use crate::workbench::error_worker::ErrorResult;
-use crate::workbench::request::Look;
+use crate::workbench::request::InspectTarget;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -112,8 +112,8 @@ pub enum Report {
     Loaded(Arc<Scene>),
     /// A scene could not be loaded; the one before stays.
     LoadFailed(String),
-    /// Texels that were looked for.
-    Texels(Look, Box<Texels>),
+    /// Texels that the inspector asked for.
+    Texels(InspectTarget, Box<Texels>),
     /// Bytes of a table's buffer, of side A.
     Table(usize, Vec<u8>),
     /// Messages of the graph's checks that failed.

@@ -30,9 +30,9 @@ pub struct Clock {
     pub jumps: u64,
 }
 
-/// A part of a texture to look into.
+/// The mip, layer or slice of a texture that the inspector reads back.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Look {
+pub struct InspectTarget {
     /// 0 or 1.
     pub side: usize,
     /// Name of the texture.
@@ -70,8 +70,8 @@ pub struct RenderRequest {
     pub revision: u64,
     /// The scene's files changed so often.
     pub scene_revision: u64,
-    /// What the inspector looks into.
-    pub look: Option<Look>,
+    /// What the inspector shows.
+    pub inspect: Option<InspectTarget>,
     /// The table shown, by the number that the graph gives it, of side A.
     pub table: Option<usize>,
     /// Counts requests.

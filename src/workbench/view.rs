@@ -1,11 +1,11 @@
-//! The picture in the middle: A, B, or both, and what the mouse does there.
+//! The picture in the viewport: A, B, or both, and what the mouse does there.
 
 use super::compare::{MODES, Mode};
 use super::motion;
 use super::{COMPARISON, Workbench};
 use egui::{Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
-/// State of the middle.
+/// State of the viewport.
 pub struct View {
     /// How A and B are shown.
     pub mode: Mode,

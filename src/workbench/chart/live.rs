@@ -4,7 +4,7 @@
 use super::super::engine::Order;
 use super::super::error_worker::{ErrorQuery, ErrorResult};
 use super::super::report::PictureReport;
-use super::super::{Tab, Workbench, keep};
+use super::super::{Tab, Workbench, save};
 use super::gather::{Gather, Job};
 use super::plot::Live;
 use crate::stats::spread;
@@ -204,7 +204,7 @@ impl Workbench {
         else {
             return;
         };
-        let experiment = keep::still(&self.desired, side, &self.name, picture.time, scene);
+        let experiment = save::still(&self.desired, side, &self.name, picture.time, scene);
         self.fixed_size = Some(experiment.size);
         let (bounces, samples) = (self.query().bounces, self.chart.live.samples);
         let (home, gpu) = (self.home.clone(), self.gpu.clone());

@@ -95,7 +95,7 @@ impl Workbench {
                     }
                 }
             });
-            if ui.small_button("look again").on_hover_text("Reads captures/sweeps and the sweep again").clicked() {
+            if ui.small_button("refresh").on_hover_text("Reads captures/sweeps and the sweep again").clicked() {
                 self.chart.folders = None;
                 chosen = self.chart.folder.as_ref().map(|f| f.path.clone());
             }
@@ -125,7 +125,7 @@ impl Workbench {
     }
 
     fn choice_row(&mut self, ui: &mut Ui, data: Option<&Data>) {
-        // The subject that is looked at, unless another one was asked for.
+        // The subject that is shown, unless another one was asked for.
         if let (Some(data), Some(now), false) = (data, self.chart.live.subject(), self.chart.by_hand) {
             let device = self.device.as_ref().map_or("", |d| d.name.as_str());
             let fits = |key: &_| folder::differences(now, device, key).is_empty();

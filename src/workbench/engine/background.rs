@@ -1,8 +1,8 @@
 //! Work on the shown picture in the background, while frames go on: its error, a capture.
 
 use super::super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
-use super::super::keep;
 use super::super::report::Report;
+use super::super::save;
 use super::{Run, SETTLE, has_history};
 
 impl Run<'_> {
@@ -24,7 +24,7 @@ impl Run<'_> {
             lab: self.lab.clone(),
             loaded: loaded.clone(),
             reuse: session.share(),
-            experiment: keep::still(&self.desired, desired, "error", self.clock.now, scene),
+            experiment: save::still(&self.desired, desired, "error", self.clock.now, scene),
             scene: scene.clone(),
             lights: self.desired.lights.clone(),
             frames: if has_history(session) { SETTLE } else { 1 },
@@ -35,13 +35,13 @@ impl Run<'_> {
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
     pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
         let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone()) else { return };
-        let experiment = keep::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
+        let experiment = save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
         let settle = self.sides[number].session.as_ref().is_some_and(|s| has_history(s));
         let frames = if settle { SETTLE as usize } else { 1 };
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");
         std::thread::spawn(move || {
-            let result = keep::take(&lab, &experiment, scene, &folder, resources, frames);
+            let result = save::take(&lab, &experiment, scene, &folder, resources, frames);
             out.send(Report::Captured(result.map_err(|e| e.to_string())));
         });
     }

@@ -52,7 +52,7 @@ impl Run<'_> {
             session.set_camera(camera);
         }
         if let Some(path) = &self.desired.path {
-            session.look(&path.at(self.clock.now));
+            session.place_camera(&path.at(self.clock.now));
         }
         if std::mem::take(&mut side.lights) {
             let own = session.scene.clone();
@@ -77,7 +77,7 @@ impl Run<'_> {
             self.out.send(Report::Trouble(renderdoc::end(begun)));
         }
         self.report_frames(number, finished);
-        self.look(number)?;
+        self.read_back(number)?;
         self.check(number)
     }
 
@@ -105,20 +105,20 @@ impl Run<'_> {
     }
 
     /// Reads what the inspector and the table show: at once when still, else some times a second.
-    fn look(&mut self, number: usize) -> Result<(), LabError> {
+    fn read_back(&mut self, number: usize) -> Result<(), LabError> {
         let side = &mut self.sides[number];
         let Some(session) = side.session.as_mut().filter(|_| !side.preview) else { return Ok(()) };
-        let now = side.frames_left == 0 || self.last_look.elapsed() > Duration::from_millis(150);
-        let look = self.desired.look.as_ref().filter(|l| l.side == number);
-        if !now || (look.is_none() && self.desired.table.is_none()) {
+        let now = side.frames_left == 0 || self.last_read_back.elapsed() > Duration::from_millis(150);
+        let target = self.desired.inspect.as_ref().filter(|l| l.side == number);
+        if !now || (target.is_none() && self.desired.table.is_none()) {
             return Ok(());
         }
-        self.last_look = Instant::now();
-        if let Some(look) = look {
-            match session.slice(&look.texture, look.mip, look.layer, look.axis, look.slice) {
+        self.last_read_back = Instant::now();
+        if let Some(target) = target {
+            match session.slice(&target.texture, target.mip, target.layer, target.axis, target.slice) {
                 Ok(texels) => {
-                    side.looked = Some(look.clone());
-                    self.out.send(Report::Texels(look.clone(), Box::new(texels)));
+                    side.inspected = Some(target.clone());
+                    self.out.send(Report::Texels(target.clone(), Box::new(texels)));
                 }
                 Err(LabError::Vulkan(e)) => return Err(e.into()),
                 // Not made with these parameters: a build that makes it is on its way, or the window says so.

@@ -12,7 +12,7 @@ mod scenes;
 use super::builder::{self, Done, Job, Key};
 use super::error_worker::{self, ErrorQuery, ErrorRequest};
 use super::report::{DeviceReport, Report};
-use super::request::{Look, RenderRequest};
+use super::request::{InspectTarget, RenderRequest};
 use crate::lab::{Home, Lab, LabError, Loaded, Session};
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
@@ -130,7 +130,7 @@ struct Side {
     frames_left: u32,
     lights: bool,
     checked: Option<Key>,
-    looked: Option<Look>,
+    inspected: Option<InspectTarget>,
 }
 
 struct Run<'a> {
@@ -149,7 +149,7 @@ struct Run<'a> {
     clock: Clocked,
     turn: usize,
     renderdoc: bool,
-    last_look: Instant,
+    last_read_back: Instant,
 }
 
 /// Time as it goes.
@@ -227,7 +227,7 @@ fn session(
         clock: Clocked { now: 0.0, last: Instant::now(), steps: 0, jumps: 0 },
         turn: 0,
         renderdoc: false,
-        last_look: Instant::now(),
+        last_read_back: Instant::now(),
     };
     run.change(desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
     let result = loop {
@@ -338,7 +338,7 @@ impl Run<'_> {
             }
         }
         // Files, parameters and sizes ask for frames when what they lead to has been built.
-        let view = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.look.clone(), w.table);
+        let view = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.inspect.clone(), w.table);
         if view(&self.desired) != view(&old) || self.desired.lights != old.lights || self.desired.path != old.path {
             self.request_frames(1);
         }

@@ -14,8 +14,8 @@ use std::time::Instant;
 impl Run<'_> {
     pub(super) fn key(&self, side: &SideRequest, number: usize) -> Key {
         let mut wanted = Vec::new();
-        if let Some(look) = self.desired.look.as_ref().filter(|l| l.side == number) {
-            wanted.push(look.texture.clone());
+        if let Some(target) = self.desired.inspect.as_ref().filter(|l| l.side == number) {
+            wanted.push(target.texture.clone());
         }
         if number == 0
             && let (Some(table), Some(loaded)) = (self.desired.table, &self.sides[0].loaded)
@@ -117,7 +117,7 @@ impl Run<'_> {
                 let side = &mut self.sides[number];
                 side.preview = done.preview;
                 side.lights = true;
-                side.looked = None;
+                side.inspected = None;
                 side.failed = None;
                 let info = info(&session, &loaded);
                 let change = session.program.change;

@@ -18,7 +18,7 @@ impl Before {
 impl Workbench {
     /// A button for each view of the graph.
     pub(super) fn view_buttons(&mut self, ui: &mut Ui) {
-        let side = self.inspector.look.side;
+        let side = self.inspector.target.side;
         let Some(info) = self.sides[side].info.clone() else { return };
         if info.graph.views.is_empty() {
             return;

@@ -3,14 +3,14 @@
 use super::image::{Decoded, Tone};
 use super::statistics::{self, BINS, Values};
 use crate::lab::Texels;
-use crate::workbench::request::Look;
+use crate::workbench::request::InspectTarget;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use std::sync::Arc;
 
 /// What to work on.
 pub enum Source {
     /// Texels that came.
-    New(Look, Texels),
+    New(InspectTarget, Texels),
     /// Those there are, shown otherwise.
     Again(Arc<Decoded>, Arc<Vec<Values>>),
 }
@@ -81,8 +81,8 @@ impl Work {
 
 fn run(source: Source, tone: Tone, fit: bool) -> Done {
     let (decoded, values) = match source {
-        Source::New(look, texels) => {
-            let decoded = Decoded::new(look, texels);
+        Source::New(target, texels) => {
+            let decoded = Decoded::new(target, texels);
             let values = statistics::values(&decoded);
             (Arc::new(decoded), Arc::new(values))
         }

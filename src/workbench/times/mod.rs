@@ -152,7 +152,7 @@ impl Workbench {
         let list = self.pass_writes(side, name).join(", ");
         match list.is_empty() {
             true => name.to_string(),
-            false => format!("{name}\nwrites {list}\nclick to look into it"),
+            false => format!("{name}\nwrites {list}\nclick to inspect it"),
         }
     }
 
