@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::bodies::{placed, torus};
+use common::closed_meshes::{placed, torus};
 use common::{assert_clean, copy, experiment, floats, lab, prepare, root, scene};
 use conelab::experiment::PlacedCamera;
 use conelab::graph::table::{Cell, decode};
@@ -353,14 +353,14 @@ fn density_is_told_by_hue() {
 }
 
 /// The voxels of a frame against the exact cells.
-fn score(lab: &Lab, body: &Arc<Scene>, settings: &[(&str, &str)]) -> Score {
+fn score(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Score {
     let experiment = experiment("cornell", (16, 16), settings);
-    let (mut session, _) = lab.prepare(&experiment, body.clone(), conelab::oracle::wanted).unwrap();
+    let (mut session, _) = lab.prepare(&experiment, scene.clone(), conelab::oracle::wanted).unwrap();
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new(), "{settings:?}");
     let (grid, voxels) = read(&mut session).unwrap();
-    compare(&grid, &exact(&triangles_of(body, 0.0), &Surfaces::new(body), &grid), &voxels).score
+    compare(&grid, &exact(&triangles_of(scene, 0.0), &Surfaces::new(scene), &grid), &voxels).score
 }
 
 const OFF: [(&str, &str); 2] = [("voxelizer", "raster"), ("conservative", "off")];
@@ -379,9 +379,9 @@ fn no_warp_loses_voxels() {
         ("tessellated", [("voxelizer", "tessellated"), ("tess_rate", "1.0")]),
     ];
     let base = [("voxel_dim", "48"), ("shadow_dim", "256")];
-    for (name, body) in &scenes {
+    for (name, scene) in &scenes {
         let recall = |set: &[(&str, &str)]| {
-            let score = score(&lab, body, &[&base[..], set].concat());
+            let score = score(&lab, scene, &[&base[..], set].concat());
             (score.recall.unwrap(), score.thin_recall.unwrap())
         };
         for (mode, set) in modes {
