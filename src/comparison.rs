@@ -112,18 +112,18 @@ pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Res
     let mut parts = Vec::new();
     let mut size = (0, 0);
     for part in names {
-        let Some(truth) = reference.parts.get(&part) else { continue };
-        let pixels = truth.rgb.len();
+        let Some(expected) = reference.parts.get(&part) else { continue };
+        let pixels = expected.rgb.len();
         if let Some(area) = areas.iter().find(|a| a.mask.len() != pixels) {
-            let (w, h) = truth.size;
+            let (w, h) = expected.size;
             return Err(MetricError(format!("the mask '{}' does not have the pictures' size of {w}x{h}", area.name)));
         }
-        size = truth.size;
+        size = expected.size;
         let kind = if reference.kind == Kind::Displayed { Kind::Displayed } else { Kind::of_part(&part) };
         let mut compared = Vec::new();
         for (i, picture) in pictures.iter().enumerate() {
             let Some(test) = picture.parts.get(&part) else { continue };
-            let with = Compared::new(test, truth, kind)
+            let with = Compared::new(test, expected, kind)
                 .map_err(|e| MetricError(format!("'{}' and '{}': {e}", picture.name, reference.name)))?;
             if let Some(take) = &mut request.maps {
                 take(i, &part, maps(&with)?)?;

@@ -36,13 +36,13 @@ fn flicker_index() {
     assert_eq!(index_of(&[0.0; 8]), 0.0, "black does not flicker");
 }
 
-/// What the truth does is no error; a pop in a few pixels is in the percentile and the jump, hardly in the mean.
+/// What the reference does is no error; a pop in a few pixels is in the percentile and the jump, hardly in the mean.
 #[test]
 fn change_of_a_frame() {
     let (a, b) = (grey(&[0.1, 0.2, 0.3]), grey(&[0.2, 0.4, 0.1]));
     let none = change(Kind::Radiance, [&a, &b], Some([&a, &b]));
     assert_eq!((none.rms, none.p999, none.jump), (0.0, 0.0, 0.0));
-    // The truth rises by 1 everywhere, the method in one of four pixels only: errors 0, 1, 1, 1.
+    // The reference rises by 1 everywhere, the method in one of four pixels only: errors 0, 1, 1, 1.
     let (x0, x1) = (grey(&[0.0; 4]), grey(&[1.0, 0.0, 0.0, 0.0]));
     let (r0, r1) = (grey(&[0.0; 4]), grey(&[1.0; 4]));
     let c = change(Kind::Radiance, [&x0, &x1], Some([&r0, &r1]));
@@ -247,7 +247,7 @@ fn references_know_what_moved() {
     assert!(pictures.iter().all(|p| page.contains(&*p.to_string_lossy())), "every worst frame is named in the page");
 }
 
-/// A volume that moves while pixels stand still: there the truth's change is 0 to the bit and no reference is needed. One
+/// A volume that moves while pixels stand still: there the reference's change is 0 to the bit and no reference is needed. One
 /// that snaps to its own cells (31 cm) stands still until it crosses half of one; one that does not pops in every frame.
 #[test]
 fn a_parameter_moves() {
@@ -280,9 +280,9 @@ fn a_parameter_moves() {
     }
 }
 
-/// A parameter that references have too moves the truth.
+/// A parameter that references have too moves the reference.
 #[test]
-fn a_parameter_of_the_truth() {
+fn a_parameter_that_references_have_too() {
     let home = home();
     let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"ggx_alpha\", values: [\"squared\", \"roughness\", \"roughness\"]))";
     let file = suite(home.path(), "\"a\": { \"scene\": \"configs/stability/scenes/metal-rough.ron\" }", cases);
@@ -291,9 +291,9 @@ fn a_parameter_of_the_truth() {
     assert_eq!(references, 2);
     let frames = table(&home.path().join("out/frames.csv"));
     let own = frames.iter().filter(|r| r["part"] == "specular");
-    let truth: Vec<&str> = own.map(|r| r["reference mean luminance"].as_str()).collect();
-    assert!(truth[0] != truth[1] && truth[1] == truth[2], "{truth:?}");
-    // Without references nobody knows the truth's change.
+    let reference: Vec<&str> = own.map(|r| r["reference mean luminance"].as_str()).collect();
+    assert!(reference[0] != reference[1] && reference[1] == reference[2], "{reference:?}");
+    // Without references nobody knows the reference's change.
     succeeds(&mut stability(home.path(), &file, "none", &["--no-reference"]));
     assert_eq!(value(&table(&home.path().join("none/stability.csv")), "lobe", "a", "total E_t"), None);
 }

@@ -163,7 +163,7 @@ fn points_are_scored_against_references_and_measured_again_when_there_is_one() {
     for part in ["total", "direct", "diffuse", "specular", "occlusion"] {
         assert!(score(0, &format!("{part} relmse")).is_finite());
     }
-    // Three times the indirect light is far from the truth, and changes direct light in nothing.
+    // Three times the indirect light is far from the reference, and changes direct light in nothing.
     assert!(score(1, "diffuse relmse") > 2.0 * score(0, "diffuse relmse"), "{rows:?}");
     assert!(score(1, "total relmse") > 2.0 * score(0, "total relmse"), "{rows:?}");
     assert_eq!(rows[0]["direct relmse"], rows[1]["direct relmse"]);

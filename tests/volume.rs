@@ -410,10 +410,10 @@ fn the_temporal_filter_gains_nothing() {
         &[&set[..], &[("temporal", "true"), ("temporal_factor", "0.95"), ("temporal_cut", "100")]].concat(),
     ));
     let mut plain = frames(&lab, &e, &["voxelRadiance"], 1);
-    let truth = mean(&floats(&mut plain, "voxelRadiance", 0));
+    let unfiltered = mean(&floats(&mut plain, "voxelRadiance", 0));
     let mut session = prepare(&lab, &filtered, &["voxelRadiance"]);
     run(&mut session, 200);
-    let still = mean(&floats(&mut session, "voxelRadiance", 0)) / truth;
+    let still = mean(&floats(&mut session, "voxelRadiance", 0)) / unfiltered;
     for i in 0..200 {
         let angle = f64::from(i) * 0.37;
         offset(&lab, &mut session, &filtered, [0.6 * angle.sin(), 0.0, 0.6 * angle.cos() - 0.6]);
@@ -421,7 +421,7 @@ fn the_temporal_filter_gains_nothing() {
     }
     offset(&lab, &mut session, &filtered, [0.0; 3]);
     run(&mut session, 1);
-    let moved = mean(&floats(&mut session, "voxelRadiance", 0)) / truth;
+    let moved = mean(&floats(&mut session, "voxelRadiance", 0)) / unfiltered;
     println!("radiance against no filter: after 200 frames {still:.4}, after 200 more on the move {moved:.4}");
     assert!((still - 1.0).abs() < 0.002 && moved < 1.002 && moved > 0.9, "the filter gains or loses light");
     assert_clean(&lab);

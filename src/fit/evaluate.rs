@@ -61,7 +61,7 @@ pub struct Subject<'a> {
     pub experiment: &'a Experiment,
     /// What is varied.
     pub axes: &'a [Axis],
-    /// The truth.
+    /// The reference.
     pub reference: &'a Reference,
     /// Part of the light that is compared.
     pub part: &'a str,
@@ -77,7 +77,7 @@ pub struct Subject<'a> {
 pub struct Evaluator<'a> {
     subject: &'a Subject<'a>,
     texture: String,
-    truth: &'a Linear,
+    expected: &'a Linear,
     reuse: Option<ReusableParts>,
     /// Why the last setting could not be run.
     pub refused: Option<String>,
@@ -92,8 +92,8 @@ impl<'a> Evaluator<'a> {
         let parts = crate::lab::parts_of(&subject.loaded.graph);
         let texture = parts.iter().find(|p| p.0 == subject.part).map(|p| p.1.clone());
         match (texture, subject.reference.parts.get(subject.part)) {
-            (Some(texture), Some(truth)) => {
-                Ok(Evaluator { subject, texture, truth: &truth.mean, reuse: None, refused: None })
+            (Some(texture), Some(part)) => {
+                Ok(Evaluator { subject, texture, expected: &part.mean, reuse: None, refused: None })
             }
             _ => {
                 let all: Vec<&str> = parts.iter().map(|p| p.0.as_str()).collect();
@@ -142,9 +142,9 @@ impl<'a> Evaluator<'a> {
         }
         let light = crate::picture::to_linear(&session.texels(&self.texture, 0, 0)?);
         let error = match s.metric {
-            Metric::Relmse => relmse(&light, self.truth)?,
+            Metric::Relmse => relmse(&light, self.expected)?,
             Metric::HdrFlip => {
-                let compared = Compared::new(&light, self.truth, Kind::of_part(s.part))?;
+                let compared = Compared::new(&light, self.expected, Kind::of_part(s.part))?;
                 compared.scores(None).map_or(f64::NAN, |scores| scores.hdr_flip)
             }
         };

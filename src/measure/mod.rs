@@ -106,17 +106,17 @@ pub fn measure(
         let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
         for (number, (bounces, reference)) in references.iter().enumerate() {
             for (part, light) in &parts {
-                let Some(truth) = reference.parts.get(part).filter(|_| number == 0 || part == "total") else {
+                let Some(expected) = reference.parts.get(part).filter(|_| number == 0 || part == "total") else {
                     continue;
                 };
                 let wrong = |why: &str| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
-                let compared = Compared::new(light, &truth.mean, Kind::of_part(part)).map_err(|e| wrong(&e.0))?;
+                let compared = Compared::new(light, &expected.mean, Kind::of_part(part)).map_err(|e| wrong(&e.0))?;
                 let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
                 let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
                 point.scores.insert(name.clone(), scores);
-                point.noise.insert(name, truth.noise);
+                point.noise.insert(name, expected.noise);
                 if number == 0 && part == "total" {
-                    error_map = Some(pictures::error_map(light, &truth.mean)?);
+                    error_map = Some(pictures::error_map(light, &expected.mean)?);
                 }
             }
             point.references.insert(*bounces, reference.samples);

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 pub enum Goal {
     /// So many samples of every pixel, rounded up to a multiple of [`store::BLOCK`].
     Samples(u64),
-    /// Until relMSE of the total against the truth, as estimated from its halves, is at most this.
+    /// Until relMSE of the total against the converged reference, as estimated from its halves, is at most this.
     Noise(f64),
 }
 
@@ -29,7 +29,7 @@ pub struct Gathered {
     pub samples: u64,
     /// Samples that will be enough, as far as can be told.
     pub goal: u64,
-    /// Estimated relMSE of the total against the truth.
+    /// Estimated relMSE of the total against the converged reference.
     pub noise: f64,
 }
 

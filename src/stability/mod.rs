@@ -1,4 +1,4 @@
-//! Stability: how methods behave when camera, actors or light move, frame by frame beside the truth, and how they fail in
+//! Stability: how methods behave when camera, actors or light move, frame by frame against the reference, and how they fail in
 //! pictures that do not move (docs/stability.md).
 
 mod cameras;
@@ -13,12 +13,12 @@ mod pictures;
 mod plan;
 mod plot;
 mod record;
+mod references;
 mod run;
 mod score;
 mod series;
 mod sheet;
 mod table;
-mod truth;
 
 pub use cameras::Cameras;
 pub use chart_spec::{CostChart, EqualTime};

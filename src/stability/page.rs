@@ -23,7 +23,7 @@ pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> St
     );
     let reference = match report.reference {
         Some((samples, bounces)) => format!("path traced, {samples} samples a pixel, {bounces} bounces, one seed"),
-        None => "none: changes are measured only where the truth does not change".into(),
+        None => "none: changes are measured only where the reference does not change".into(),
     };
     let devices: std::collections::BTreeSet<&str> = report.results.iter().map(|r| r.device.name.as_str()).collect();
     let devices = devices.into_iter().collect::<Vec<_>>().join(", ");

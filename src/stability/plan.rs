@@ -63,8 +63,8 @@ pub struct Job {
     pub cameras: Option<Cameras>,
     /// The parameter that moves.
     pub track: Option<ParamTrack>,
-    /// Whether the graph of references has it too, so that the truth moves with it.
-    pub truth_moves: bool,
+    /// Whether the graph of references has it too, so that the reference moves with it.
+    pub reference_moves: bool,
     /// Frames measured.
     pub frames: usize,
 }
@@ -87,13 +87,13 @@ pub fn plan(
         return Err(LabError::Request(format!("--only {name}: the suite's cases are {}", known.join(", "))));
     }
     // What the frames are compared with is part of a result.
-    let truth = if options.reference { reference::shaders(home)? } else { String::new() };
+    let shaders = if options.reference { reference::shaders(home)? } else { String::new() };
     let mut jobs: Vec<Job> = Vec::new();
     let mut errors: Vec<Diagnostic> = Vec::new();
     let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
     for case in suite.cases.iter().filter(wanted) {
         for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
-            match job(home, device, builder, warm, suite, options, (method, case, &truth)) {
+            match job(home, device, builder, warm, suite, options, (method, case, &shaders)) {
                 Ok(job) => jobs.push(job),
                 Err(LabError::Input(list)) => {
                     for diagnostic in list {
@@ -116,7 +116,7 @@ fn job(
     warm: &mut Warm,
     suite: &Suite,
     options: &Options,
-    (method, case, truth): (&Method, &Case, &str),
+    (method, case, shaders): (&Method, &Case, &str),
 ) -> Result<Job, LabError> {
     let mut params = |graph: &str| warm.graph(home, graph).ok().map(|l| l.graph.params.clone());
     let mut experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input)?;
@@ -158,7 +158,7 @@ fn job(
     case.motion.check(&point.scene).map_err(wrong)?;
     let params = point.experiment.params_over(&loaded.graph.params)?;
     let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
-    let truth_moves = match &track {
+    let reference_moves = match &track {
         Some(track) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&track.name).is_some(),
         None => false,
     };
@@ -184,7 +184,7 @@ fn job(
         number(&[point.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
     let id = number(&[
         work.clone(),
-        format!("{samples:?} {} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels, suite.pictures),
+        format!("{samples:?} {} {} {} {} {shaders}", suite.bounces, suite.seed, case.voxels, suite.pictures),
         // Two names of the same thing are two rows.
         format!("{:?} {:?} {:?}", method.name, case.name, case.variant),
     ]);
@@ -199,7 +199,7 @@ fn job(
         start,
         cameras,
         track,
-        truth_moves,
+        reference_moves,
         frames,
     })
 }
@@ -219,7 +219,7 @@ fn number(facts: &[String]) -> String {
 impl Job {
     /// What frame `number` sees; see [`super::Motion::frame_state`].
     pub fn frame_state(&self, number: i64, cell: f32) -> FrameState {
-        let setting = self.track.as_ref().filter(|_| self.truth_moves).map(|m| (m.name.clone(), m.at(number)));
+        let setting = self.track.as_ref().filter(|_| self.reference_moves).map(|m| (m.name.clone(), m.at(number)));
         let state = self.case.motion.frame_state(&self.start, number, cell);
         let camera = self.cameras.as_ref().map_or(state.camera, |c| c.at(&self.start.camera, number));
         FrameState { camera, setting, ..state }

@@ -24,7 +24,7 @@ const MAX_FILE: u64 = 64 << 20;
 pub struct FrameScore {
     /// From 0, the first measured one.
     pub frame: usize,
-    /// Against the frame before; none at the first, and where the truth's change is not known.
+    /// Against the frame before; none at the first, and where the reference's change is not known.
     pub change: Option<Change>,
     /// E_t between the two halves of the reference.
     pub noise: Option<f64>,
@@ -66,7 +66,7 @@ pub struct PartResult {
     pub frames: Vec<FrameScore>,
 }
 
-/// The frame that is farthest from its truth.
+/// The frame that is farthest from its reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// The part of the light.

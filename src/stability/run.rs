@@ -7,8 +7,8 @@ use super::pictures::Panels;
 use super::plan::{Job, Options, plan};
 use super::plot::Plot;
 use super::record::{Folder, Measured, Outcome, RESULT_SCHEMA, Record, Report, SCHEMA, Worst, json, lasting};
+use super::references::{FrameReference, References, Tracing};
 use super::series::{Known, PartSeries};
-use super::truth::{Tracing, Truth, Truths};
 use super::{chart, cost, page, table};
 use crate::graph::param::Value;
 use crate::lab::{Lab, LabError, ReusableParts, Session, parts_of};
@@ -87,7 +87,7 @@ pub fn run(
     let samples = options.samples.unwrap_or(suite.samples);
     let tracing = Tracing { samples, bounces: suite.bounces, seed: suite.seed };
     let (reference, pictures) = (options.reference, suite.pictures.clone());
-    let mut runner = Runner { truths: Truths::new(tracing), shared: HashMap::new(), reference, pictures };
+    let mut runner = Runner { references: References::new(tracing), shared: HashMap::new(), reference, pictures };
     let finished: Vec<Option<Record>> = jobs.iter().map(|j| folder.read(&j.id)).collect();
     let before = finished.iter().flatten().count();
     on_progress(Progress::Begins { todo: jobs.len() - before, before });
@@ -102,7 +102,7 @@ pub fn run(
                 if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
                     warm.leave_device();
                     lab = reopen()?;
-                    runner = Runner { truths: Truths::new(tracing), shared: HashMap::new(), ..runner };
+                    runner = Runner { references: References::new(tracing), shared: HashMap::new(), ..runner };
                 }
                 let (outcome, picture) = match result {
                     Ok((measured, picture)) => (Outcome::Done(Box::new(measured)), picture),
@@ -172,7 +172,7 @@ fn record_of(lab: &Lab, job: &Job, outcome: Outcome) -> Record {
 
 /// What one method in a case leaves to the next: references, and each method's pipelines.
 struct Runner {
-    truths: Truths,
+    references: References,
     shared: HashMap<String, ReusableParts>,
     reference: bool,
     /// The part whose worst frames are kept.
@@ -208,7 +208,7 @@ impl Runner {
         let mut worst: Option<Bad> = None;
         let mut samples = 0;
         let mut lights = job.scene.lights.clone();
-        let mut before: Option<(FrameState, Option<Arc<Truth>>)> = None;
+        let mut before: Option<(FrameState, Option<Arc<FrameReference>>)> = None;
         let warmup = i64::try_from(job.case.warmup).unwrap_or(0);
         let frames = i64::try_from(job.frames).unwrap_or(1);
         for number in -warmup..frames {
@@ -222,20 +222,20 @@ impl Runner {
                 }
             }
             let changed = before.as_ref().is_none_or(|b| b.0 != state);
-            let truth = match (&before, self.reference) {
+            let reference = match (&before, self.reference) {
                 (_, false) => None,
-                (Some((_, Some(truth))), true) if !changed => Some(truth.clone()),
-                _ => Some(self.truths.get(lab, warm, job, &state, &mut |now| on_progress(Progress::Gathers(now)))?),
+                (Some((_, Some(reference))), true) if !changed => Some(reference.clone()),
+                _ => Some(self.references.get(lab, warm, job, &state, &mut |now| on_progress(Progress::Gathers(now)))?),
             };
-            if let Some(truth) = &truth {
-                if frame > 0 && truth.samples != samples {
+            if let Some(reference) = &reference {
+                if frame > 0 && reference.samples != samples {
                     let unequal =
                         "references have different numbers of samples, some were kept with more: noise is larger";
                     if !warnings.iter().any(|w| w == unequal) {
                         warnings.push(unequal.into());
                     }
                 }
-                samples = truth.samples;
+                samples = reference.samples;
             }
             let earlier = before.as_ref().and_then(|b| b.1.as_ref());
             for (part, x) in session.parts()? {
@@ -244,7 +244,7 @@ impl Runner {
                 if lost > 0 && !warnings.iter().any(|w| w.ends_with(&note)) {
                     warnings.push(format!("frame {frame}, perhaps others too: {lost} {note}"));
                 }
-                let known = known(&part, truth.as_deref(), earlier.map(|t| &**t), changed);
+                let known = known(&part, reference.as_deref(), earlier.map(|t| &**t), changed);
                 let own = series.entry(part.clone()).or_insert_with(|| PartSeries::new(&part));
                 let shown = (part == self.pictures).then(|| Panels::of(own.before(), &x, known));
                 let bad = own.add(x, known, number + 1 == frames);
@@ -254,7 +254,7 @@ impl Runner {
                     worst = Some(Bad { frame, bad, panels });
                 }
             }
-            before = Some((state, truth));
+            before = Some((state, reference));
         }
         let times: Vec<f64> = times.iter().skip(job.case.warmup).map(|t| t.gpu_ms).collect();
         let last = before.map_or(job.start.time, |b| b.0.time);
@@ -289,11 +289,16 @@ fn set(lab: &Lab, session: &mut Session, name: &str, value: Value) -> Result<(),
     }
 }
 
-/// What is known of a part's truth; `earlier` is that of the frame before.
-fn known<'a>(part: &str, truth: Option<&'a Truth>, earlier: Option<&'a Truth>, changed: bool) -> Known<'a> {
-    let of = |t: Option<&'a Truth>| t.and_then(|t| t.parts.get(part));
-    match (of(truth), of(earlier)) {
-        (Some(now), before) => Known::Truth { now, before: before.filter(|_| changed) },
+/// What is known of a part's reference; `earlier` is that of the frame before.
+fn known<'a>(
+    part: &str,
+    reference: Option<&'a FrameReference>,
+    earlier: Option<&'a FrameReference>,
+    changed: bool,
+) -> Known<'a> {
+    let of = |t: Option<&'a FrameReference>| t.and_then(|t| t.parts.get(part));
+    match (of(reference), of(earlier)) {
+        (Some(now), before) => Known::Reference { now, before: before.filter(|_| changed) },
         (None, _) => Known::Nothing { changed },
     }
 }
@@ -368,10 +373,10 @@ impl Panels {
     /// The pictures of a frame: before, now, the reference, and how the change differs from the reference's; of a first
     /// frame, how the picture differs.
     fn of(before: Option<&Linear>, x: &Linear, known: Known) -> Panels {
-        let (truth, truth_before) = match known {
-            Known::Truth { now, before } => (Some(&now.mean), before.map(|b| &b.mean)),
+        let (reference, reference_before) = match known {
+            Known::Reference { now, before } => (Some(&now.mean), before.map(|b| &b.mean)),
             Known::Nothing { .. } => (None, None),
         };
-        Panels::new(before, x, truth, truth_before)
+        Panels::new(before, x, reference, reference_before)
     }
 }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 const MAX_BYTES: usize = 512 << 20;
 
 /// A part of a reference.
-pub(super) struct TruthPart {
+pub(super) struct ReferencePart {
     pub mean: Linear,
     /// Of the even and of the odd samples.
     pub halves: [Linear; 2],
@@ -25,8 +25,8 @@ pub(super) struct TruthPart {
 }
 
 /// A reference of one frame.
-pub(super) struct Truth {
-    pub parts: BTreeMap<String, TruthPart>,
+pub(super) struct FrameReference {
+    pub parts: BTreeMap<String, ReferencePart>,
     pub samples: u64,
     bytes: usize,
 }
@@ -40,15 +40,15 @@ pub(super) struct Tracing {
 }
 
 /// The references of one device.
-pub(super) struct Truths {
+pub(super) struct References {
     tracing: Tracing,
     tracer: Tracer,
-    found: HashMap<String, Arc<Truth>>,
+    found: HashMap<String, Arc<FrameReference>>,
 }
 
-impl Truths {
-    pub fn new(tracing: Tracing) -> Truths {
-        Truths { tracing, tracer: Tracer::default(), found: HashMap::new() }
+impl References {
+    pub fn new(tracing: Tracing) -> References {
+        References { tracing, tracer: Tracer::default(), found: HashMap::new() }
     }
 
     /// The reference of a frame state of a job, from memory, from the disk, or traced now.
@@ -59,7 +59,7 @@ impl Truths {
         job: &Job,
         state: &FrameState,
         on_progress: &mut dyn FnMut(Gathered),
-    ) -> Result<Arc<Truth>, LabError> {
+    ) -> Result<Arc<FrameReference>, LabError> {
         let key = key(lab, warm, job, state)?;
         if let Some(found) = self.found.get(&key) {
             return Ok(found.clone());
@@ -83,21 +83,21 @@ impl Truths {
                 ControlFlow::Continue(())
             })?;
         let samples = reference.samples;
-        let parts: BTreeMap<String, TruthPart> = reference
+        let parts: BTreeMap<String, ReferencePart> = reference
             .parts
             .into_iter()
             .filter_map(|(name, part)| {
                 let halves = halves.remove(&name)?;
-                Some((name, TruthPart { mean: part.mean, halves, noise: part.noise }))
+                Some((name, ReferencePart { mean: part.mean, halves, noise: part.noise }))
             })
             .collect();
         let bytes = parts.values().map(|p| 3 * 12 * p.mean.rgb.len()).sum();
-        let truth = Arc::new(Truth { parts, samples, bytes });
+        let reference = Arc::new(FrameReference { parts, samples, bytes });
         if self.found.values().map(|t| t.bytes).sum::<usize>() + bytes > MAX_BYTES {
             self.found.clear();
         }
-        self.found.insert(key, truth.clone());
-        Ok(truth)
+        self.found.insert(key, reference.clone());
+        Ok(reference)
     }
 }
 
