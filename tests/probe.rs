@@ -107,7 +107,7 @@ fn samples_add_up_to_what_shading_found() {
         }
         assert!(rows.iter().all(|r| r.cone < 10), "{what}: more cones than there are");
 
-        // The wide set: .15 on the normal, the rest shared by the ring of eight.
+        // The wide set: 0.15 on the normal, the rest shared by the ring of eight.
         let hemisphere: Vec3 =
             (1..10).map(|n| if n == 1 { 0.15 } else { 0.85 / 8.0 } * cone_radiance(&cone(n), opened.sky)).sum();
         let expected = albedo * hemisphere;

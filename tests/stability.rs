@@ -47,7 +47,7 @@ fn change_of_a_frame() {
     let (r0, r1) = (grey(&[0.0; 4]), grey(&[1.0; 4]));
     let c = change(Kind::Radiance, [&x0, &x1], Some([&r0, &r1]));
     assert!((c.rms - 0.75f64.sqrt()).abs() < 1e-12 && (c.p999 - 1.0).abs() < 1e-12);
-    // 1 is shown as 1/2, which sRGB encodes as .7354.
+    // 1 is shown as 1/2, which sRGB encodes as 0.7354.
     assert!((c.jump - 255.0 * 0.735_357).abs() < 0.01, "{}", c.jump);
     assert!((display(Kind::Displayed, 1.0) - 1.0).abs() < 1e-9);
     // One pixel in 500 pops.
@@ -57,7 +57,7 @@ fn change_of_a_frame() {
     assert!((c.p999 - 1.0).abs() < 1e-6 && (c.rms - (1.0f64 / 500.0).sqrt()).abs() < 1e-6);
 }
 
-/// A step that decays by a factor arrives after log(.05) / log(factor) frames; one that overshoots says by how much.
+/// A step that decays by a factor arrives after log(0.05) / log(factor) frames; one that overshoots says by how much.
 #[test]
 fn step_response() {
     for factor in [0.0f64, 0.5, 0.8, 0.9] {
@@ -137,7 +137,7 @@ fn a_still_scene_is_still() {
 }
 
 /// A path tracer with other random numbers as the method: two pictures of s samples each differ by 2/s, the two halves of
-/// one by 4/s of a sample's variance, so E_t is .71 of the noise that is message, and not told apart from it.
+/// one by 4/s of a sample's variance, so E_t is 0.71 of the noise that is reported, and not told apart from it.
 #[test]
 fn the_reference_as_a_method_is_at_its_own_noise() {
     let home = home();
@@ -161,7 +161,7 @@ fn the_reference_as_a_method_is_at_its_own_noise() {
 }
 
 /// T11: a lamp is switched on. Without a filter the voxels follow at once; with one that keeps a part f of the frame before,
-/// 5 % are left after log(.05) / log(f) frames.
+/// 5 % are left after log(0.05) / log(f) frames.
 #[test]
 fn a_switched_light_arrives_as_late_as_the_filter_says() {
     let home = home();
@@ -186,7 +186,7 @@ fn a_switched_light_arrives_as_late_as_the_filter_says() {
 fn settling_frames() {
     let mut errors = vec![9.0; 3];
     errors.extend((1..200).map(|k| 0.5 + 4.0 * 0.8f64.powi(k)));
-    // 4 f^k <= .05 * .5
+    // 4 f^k <= 0.05 * 0.5
     assert_eq!(settling(&errors, 3), Some((0.05f64 * 0.5 / 4.0).log(0.8).ceil() as usize));
     assert_eq!(settling(&[7.0, 1.0, 1.0, 1.0], 1), Some(1));
     assert_eq!(settling(&[7.0, 1.0, 0.9, 1.0, 1.0], 1), Some(3), "below is not settled either");
@@ -473,7 +473,7 @@ fn shipped_suites() {
     }
 }
 
-/// Mistakes are message before anything is measured.
+/// Mistakes are reported before anything is measured.
 #[test]
 fn mistakes() {
     let home = home();

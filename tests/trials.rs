@@ -136,7 +136,7 @@ fn sides(material: &'static str, low: [f64; 3], high: [f64; 3], inside: bool) ->
 const ANY: f64 = f64::INFINITY;
 const QUICK: (&str, &str) = ("shadow_dim", "1024");
 
-/// T1. A closed box with albedo .5 and emission 1: one bounce adds a half, at every voxel size.
+/// T1. A closed box with albedo 0.5 and emission 1: one bounce adds a half, at every voxel size.
 #[test]
 fn furnace() {
     let lab = lab(root());

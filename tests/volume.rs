@@ -296,7 +296,7 @@ fn scrolling_sees_every_change() {
         ("slope", &[("warp", "spline")], &[("warp", "spline"), ("warp_alpha", "0.6")], 1),
         ("warped box", &[("warp", "spline")], &[("warp", "spline"), ("volume_offset", "(-0.5, 0, -0.5)")], 1),
         ("far", &[], &[("volume_offset", "(-0.5, 0, -0.5)")], 1),
-        ("steps of .3 % of a cell", &[], &[("volume_offset", "(-0.12, 0, 0)")], 320),
+        ("steps of 0.3 % of a cell", &[], &[("volume_offset", "(-0.12, 0, 0)")], 320),
     ];
     for (name, before, after, frames) in cases {
         let with = |settings: &Settings, scroll| {
@@ -377,7 +377,7 @@ fn a_snapped_volume_stands_still() {
         ),
         ("perspective", vec![("warp", "perspective"), ("warp_near", "0.3"), ("warp_far", "6")]),
     ] {
-        // The box moves by 2 m, its coarsest cell, where the camera has gone .3 m.
+        // The box moves by 2 m, its coarsest cell, where the camera has gone 0.3 m.
         let (peak, mean) = jump(&settings, 0.0);
         let (crossing, mean_crossing) = jump(&settings, 0.2);
         println!("{name}: peak jump {peak:.2} / 255, mean {mean:.4}; across a step {crossing:.2}, {mean_crossing:.4}");

@@ -31,10 +31,14 @@ struct Warp {
 
 const WARPS: [Warp; 9] = [
     Warp { title: "none", set: &[], shape: Shape::Box(|x| x) },
-    Warp { title: "spline .05", set: &[SPLINE, ("warp_alpha", "0.05")], shape: Shape::Box(|x| spline(0.05, x)) },
-    Warp { title: "spline .25", set: &[SPLINE, ("warp_alpha", "0.25")], shape: Shape::Box(|x| spline(0.25, x)) },
+    Warp { title: "spline 0.05", set: &[SPLINE, ("warp_alpha", "0.05")], shape: Shape::Box(|x| spline(0.05, x)) },
+    Warp { title: "spline 0.25", set: &[SPLINE, ("warp_alpha", "0.25")], shape: Shape::Box(|x| spline(0.25, x)) },
     Warp { title: "spline 1", set: &[SPLINE, ("warp_alpha", "1.0")], shape: Shape::Box(|x| spline(1.0, x)) },
-    Warp { title: "logistic .5", set: &[LOGISTIC, ("warp_steepness", "0.5")], shape: Shape::Box(|x| logistic(0.5, x)) },
+    Warp {
+        title: "logistic 0.5",
+        set: &[LOGISTIC, ("warp_steepness", "0.5")],
+        shape: Shape::Box(|x| logistic(0.5, x)),
+    },
     Warp { title: "logistic 8", set: &[LOGISTIC, ("warp_steepness", "8.0")], shape: Shape::Box(|x| logistic(8.0, x)) },
     Warp {
         title: "logistic 20",
@@ -416,7 +420,7 @@ fn the_list_of_fragments_is_long_enough_for_every_slope() {
     let volume = [("volume", "box"), ("volume_center", "(2.78, 2.74, 2.8)"), ("volume_size", "(6, 6, 6)")];
     let warps = [
         ("none", vec![]),
-        ("spline .05", vec![SPLINE, ("warp_alpha", "0.05")]),
+        ("spline 0.05", vec![SPLINE, ("warp_alpha", "0.05")]),
         ("logistic 8", vec![LOGISTIC, ("warp_steepness", "8.0")]),
         ("logistic 20", vec![LOGISTIC, ("warp_steepness", "20.0")]),
         ("perspective", vec![("warp", "perspective")]),

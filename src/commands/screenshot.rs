@@ -66,7 +66,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         .filter(|f| matches!(f, image::ImageFormat::Png | image::ImageFormat::Jpeg))
         .ok_or_else(|| LabError::Request(format!("'{}': give it the ending .png or .jpg", args.output.display())))?;
     if !(0.25..=8.0).contains(&args.scale) {
-        return Err(LabError::Request("--scale must be .25 to 8".into()));
+        return Err(LabError::Request("--scale must be 0.25 to 8".into()));
     }
     let gpu = args.device.options();
     let script = Script {

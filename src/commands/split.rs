@@ -42,7 +42,7 @@ const SCHEMA: &str = "conelab-split-1";
 #[derive(Serialize)]
 struct Step {
     title: String,
-    /// By part: relMSE against the reference, and what the step adds: mean (x - y)^2 / (r^2 + .01), y the step before.
+    /// By part: relMSE against the reference, and what the step adds: mean (x - y)^2 / (r^2 + 0.01), y the step before.
     parts: BTreeMap<String, [f64; 2]>,
 }
 

@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub enum Metric {
-    /// mean (x - r)^2 / (r^2 + .01).
+    /// mean (x - r)^2 / (r^2 + 0.01).
     Relmse,
     /// Mean HDR-FLIP.
     HdrFlip,
