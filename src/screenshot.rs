@@ -42,7 +42,7 @@ pub struct Edit {
     pub times: usize,
 }
 
-/// What came of it.
+/// The screenshot and what was measured on the way.
 pub struct Shot {
     /// From the file's renaming until the picture made with it is painted, ms.
     pub edit_ms: Option<Spread>,

@@ -1,4 +1,4 @@
-//! The chart of the workbench as somebody at a screen sees it: a reference is gathered, a sweep measured beside the window,
+//! The chart of the workbench as somebody at a screen sees it: a reference is gathered, a sweep measured at the same time,
 //! and the experiment is a dot among its points.
 
 mod common;

@@ -1,4 +1,4 @@
-//! `conelab compare`: what it says of pictures whose errors are known, and of experiments beside a reference.
+//! `conelab compare`: what it says of pictures whose errors are known, and of experiments against a reference.
 
 mod common;
 

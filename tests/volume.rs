@@ -283,7 +283,7 @@ fn scrolling_ends_where_voxelizing_anew_does() {
     assert_clean(&lab);
 }
 
-/// What changed beside the volume's place is seen too: settings of the list and of the warp, steps far below a cell, a
+/// What changed besides the volume's place is seen too: settings of the list and of the warp, steps far below a cell, a
 /// warped box that moves, another scene.
 #[test]
 fn scrolling_sees_every_change() {

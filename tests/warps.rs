@@ -13,7 +13,7 @@ use glam::{DMat3, DVec3, Quat, Vec3};
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// What is known of a warp beside its shader.
+/// What is known of a warp besides its shader.
 enum Shape {
     /// A function of each axis of a box (thesis, Section 4.6).
     Box(fn(f64) -> f64),

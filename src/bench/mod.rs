@@ -22,7 +22,7 @@ use serde::Serialize;
 /// Version of the JSON file.
 pub const SCHEMA: &str = "conelab-bench-1";
 
-/// What was measured.
+/// The measurements of a benchmark.
 #[derive(Clone, Debug, Serialize)]
 pub struct Bench {
     /// [`SCHEMA`].
@@ -57,9 +57,9 @@ pub struct Configuration {
 /// Times over all rounds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Times {
-    /// Of every pass, with settings and memory; the warm-up is that of the round with the shortest.
+    /// Times of every pass, with settings and memory; the warm-up is that of the round with the shortest.
     pub stats: Stats,
-    /// Of every stage (passes that the graph counts together, added up frame by frame), ms.
+    /// Times of every stage (passes that the graph counts together, added up frame by frame), ms.
     pub stages: IndexMap<String, Spread>,
     /// Median of the total in every round, ms: pairs with those of other configurations.
     pub rounds: Vec<f64>,

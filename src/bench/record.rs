@@ -157,7 +157,7 @@ impl Record {
     /// The file's text: JSON with one line for each list, so that people can read it and see what changed.
     ///
     /// # Errors
-    /// None that a record can cause.
+    /// Writing to memory gives none, whatever the record.
     pub fn text(&self) -> Result<String, LabError> {
         self.lines().map_err(|e| LabError::Request(e.to_string()))
     }
@@ -191,7 +191,7 @@ impl Record {
     /// Whether its times can be compared with those of a device.
     ///
     /// # Errors
-    /// It is of another device.
+    /// The record is of another device.
     pub fn check_device(&self, device: &DeviceStats) -> Result<(), LabError> {
         if self.device.name == device.name {
             return Ok(());

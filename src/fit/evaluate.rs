@@ -59,7 +59,7 @@ pub struct Subject<'a> {
     pub scene: Arc<Scene>,
     /// The experiment.
     pub experiment: &'a Experiment,
-    /// What is varied.
+    /// The varied parameters.
     pub axes: &'a [Axis],
     /// The reference.
     pub reference: &'a Reference,
@@ -69,7 +69,7 @@ pub struct Subject<'a> {
     pub metric: Metric,
     /// How long a setting is timed.
     pub frames: Frames,
-    /// What is wanted.
+    /// The quantity that is minimised, and the bound of the other.
     pub goal: Goal,
 }
 

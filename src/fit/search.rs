@@ -13,7 +13,7 @@ use std::collections::HashMap;
 /// Both quantities of one setting, in their own units; smaller is better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
-    /// What is made as small as can be.
+    /// The quantity that is made as small as can be.
     pub cost: f64,
     /// What must be at most the limit.
     pub bounded: f64,
@@ -55,7 +55,7 @@ pub enum Stop {
 pub struct Found {
     /// The best setting: within the bound if any that was tried is.
     pub place: Vec<usize>,
-    /// Its quantities.
+    /// Quantities of the best setting.
     pub trial: Trial,
     /// Everything that was tried.
     pub tried: Vec<Step>,
@@ -170,7 +170,7 @@ const PROPOSALS: usize = 24;
 /// the trials so far promise. `evaluate` gives a setting's quantities, or nothing where it cannot be run.
 ///
 /// # Errors
-/// Those of `evaluate`; `None` when not even the start can be run.
+/// The errors of `evaluate`; `None` when not even the start can be run.
 pub fn search<E>(
     sizes: &[usize],
     start: &[usize],

@@ -53,7 +53,7 @@ pub enum LabError {
 /// A device that runs experiments.
 #[derive(Clone)]
 pub struct Lab {
-    /// Its folders.
+    /// The program's folders.
     pub home: Home,
     /// The device.
     pub gpu: Arc<Gpu>,

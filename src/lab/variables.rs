@@ -1,4 +1,4 @@
-//! What expressions may read beside parameters.
+//! Variables that expressions may read besides parameters.
 
 use super::view::shadow_view_count;
 use crate::graph::expr::{Env, Var};

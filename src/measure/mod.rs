@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-/// How long to measure.
+/// Frames of a measurement: warm-up and measured ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Frames {
     /// Frames that run first, at least ([`WarmUp`]): caches fill, clocks rise, and what gathers over time settles.
@@ -25,7 +25,7 @@ pub struct Frames {
     pub count: usize,
 }
 
-/// What one experiment costs and how good it is.
+/// Costs and scores of one experiment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Times, memory, settings, device, failed checks.
@@ -42,9 +42,9 @@ pub struct Point {
 pub struct Measured {
     /// The numbers.
     pub point: Point,
-    /// What the graph shows, if it has an `output`.
+    /// The displayed picture, if the graph has an `output`.
     pub picture: Option<Vec<u8>>,
-    /// Where the light differs from the reference, if there is one.
+    /// Map of the error against the reference, if there is one.
     pub error_map: Option<Vec<u8>>,
 }
 
@@ -129,7 +129,7 @@ pub fn measure(
 pub struct Timed {
     /// After its last frame.
     pub session: Session,
-    /// Of the frames measured.
+    /// Times of the measured frames.
     pub times: Vec<FrameTimes>,
     /// Frames that ran before them.
     pub warmup: usize,

@@ -37,7 +37,7 @@ impl Linear {
     }
 }
 
-/// mean (x - r)^2 / (r^2 + 0.01) alone, for who needs no more. Pixels that are no number make it none.
+/// relMSE alone: mean (x - r)^2 / (r^2 + 0.01). NaN where a pixel is no number.
 ///
 /// # Errors
 /// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
@@ -119,7 +119,7 @@ pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> 
     compared.scores(None).ok_or_else(|| MetricError("no pixel is a finite number in both pictures".into()))
 }
 
-/// A picture beside a reference, with the maps that cost time.
+/// A picture against a reference, with the maps that cost time.
 pub struct Compared<'a> {
     test: &'a Linear,
     reference: &'a Linear,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// Some pixels of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// Its name.
+    /// Name of the region.
     pub name: String,
     /// Whether each pixel belongs to it, rows from the top.
     pub mask: Vec<bool>,

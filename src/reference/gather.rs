@@ -22,7 +22,7 @@ pub enum Goal {
     Noise(f64),
 }
 
-/// How far it is.
+/// Progress towards the goal.
 #[derive(Clone, Copy, Debug)]
 pub struct Gathered {
     /// Samples of every pixel so far.

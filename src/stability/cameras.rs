@@ -12,9 +12,9 @@ use std::path::Path;
 pub enum Cameras {
     /// Another camera from a frame on.
     Cut {
-        /// That camera.
+        /// The camera after the cut.
         to: PlacedCamera,
-        /// Its first frame.
+        /// The first frame of that camera.
         at: usize,
     },
     /// Along a path.

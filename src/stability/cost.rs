@@ -200,12 +200,13 @@ type Open<'j> = (usize, usize, &'j Job);
 /// Median of a job's frames, ms, and the bytes of its resources.
 type Timed = Result<(f64, u64), LabError>;
 
-/// The same of a candidate, and the first method's ms right after it.
-type Beside = Result<(Timed, f64), LabError>;
+/// Median and bytes of a candidate, and the first method's ms right after it.
+type CandidateTime = Result<(Timed, f64), LabError>;
 
-/// Of every method the two neighbouring candidates between which the first method's time lies, or all of no more than two.
+/// For every method, the two neighbouring candidates whose times enclose the first method's; all where there are at most
+/// two.
 /// `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too slow.
-fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> Beside) -> Result<Vec<Open<'j>>, LabError> {
+fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> CandidateTime) -> Result<Vec<Open<'j>>, LabError> {
     let mut left = Vec::new();
     for own in todo.chunk_by(|a, b| a.0 == b.0) {
         let (mut low, mut high) = (0, own.len() - 1);

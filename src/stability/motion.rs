@@ -11,7 +11,7 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Motion {
-    /// Nothing.
+    /// Nothing moves.
     #[default]
     Still,
     /// The camera, by so much a frame.
@@ -31,11 +31,11 @@ pub enum Motion {
         /// Upwards, degrees.
         #[serde(default)]
         pitch: f32,
-        /// Of the lengths.
+        /// Unit of the lengths.
         #[serde(default)]
         unit: Unit,
     },
-    /// What is animated in the scene.
+    /// The animated instances of the scene.
     Actors {
         /// Time from frame to frame, s.
         step: f64,
@@ -84,7 +84,7 @@ pub enum Motion {
     },
     /// A parameter of the method's graph.
     Parameter {
-        /// Its name.
+        /// Name of the parameter.
         name: String,
         /// What a number or vector grows by, a frame.
         #[serde(default)]

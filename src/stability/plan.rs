@@ -51,7 +51,7 @@ pub struct Job {
     pub method: String,
     /// The case.
     pub case: Case,
-    /// What is run.
+    /// The experiment that is run.
     pub experiment: Experiment,
     /// The scene, lit as the experiment says.
     pub scene: Arc<Scene>,

@@ -34,11 +34,11 @@ struct Score {
 /// A method in a group.
 struct Row {
     method: String,
-    /// What was chosen for it.
+    /// The value that was chosen for the method.
     setting: String,
     ms: Option<f64>,
     ratio: Option<f64>,
-    /// It was to be as fast as the first, and is not.
+    /// Whether the method was to be as fast as the first, and is not.
     off: bool,
     memory_bytes: Option<u64>,
     error: Option<Score>,
@@ -57,7 +57,7 @@ impl Plot<'_> {
     /// From the results of a suite.
     ///
     /// # Errors
-    /// None that results can cause.
+    /// Drawing into memory gives none, whatever the results.
     pub fn new<'a>(report: &Report, spec: &'a CostChart) -> Result<Plot<'a>, LabError> {
         let rows = |list: &[String]| list.iter().map(|m| row(report, spec, m)).collect();
         let groups: Vec<(String, Vec<Row>)> = spec.groups.iter().map(|g| (g.0.clone(), rows(&g.1))).collect();

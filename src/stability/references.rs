@@ -18,7 +18,7 @@ const MAX_BYTES: usize = 512 << 20;
 /// A part of a reference.
 pub(super) struct ReferencePart {
     pub mean: Linear,
-    /// Of the even and of the odd samples.
+    /// Means of the even and of the odd samples.
     pub halves: [Linear; 2],
     /// relMSE between the halves.
     pub noise: f64,
@@ -31,7 +31,7 @@ pub(super) struct FrameReference {
     bytes: usize,
 }
 
-/// How references are made.
+/// Samples, bounces and seed of the references.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tracing {
     pub samples: u64,

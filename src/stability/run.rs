@@ -35,7 +35,7 @@ pub enum Progress<'a> {
     },
     /// A method is timed for the chart of costs.
     Times {
-        /// Its name.
+        /// Name of the method.
         method: &'a str,
         /// Measurements before it.
         done: usize,
@@ -50,7 +50,7 @@ pub enum Progress<'a> {
     Finished(&'a Record),
 }
 
-/// How far a suite is.
+/// Counts of a suite's results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Measured.

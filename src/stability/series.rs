@@ -94,7 +94,7 @@ impl PartSeries {
         self.before.as_ref()
     }
 
-    /// What came of it; `event` is the first frame after a switch or a cut, `switched` says which.
+    /// The scores of all frames; `event` is the first frame after a switch or a cut, `switched` says which.
     pub fn finish(mut self, event: Option<usize>, switched: bool) -> PartResult {
         let changes: Vec<_> = self.frames.iter().filter_map(|f| f.change).collect();
         let root = |list: &[f64]| (list.iter().map(|v| v * v).sum::<f64>() / list.len() as f64).sqrt();

@@ -35,7 +35,7 @@ pub struct Failure {
     pub metric: String,
     /// The number.
     pub value: f64,
-    /// The same between the halves of the reference.
+    /// The same number between the halves of the reference.
     pub noise: Option<f64>,
     id: String,
     worst: Worst,

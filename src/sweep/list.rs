@@ -19,11 +19,11 @@ pub struct SweepPoint {
     /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time and frames. Points of
     /// one number have one result, up to times.
     pub id: String,
-    /// What is run.
+    /// The experiment that is run.
     pub experiment: Experiment,
     /// The scene, lit as the experiment says.
     pub scene: Arc<Scene>,
-    /// What is looked at.
+    /// Scene, camera, size and time of the picture.
     pub subject: Subject,
     /// Its values, by the names of what is varied.
     pub labels: Labels,

@@ -52,7 +52,7 @@ pub struct ManifestPoint {
 pub struct Record {
     /// [`POINT_SCHEMA`].
     pub schema: String,
-    /// Its number.
+    /// Number of the point.
     pub id: String,
     /// The experiment with nothing left to defaults, as it would stand in a file of the sweep's folder.
     pub experiment: String,
@@ -60,7 +60,7 @@ pub struct Record {
     pub subject: Subject,
     /// The device.
     pub device: DeviceStats,
-    /// What came of it.
+    /// Result of the point.
     pub outcome: Outcome,
 }
 
@@ -79,7 +79,7 @@ pub struct Subject {
     pub time: String,
 }
 
-/// What came of a point.
+/// The result of a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {

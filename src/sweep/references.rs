@@ -25,7 +25,7 @@ impl<'s> References<'s> {
         References { bounces, samples, found: BTreeMap::new() }
     }
 
-    /// Those that a point is scored against, as far as there are any.
+    /// The references that a point is scored against, as far as there are any.
     pub fn get(
         &mut self,
         lab: &Lab,

@@ -55,7 +55,7 @@ pub enum Progress<'a> {
     Finished(&'a SweepPoint, &'a Record),
 }
 
-/// How far a shard is.
+/// Counts of a shard's points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Measured.

@@ -23,7 +23,7 @@ pub fn numbers(scores: &Scores) -> BTreeMap<String, f64> {
 /// times and differ from run to run; everything else is the same on one device.
 ///
 /// # Errors
-/// None that a sweep can cause.
+/// Writing to memory gives none, whatever the sweep.
 pub fn csv(collected: &Collected) -> Result<String, LabError> {
     let records: Vec<Option<&Record>> = collected.points.iter().map(|p| p.1.as_ref()).collect();
     let points: Vec<&Point> = records.iter().flatten().filter_map(|r| done(r)).collect();

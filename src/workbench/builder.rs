@@ -1,4 +1,4 @@
-//! Builds sessions aside, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits for it.
+//! Builds sessions in the background, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits for it.
 
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
@@ -28,9 +28,9 @@ pub struct Key {
 pub struct Job {
     /// 0 is A, 1 is B.
     pub side: usize,
-    /// What from.
+    /// Key of what is built.
     pub key: Key,
-    /// The same, as an experiment.
+    /// The experiment of the key.
     pub experiment: Experiment,
     /// The scene.
     pub scene: Arc<Scene>,
@@ -44,11 +44,11 @@ pub struct Job {
     pub lab: Lab,
 }
 
-/// What became of it.
+/// The result of a build.
 pub struct Done {
     /// 0 is A, 1 is B.
     pub side: usize,
-    /// What from.
+    /// Key of what was built.
     pub key: Key,
     /// Whether this is only the preview.
     pub preview: bool,

@@ -35,7 +35,7 @@ pub struct ErrorRequest {
     pub request: u64,
     /// Revision of the files.
     pub revision: u64,
-    /// What is asked.
+    /// The error that is asked for.
     pub query: ErrorQuery,
     /// The device.
     pub lab: Lab,
@@ -60,7 +60,7 @@ pub struct ErrorResult {
     pub side: usize,
     /// Number of the render request whose picture was measured.
     pub request: u64,
-    /// What was asked.
+    /// The error that was asked for.
     pub query: ErrorQuery,
     /// The answer, or why there is none.
     pub result: Result<PictureError, String>,

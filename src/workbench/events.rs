@@ -28,7 +28,7 @@ impl Events {
     /// Writes to a file, which is made anew.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// The file cannot be made.
     pub fn new(path: &Path) -> std::io::Result<Events> {
         let now = Instant::now();
         let file = File::create(path)?;

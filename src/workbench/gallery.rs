@@ -269,7 +269,7 @@ impl Workbench {
         }
     }
 
-    /// Replays by the program's own command, beside the window.
+    /// Replays by the program's own command, in a process of its own.
     fn replay(&mut self, folder: &Path) {
         self.gallery.replayed = "replaying".into();
         let (folder, out, wake) = (folder.to_path_buf(), self.gallery.replays.0.clone(), self.wake.clone());

@@ -3,7 +3,7 @@
 use super::Workbench;
 use super::request::RenderRequest;
 
-/// What an edit changes, and what opening an experiment changes beside it.
+/// What an edit changes, and what opening an experiment changes besides.
 #[derive(Clone)]
 pub struct State {
     desired: RenderRequest,

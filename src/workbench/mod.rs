@@ -59,13 +59,13 @@ const INSPECTOR: usize = 3;
 /// New pixels of a picture: its number, size and RGBA bytes.
 pub type NewPixels = (usize, [u32; 2], Arc<Vec<u8>>);
 
-/// What is compared: mode, gain, A, B.
+/// The pictures of a comparison: mode, gain, pixels of A, pixels of B.
 type ComparisonOf = (Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>);
 
-/// What came of it.
+/// The result of a comparison: mode and map; no map where the pictures cannot be compared.
 type Compared = (Mode, Option<Map>);
 
-/// What is known of A or B.
+/// Graph, errors and picture of side A or B.
 #[derive(Default)]
 struct Side {
     info: Option<Arc<GraphInfo>>,
@@ -76,7 +76,7 @@ struct Side {
     picture: Option<PictureReport>,
 }
 
-/// What is shown on the right.
+/// Tabs of the right panel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Tab {
     Surroundings,
@@ -90,7 +90,7 @@ enum Tab {
 
 /// How to open the workbench.
 pub struct Options {
-    /// Its folders.
+    /// The program's folders.
     pub home: Home,
     /// The device that renders.
     pub gpu: GpuOptions,
@@ -100,7 +100,7 @@ pub struct Options {
     pub scene: Option<String>,
     /// Picture size; that of the viewport when absent.
     pub size: Option<(u32, u32)>,
-    /// Where to log what happens.
+    /// File for the log of events.
     pub events: Option<PathBuf>,
 }
 
@@ -114,7 +114,7 @@ pub struct Workbench {
     name: String,
     sides: [Side; 2],
     scene: Option<Arc<Scene>>,
-    /// Of the scene's bounds, m; asking for them walks through all vertices.
+    /// Diagonal of the scene's bounds, m; asking for the bounds walks through all vertices.
     diagonal: f32,
     experiment: Option<Experiment>,
     loading: Option<(String, f32)>,
@@ -133,7 +133,7 @@ pub struct Workbench {
     paths: paths::Paths,
     gallery: gallery::Gallery,
     help: bool,
-    /// What was said last, and since when.
+    /// The last message of the status line.
     status: String,
     trouble: Option<String>,
     pixels: Vec<NewPixels>,

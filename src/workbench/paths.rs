@@ -173,7 +173,7 @@ impl Workbench {
         });
     }
 
-    /// Renders the sequence by the program's own command, beside the window, from files of its own.
+    /// Renders the sequence by the program's own command, in a process of its own, from files of its own.
     fn start_sequence(&mut self) -> Result<(), LabError> {
         let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
             return Err(LabError::Request("no graph has been built yet".into()));

@@ -79,7 +79,7 @@ pub enum Report {
         side: usize,
         /// What runs.
         info: Arc<GraphInfo>,
-        /// What was kept.
+        /// Numbers of objects kept and rebuilt.
         change: Change,
         /// From the start of the build to the swap.
         ms: f64,
@@ -92,7 +92,7 @@ pub enum Report {
     Failed {
         /// 0 is A, 1 is B.
         side: usize,
-        /// What is wrong.
+        /// The errors, with their places.
         diagnostics: Vec<Diagnostic>,
         /// The sources' revision.
         revision: u64,

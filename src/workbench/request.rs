@@ -15,7 +15,7 @@ pub struct SideRequest {
     pub params: Vec<(String, String)>,
 }
 
-/// How time goes.
+/// The course of the scene's time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clock {
     /// Whether time goes on.

@@ -70,7 +70,7 @@ pub fn lights(experiment: &Experiment, scene: &Arc<Scene>) -> Result<Option<(Vec
 /// Captures an experiment into `folder/NAME`, or the next name that is free.
 ///
 /// # Errors
-/// Those of rendering and writing.
+/// The errors of rendering and writing.
 pub fn take(
     lab: &Lab,
     experiment: &Experiment,

@@ -41,7 +41,7 @@ impl Choice {
 #[derive(Default)]
 pub struct Chosen {
     of: Option<(PathBuf, Choice)>,
-    /// Those that have a score.
+    /// Points that have a score.
     pub dots: Vec<Scored>,
     /// Places in `dots` of the Pareto front, by time.
     pub front: Vec<usize>,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What is to be gathered.
+/// A reference that is to be gathered.
 pub struct Job {
     /// Folders.
     pub home: Home,

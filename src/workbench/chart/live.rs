@@ -24,7 +24,7 @@ const MEASURED: Duration = Duration::from_millis(400);
 /// Samples of a reference when nothing else is said, as `conelab reference`.
 const SAMPLES: u64 = 256;
 
-/// What is known of A or B.
+/// Times, error and trail of side A or B.
 #[derive(Default)]
 pub(super) struct Side {
     /// GPU times of the frames of the last request, ms.
@@ -46,7 +46,7 @@ pub struct State {
     gathered: u64,
     /// Samples of every pixel of the next one.
     pub(super) samples: u64,
-    /// What came of the last one.
+    /// The last result, for people.
     pub(super) said: String,
     /// Validation messages of devices that gathered.
     messages: Vec<String>,
@@ -132,7 +132,7 @@ impl super::Chart {
 }
 
 impl Workbench {
-    /// What is to be asked about A and B.
+    /// The error that is to be asked for of A and B.
     fn query(&self) -> ErrorQuery {
         let (part, bounces) = self.chart.choice.part_and_bounces(self.chart.data().map(|d| &**d));
         let metric = self.chart.choice.metric.to_string();

@@ -22,7 +22,7 @@ pub enum Channel {
 /// How values become grey levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tone {
-    /// What is shown.
+    /// Channels that are shown.
     pub channel: Channel,
     /// Value that is black.
     pub low: f32,
@@ -42,7 +42,7 @@ impl Default for Tone {
 
 /// Texels that were read.
 pub struct Decoded {
-    /// Where they are from.
+    /// The texture, mip, layer and slice that the texels are from.
     pub target: InspectTarget,
     /// Width and height.
     pub size: [u32; 2],

@@ -11,19 +11,19 @@ use std::sync::Arc;
 pub enum Source {
     /// Texels that came.
     New(InspectTarget, Texels),
-    /// Those there are, shown otherwise.
+    /// The decoded texels of before, with another tone.
     Again(Arc<Decoded>, Arc<Vec<Values>>),
 }
 
-/// What came out.
+/// Picture, values and histogram of the texels.
 pub struct Done {
     /// The texels.
     pub decoded: Arc<Decoded>,
-    /// Of each channel.
+    /// Statistics of each channel.
     pub values: Arc<Vec<Values>>,
-    /// Of each channel, over the range.
+    /// Histogram of each channel, over the tone's range.
     pub histogram: Vec<[u32; BINS]>,
-    /// How they are shown.
+    /// The tone of the picture.
     pub tone: Tone,
     /// Whether the range was made to fit.
     pub fitted: bool,

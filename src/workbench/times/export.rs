@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 /// does not have the pass.
 ///
 /// # Errors
-/// None that memory does not make.
+/// Writing to memory gives none.
 pub fn csv(sides: &[History; 2]) -> std::io::Result<Vec<u8>> {
     let mut names: Vec<&str> = Vec::new();
     for (_, name) in sides.iter().flat_map(|s| &s.passes) {

@@ -23,7 +23,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Those of a picture.
+    /// The times of a picture's frame.
     pub fn of(p: &PictureReport) -> Frame {
         Frame { frame: p.frame, time: p.time, cpu_ms: p.cpu_ms, gpu_ms: p.gpu_ms, passes: p.passes.clone() }
     }
@@ -46,7 +46,7 @@ pub struct History {
 }
 
 impl History {
-    /// Of these passes, without frames.
+    /// A history of these passes, without frames yet.
     pub fn new(passes: Vec<(usize, String)>) -> History {
         History { passes, ..History::default() }
     }
