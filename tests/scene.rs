@@ -692,9 +692,9 @@ fn shuffling_permutes_triangles_inside_parts() {
     assert_ne!(other.meshes, shuffled.meshes);
     assert_eq!(scene.shuffled(1).meshes, shuffled.meshes);
     for (a, b) in scene.meshes.iter().zip(&shuffled.meshes) {
-        assert_eq!((&a.vertices, &a.parts), (&b.vertices, &b.parts));
-        for part in &a.parts {
-            let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
+        assert_eq!((&a.vertices, &a.submeshes), (&b.vertices, &b.submeshes));
+        for submesh in &a.submeshes {
+            let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
             let sorted = |indices: &[u32]| {
                 let mut triangles = indices.as_chunks::<3>().0.to_vec();
                 triangles.sort();

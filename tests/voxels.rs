@@ -9,7 +9,7 @@ use conelab::lab::Session;
 use conelab::oracle::{
     Axes, Cell, Grid, Neighbours, Overlap, Score, Surfaces, clip, compare, exact, flood, read, triangles_of,
 };
-use conelab::scene::{Material, Mesh, Part, Scene, Vertex};
+use conelab::scene::{Material, Mesh, Scene, Submesh, Vertex};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -126,9 +126,9 @@ fn cells_hold_the_mean_of_what_is_in_them() {
     let mesh = Mesh {
         vertices: corners.map(|[x, y]| vertex(x, y)).to_vec(),
         indices: vec![0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2],
-        parts: vec![
-            Part { first_index: 0, index_count: 6, material: 0 },
-            Part { first_index: 6, index_count: 6, material: 1 },
+        submeshes: vec![
+            Submesh { first_index: 0, index_count: 6, material: 0 },
+            Submesh { first_index: 6, index_count: 6, material: 1 },
         ],
         ..Mesh::default()
     };

@@ -169,7 +169,7 @@ impl Motion {
     }
 
     /// The scene with its actors as large as the motion says.
-    pub fn stage(&self, scene: &Scene) -> Option<Scene> {
+    pub fn scaled_scene(&self, scene: &Scene) -> Option<Scene> {
         let Motion::Actors { scale, .. } = self else { return None };
         if *scale == one() {
             return None;

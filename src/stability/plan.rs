@@ -166,7 +166,7 @@ fn job(
         return Err(wrong(format!("what happens at frame {at} needs two frames more, there are {frames}")));
     }
     let cameras = Cameras::of(&case.motion, &point.experiment, &point.scene, &suite.folder)?;
-    let (scene, hash) = match case.motion.stage(&point.scene) {
+    let (scene, hash) = match case.motion.scaled_scene(&point.scene) {
         Some(staged) => {
             let hash = scene_hash(&staged);
             (Arc::new(staged), hash)

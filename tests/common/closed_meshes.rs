@@ -1,6 +1,6 @@
 //! Closed meshes and their poses.
 
-use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Part, Scene, Vertex};
+use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Vertex};
 use glam::{Mat4, Quat, Vec3};
 
 /// A scene of one mesh.
@@ -59,7 +59,7 @@ fn push(mesh: &mut Mesh, position: Vec3, normal: Vec3) {
 }
 
 fn whole(mut mesh: Mesh) -> Mesh {
-    mesh.parts = vec![Part { first_index: 0, index_count: mesh.indices.len() as u32, material: 0 }];
+    mesh.submeshes = vec![Submesh { first_index: 0, index_count: mesh.indices.len() as u32, material: 0 }];
     mesh
 }
 
