@@ -1,5 +1,5 @@
-//! The chart of the workbench as somebody at a screen sees it: a reference is gathered, a sweep measured at the same time,
-//! and the experiment is a dot among its points.
+//! The chart of the workbench as somebody at a screen sees it: a reference is gathered, a sweep measured at the same
+//! time, and the experiment is a dot among its points.
 
 mod common;
 #[path = "common/window_driver.rs"]

@@ -247,8 +247,9 @@ fn references_know_what_moved() {
     assert!(pictures.iter().all(|p| page.contains(&*p.to_string_lossy())), "every worst frame is named in the page");
 }
 
-/// A volume that moves while pixels stand still: there the reference's change is 0 to the bit and no reference is needed. One
-/// that snaps to its own cells (31 cm) stands still until it crosses half of one; one that does not pops in every frame.
+/// A volume that moves while pixels stand still: there the reference's change is 0 to the bit and no reference is
+/// needed. One that snaps to its own cells (31 cm) stands still until it crosses half of one; one that does not pops in
+/// every frame.
 #[test]
 fn a_parameter_moves() {
     let home = home();

@@ -203,9 +203,9 @@ type Timed = Result<(f64, u64), LabError>;
 /// Median and bytes of a candidate, and the first method's ms right after it.
 type CandidateTime = Result<(Timed, f64), LabError>;
 
-/// For every method, the two neighbouring candidates whose times enclose the first method's; all where there are at most
-/// two.
-/// `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too slow.
+/// For every method, the two neighbouring candidates whose times enclose the first method's; all where there are at
+/// most two. `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too
+/// slow.
 fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> CandidateTime) -> Result<Vec<Open<'j>>, LabError> {
     let mut left = Vec::new();
     for own in todo.chunk_by(|a, b| a.0 == b.0) {

@@ -1,5 +1,5 @@
-//! Stability: how methods behave when camera, actors or light move, frame by frame against the reference, and how they fail in
-//! pictures that do not move (docs/stability.md).
+//! Stability: how methods behave when camera, actors or light move, frame by frame against the reference, and how they
+//! fail in pictures that do not move (docs/stability.md).
 
 mod cameras;
 mod chart;

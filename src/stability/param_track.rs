@@ -21,8 +21,8 @@ enum Steps {
 }
 
 impl ParamTrack {
-    /// The values of a motion's parameter over `warmup` frames and `frames` measured ones. `None` for a motion that moves
-    /// no parameter.
+    /// The values of a motion's parameter over `warmup` frames and `frames` measured ones. `None` for a motion that
+    /// moves no parameter.
     ///
     /// # Errors
     /// No such parameter, one that is not only read by shaders, values that it cannot have: the text for the user.

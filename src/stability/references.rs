@@ -101,8 +101,8 @@ impl References {
     }
 }
 
-/// What the reference of a frame state depends on: what is looked at, and the parameters that its graph shares with that of
-/// references.
+/// What the reference of a frame state depends on: what is looked at, and the parameters that its graph shares with
+/// that of references.
 fn key(lab: &Lab, warm: &mut Warm, job: &Job, state: &FrameState) -> Result<String, LabError> {
     let shared = warm.graph(&lab.home, GRAPH)?.graph.params.clone();
     let own = &warm.graph(&lab.home, &job.experiment.graph)?.graph.params;

@@ -73,9 +73,9 @@ pub struct Flicker {
     pub p99: f64,
 }
 
-/// The flicker index of every pixel's luminance, less the reference's own change: of y_t = x_t - (r_t - r_0), whose area is
-/// taken to be that of x. `differences` holds (x_t - x_0) - (r_t - r_0) of every pixel, frame by frame; `areas` the sum
-/// of x over the frames. Where nothing moves y is x, and the index is the usual one.
+/// The flicker index of every pixel's luminance, less the reference's own change: of y_t = x_t - (r_t - r_0), whose
+/// area is taken to be that of x. `differences` holds (x_t - x_0) - (r_t - r_0) of every pixel, frame by frame; `areas`
+/// the sum of x over the frames. Where nothing moves y is x, and the index is the usual one.
 pub fn flicker(differences: &[Vec<f32>], areas: &[f64]) -> Flicker {
     let frames = differences.len() as f64;
     let index = |(i, area): (usize, &f64)| {

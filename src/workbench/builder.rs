@@ -1,4 +1,5 @@
-//! Builds sessions in the background, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits for it.
+//! Builds sessions in the background, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits
+//! for it.
 
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};

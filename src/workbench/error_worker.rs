@@ -1,5 +1,5 @@
-//! The error worker: the error of what is shown against its cached reference, on a thread of its own: the picture is rendered afresh, as a
-//! sweep would, so that neither the picture's frames nor their times wait for it.
+//! The error worker: the error of what is shown against its cached reference, on a thread of its own: the picture is
+//! rendered afresh, as a sweep would, so that neither the picture's frames nor their times wait for it.
 
 use super::report::Report;
 use crate::capture::scene_hash;
@@ -134,7 +134,8 @@ impl Cache {
         Ok(PictureError { subject, error: Some(error) })
     }
 
-    /// Scene, camera, size and time of the picture, as sweeps write them down. The hash of a large scene takes a second: it is kept.
+    /// Scene, camera, size and time of the picture, as sweeps write them down. The hash of a large scene takes a
+    /// second: it is kept.
     fn subject(&mut self, request: &ErrorRequest) -> Result<Subject, LabError> {
         let light = format!("{:?}", request.lights);
         let known = self.hash.as_ref().filter(|h| Arc::ptr_eq(&h.0, &request.scene) && h.1 == light);

@@ -1,5 +1,5 @@
-//! The workbench's own dots: their times from the frames that are shown, their errors from the error worker; and the reference
-//! that the errors need.
+//! The workbench's own dots: their times from the frames that are shown, their errors from the error worker; and the
+//! reference that the errors need.
 
 use super::super::engine::Order;
 use super::super::error_worker::{ErrorQuery, ErrorResult};
@@ -191,7 +191,8 @@ impl Workbench {
             "samples": measured.and_then(|v| v.error).map(|e| e.samples),
             "why": result.result.as_ref().err() });
         side.error = Some(result);
-        // A single frame after a rest is slower than many: clocks are low. The error worker is not slowed by those that follow.
+        // A single frame after a rest is slower than many: clocks are low. The error worker is not slowed by those that
+        // follow.
         if !self.chart.live.awaits() {
             self.engine.order(Order::Frames((MEASURED.as_secs_f64() * 1e3 / ms.max(0.1)).clamp(2.0, 32.0) as u32));
         }
