@@ -65,8 +65,8 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Measure every combination of what a sweep file varies; goes on where it was stopped. Exit 1 if points failed.
     Sweep(sweep::SweepArgs),
-    /// Look at methods while camera, actors or light move, frame by frame beside the truth; goes on where it was stopped.
-    /// Exit 1 if one failed.
+    /// Look at methods while camera, actors or light move, frame by frame against the reference; goes on where it was
+    /// stopped. Exit 1 if one failed.
     Stability(stability::StabilityArgs),
     /// Make a page, charts and a table of sweeps: error against time.
     Report(report::ReportArgs),

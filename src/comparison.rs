@@ -1,4 +1,4 @@
-//! Pictures beside a reference, part by part and region by region (`docs/metrics.md`).
+//! Pictures against a reference, part by part and region by region (`docs/metrics.md`).
 
 mod table;
 mod verdict;
@@ -21,17 +21,17 @@ pub const FRAME: &str = "frame";
 /// A picture by its parts.
 #[derive(Clone, Debug)]
 pub struct Side {
-    /// What it is called.
+    /// Name of the picture.
     pub name: String,
-    /// What its numbers are.
+    /// Radiance or display values.
     pub kind: Kind,
-    /// Its parts; a picture that is not split has only `total`.
+    /// Parts of the light; a picture that is not split has only `total`.
     pub parts: BTreeMap<String, Linear>,
     /// relMSE between the halves of the samples of each part, where that is known.
     pub noise: BTreeMap<String, f64>,
 }
 
-/// One or two pictures beside a reference; what `--json` writes.
+/// One or two pictures against a reference; what `--json` writes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     /// [`SCHEMA`].
@@ -53,7 +53,7 @@ pub struct Comparison {
 /// A part of the light.
 #[derive(Clone, Debug, Serialize)]
 pub struct PartComparison {
-    /// Its name.
+    /// Name of the part.
     pub part: String,
     /// relMSE between the halves of the reference's samples.
     pub noise: Option<f64>,
@@ -83,11 +83,11 @@ pub struct RegionComparison {
 /// Takes the maps of a picture (0 is A) and part.
 pub type TakeMaps<'a> = dyn FnMut(usize, &str, Vec<MapFile>) -> Result<(), MetricError> + 'a;
 
-/// What a comparison is made of, beside the pictures.
+/// The options of a comparison.
 pub struct Request<'a> {
     /// Parts; all that are there when empty.
     pub parts: &'a [String],
-    /// Regions beside those that follow from the reference.
+    /// Regions besides those that follow from the reference.
     pub masks: &'a [Region],
     /// Where maps go; none are made without.
     pub maps: Option<&'a mut TakeMaps<'a>>,
@@ -112,18 +112,18 @@ pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Res
     let mut parts = Vec::new();
     let mut size = (0, 0);
     for part in names {
-        let Some(truth) = reference.parts.get(&part) else { continue };
-        let pixels = truth.rgb.len();
+        let Some(expected) = reference.parts.get(&part) else { continue };
+        let pixels = expected.rgb.len();
         if let Some(area) = areas.iter().find(|a| a.mask.len() != pixels) {
-            let (w, h) = truth.size;
+            let (w, h) = expected.size;
             return Err(MetricError(format!("the mask '{}' does not have the pictures' size of {w}x{h}", area.name)));
         }
-        size = truth.size;
+        size = expected.size;
         let kind = if reference.kind == Kind::Displayed { Kind::Displayed } else { Kind::of_part(&part) };
         let mut compared = Vec::new();
         for (i, picture) in pictures.iter().enumerate() {
             let Some(test) = picture.parts.get(&part) else { continue };
-            let with = Compared::new(test, truth, kind)
+            let with = Compared::new(test, expected, kind)
                 .map_err(|e| MetricError(format!("'{}' and '{}': {e}", picture.name, reference.name)))?;
             if let Some(take) = &mut request.maps {
                 take(i, &part, maps(&with)?)?;

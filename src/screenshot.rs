@@ -42,7 +42,7 @@ pub struct Edit {
     pub times: usize,
 }
 
-/// What came of it.
+/// The screenshot and what was measured on the way.
 pub struct Shot {
     /// From the file's renaming until the picture made with it is painted, ms.
     pub edit_ms: Option<Spread>,
@@ -167,7 +167,7 @@ impl Host {
         Ok(Pos2::new((bounds.x0 + bounds.x1) as f32 / 2.0, (bounds.y0 + bounds.y1) as f32 / 2.0) / self.script.scale)
     }
 
-    /// Frames until everything wished for is there and nothing moves any more.
+    /// Frames until everything requested is there and nothing moves any more.
     fn settle(&mut self) -> Result<(), LabError> {
         let until = Instant::now() + self.script.patience;
         let mut calm = 0;
@@ -196,7 +196,7 @@ impl Host {
             ..RawInput::default()
         };
         input.viewports.entry(input.viewport_id).or_default().native_pixels_per_point = Some(scale);
-        self.workbench.pump();
+        self.workbench.poll_events();
         let begun = Instant::now();
         let (workbench, textures) = (&mut self.workbench, &self.textures);
         let output = self.context.run_ui(input, |ui| workbench.ui(ui, textures));

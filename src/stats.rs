@@ -49,7 +49,7 @@ pub struct DeviceStats {
 }
 
 impl DeviceStats {
-    /// Of a device.
+    /// The description of a device.
     pub fn of(device: &DeviceInfo) -> DeviceStats {
         DeviceStats {
             name: device.name.clone(),

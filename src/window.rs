@@ -104,7 +104,7 @@ impl App {
         if workbench.is_described() {
             self.context.enable_accesskit();
         }
-        let soon = workbench.pump();
+        let soon = workbench.poll_events();
         let input = open.state.take_egui_input(&open.window);
         let textures = &open.textures;
         let mut output = self.context.run_ui(input, |ui| workbench.ui(ui, textures));

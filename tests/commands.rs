@@ -178,45 +178,45 @@ fn resources_come_as_they_are() {
 fn wrong_arguments_are_told_and_leave_nothing() {
     let out = Out::new();
     let png = out.path("x.png");
-    let told = |more: &[&str]| out.tidy(&fails(plain(&png).args(more)));
-    assert_snapshot!(told(&["--set", "voxel_dmi=64"]), @r"
+    let error_of = |more: &[&str]| out.tidy(&fails(plain(&png).args(more)));
+    assert_snapshot!(error_of(&["--set", "voxel_dmi=64"]), @r"
     error: --set:1:1: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)
         | voxel_dmi=64
     ");
-    assert_snapshot!(told(&["--set", "voxel_dim"]), @"error: --set voxel_dim: expected NAME=VALUE");
-    assert_snapshot!(told(&["--set", "voxel_dim=9000"]), @r"
+    assert_snapshot!(error_of(&["--set", "voxel_dim"]), @"error: --set voxel_dim: expected NAME=VALUE");
+    assert_snapshot!(error_of(&["--set", "voxel_dim=9000"]), @r"
     error: --set:1:1: error: 'voxel_dim': 9000 is outside 16 to 512
         | voxel_dim=9000
     ");
-    assert_snapshot!(told(&["--set", "voxelizer=tesselated"]), @r"
+    assert_snapshot!(error_of(&["--set", "voxelizer=tesselated"]), @r"
     error: --set:1:1: error: 'voxelizer' has no option 'tesselated' (did you mean 'tessellated'?)
         | voxelizer=tesselated
     ");
-    assert_snapshot!(told(&["--set", "volume_size=(1, 2)"]), @r"
+    assert_snapshot!(error_of(&["--set", "volume_size=(1, 2)"]), @r"
     error: --set:1:1: error: 'volume_size': expected 3 numbers in parentheses, got (1, 2)
         | volume_size=(1, 2)
     ");
-    assert_snapshot!(told(&["--set", "voxel_dmi=64", "--set", "bias=x"]), @r"
+    assert_snapshot!(error_of(&["--set", "voxel_dmi=64", "--set", "bias=x"]), @r"
     error: --set:1:1: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)
         | voxel_dmi=64
     --set:2:1: error: 'bias': expected a number, got x
         | bias=x
     ");
-    assert_snapshot!(told(&["--size", "0x64"]), @"error: a picture of 0x64 cannot be made: each side is 1 to 16384 pixels");
-    assert_snapshot!(told(&["--size", "64"]), @"error: --size 64: expected WIDTHxHEIGHT, for example 1280x720");
-    assert_snapshot!(told(&["--size", "64x-1"]), @"error: --size 64x-1: expected WIDTHxHEIGHT, for example 1280x720");
-    assert_snapshot!(told(&["--size", "100000x64"]), @"error: a picture of 100000x64 cannot be made: each side is 1 to 16384 pixels");
-    assert_snapshot!(told(&["--frames", "0"]), @"error: --frames must be 1 to 1000000");
-    assert_snapshot!(told(&["--scene", "cornel"]), @"error: no scene 'cornel': did you mean 'cornell'? Built-in scenes: atrium, cornell, furnace, white-sky, thin-walls, triangles, moving-box, blade; otherwise give a .ron, .obj, .gltf or .glb file");
-    assert_snapshot!(told(&["--scene", "missing/model.gltf"]), @"error: cannot read missing/model.gltf: No such file or directory (os error 2). Check the path and its permissions");
-    assert_snapshot!(told(&["--camera", "side", "--scene", "cornell"]), @"error: scene 'cornell' has no camera 'side' (known: default)");
-    assert_snapshot!(told(&["--scene", "cornell", "--camera", "(eye: (0, 0, 1), target: (0, 0, 0))"]), @"error: --camera: 1:35: Unexpected missing field named `fov_y` in `PlacedCamera`; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)");
+    assert_snapshot!(error_of(&["--size", "0x64"]), @"error: a picture of 0x64 cannot be made: each side is 1 to 16384 pixels");
+    assert_snapshot!(error_of(&["--size", "64"]), @"error: --size 64: expected WIDTHxHEIGHT, for example 1280x720");
+    assert_snapshot!(error_of(&["--size", "64x-1"]), @"error: --size 64x-1: expected WIDTHxHEIGHT, for example 1280x720");
+    assert_snapshot!(error_of(&["--size", "100000x64"]), @"error: a picture of 100000x64 cannot be made: each side is 1 to 16384 pixels");
+    assert_snapshot!(error_of(&["--frames", "0"]), @"error: --frames must be 1 to 1000000");
+    assert_snapshot!(error_of(&["--scene", "cornel"]), @"error: no scene 'cornel': did you mean 'cornell'? Built-in scenes: atrium, cornell, furnace, white-sky, thin-walls, triangles, moving-box, blade; otherwise give a .ron, .obj, .gltf or .glb file");
+    assert_snapshot!(error_of(&["--scene", "missing/model.gltf"]), @"error: cannot read missing/model.gltf: No such file or directory (os error 2). Check the path and its permissions");
+    assert_snapshot!(error_of(&["--camera", "side", "--scene", "cornell"]), @"error: scene 'cornell' has no camera 'side' (known: default)");
+    assert_snapshot!(error_of(&["--scene", "cornell", "--camera", "(eye: (0, 0, 1), target: (0, 0, 0))"]), @"error: --camera: 1:35: Unexpected missing field named `fov_y` in `PlacedCamera`; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)");
     let resource = |name: &str| out.tidy(&fails(render("cornell", &png).args(["--resource", name])));
     assert_snapshot!(resource("voxelRadience"), @"error: no texture 'voxelRadience' (did you mean 'voxelRadiance'?)");
     assert_snapshot!(resource("voxelRadiance:9"), @"error: 'voxelRadiance' has 1 mips and 1 layers; there is no mip 9, layer 0");
     assert_snapshot!(resource("voxelRadiance:x"), @"error: --resource voxelRadiance:x: 'x' is no mip");
     assert_snapshot!(resource("voxelHistory"), @"error: 'voxelHistory' is not made with these parameters: no pass that runs uses it");
-    assert_snapshot!(told(&["--device", "Voodoo"]).split(": found").next().unwrap(), @"error: no Vulkan 1.3 device named 'Voodoo'");
+    assert_snapshot!(error_of(&["--device", "Voodoo"]).split(": found").next().unwrap(), @"error: no Vulkan 1.3 device named 'Voodoo'");
     assert!(out.names().is_empty(), "{:?}", out.names());
 }
 
@@ -253,11 +253,11 @@ fn outputs_that_cannot_be_written() {
     let out = Out::new();
     let file = out.write("file", "");
     std::fs::create_dir(out.path("folder.png")).unwrap();
-    let told = |path: &Path| out.tidy(&fails(&mut render("cornell", path)));
-    assert_snapshot!(told(&file.join("x.png")), @"error: cannot write 'OUT/file/x.png': 'OUT/file' is no folder");
-    assert_snapshot!(told(&out.path("x.jpg")), @"error: 'OUT/x.jpg': give it a name that ends in .png or .exr");
-    assert_snapshot!(told(&out.path("x")), @"error: 'OUT/x': give it a name that ends in .png or .exr");
-    assert_snapshot!(told(&out.path("folder.png")), @"error: cannot write 'OUT/folder.png': it is a folder");
+    let error_of = |path: &Path| out.tidy(&fails(&mut render("cornell", path)));
+    assert_snapshot!(error_of(&file.join("x.png")), @"error: cannot write 'OUT/file/x.png': 'OUT/file' is no folder");
+    assert_snapshot!(error_of(&out.path("x.jpg")), @"error: 'OUT/x.jpg': give it a name that ends in .png or .exr");
+    assert_snapshot!(error_of(&out.path("x")), @"error: 'OUT/x': give it a name that ends in .png or .exr");
+    assert_snapshot!(error_of(&out.path("folder.png")), @"error: cannot write 'OUT/folder.png': it is a folder");
     let json = file.join("x.json");
     assert_snapshot!(out.tidy(&fails(render("cornell", &out.path("x.png")).arg("--json").arg(json))), @"error: cannot write 'OUT/file/x.json': 'OUT/file' is no folder");
     assert_eq!(out.names(), ["file", "folder.png"]);

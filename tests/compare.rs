@@ -1,4 +1,4 @@
-//! `conelab compare`: what it says of pictures whose errors are known, and of experiments beside a reference.
+//! `conelab compare`: what it says of pictures whose errors are known, and of experiments against a reference.
 
 mod common;
 
@@ -94,7 +94,7 @@ fn pictures_for_a_display_are_compared_as_such_and_never_with_radiance() {
     let said = succeeds(compare().args([&a, &b]));
     assert!(said.contains("(B: there is no other reference)"), "{said}");
     assert!(said.contains("are of the displayed range 0 to 1"), "{said}");
-    // sRGB 188 is .5029 of white.
+    // sRGB 188 is 0.5029 of white.
     assert!(said.contains("0.5029"), "{said}");
     let radiance = exr(&folder, "r.exr", |_, _| [1.0; 3]);
     let said = fails(compare().args([&a, &radiance]));

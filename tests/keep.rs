@@ -327,12 +327,12 @@ fn an_experiment_changes_the_light_of_its_scene() {
     read("    sky: (1, 2, 3),\n").unwrap().adapt_scene(&mut box_scene).unwrap();
     assert_eq!(box_scene.sky, Vec3::new(1.0, 2.0, 3.0));
 
-    let told = |found: Result<Experiment, Vec<conelab::graph::source::Diagnostic>>| match found {
+    let message = |found: Result<Experiment, Vec<conelab::graph::source::Diagnostic>>| match found {
         Err(list) => project.tidy(&list.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
         Ok(e) => project.tidy(&e.adapt_scene(&mut before.clone()).unwrap_err().to_string()),
     };
     let first = |text: String| text.lines().next().unwrap().to_string();
-    let light = |change| first(told(lamp(change)));
+    let light = |change| first(message(lamp(change)));
     let place = "configs/lit.ron:3:";
     assert_eq!(
         light("color: (1, -2, 3)"),
@@ -350,14 +350,14 @@ fn an_experiment_changes_the_light_of_its_scene() {
     );
     assert_eq!(light("colour: (1, 1, 1)"), format!("{place}24: error: unknown field 'colour'"));
     assert_eq!(
-        first(told(read("    sky: (0, NaN, 0),\n"))),
+        first(message(read("    sky: (0, NaN, 0),\n"))),
         format!("{place}10: error: the sky's radiance must be finite and not negative")
     );
     assert_eq!(
-        first(told(read("    time: inf,\n"))),
+        first(message(read("    time: inf,\n"))),
         format!("{place}11: error: the time must be a finite number of seconds")
     );
-    let unknown = told(read("    lights: { \"lmap\": () },\n"));
+    let unknown = message(read("    lights: { \"lmap\": () },\n"));
     assert!(unknown.starts_with(&format!("{place}15: error: scene 'cornell' has no light 'lmap'")), "{unknown}");
     assert!(unknown.ends_with("= help: did you mean 'lamp'?"), "{unknown}");
 }
@@ -463,13 +463,14 @@ fn the_method_is_captured_and_replayed() {
         ..capture::What::default()
     };
     let path = capture::take(&lab, &experiment, scene("cornell"), &what, folder.path(), "box").unwrap();
-    let told = capture::take(&lab, &experiment, scene("cornell"), &what, folder.path(), "box").unwrap_err().to_string();
-    assert!(told.ends_with("box': there is a capture of that name; choose another"), "{told}");
+    let message =
+        capture::take(&lab, &experiment, scene("cornell"), &what, folder.path(), "box").unwrap_err().to_string();
+    assert!(message.ends_with("box': there is a capture of that name; choose another"), "{message}");
     assert_eq!(capture::free_name(folder.path(), "box"), "box-2");
     let none = capture::What { frames: 0, ..capture::What::default() };
-    let told =
+    let message =
         capture::take(&lab, &experiment, scene("cornell"), &none, folder.path(), "none").unwrap_err().to_string();
-    assert_eq!(told, "frames must be 1 to 1000000, and the step finite");
+    assert_eq!(message, "frames must be 1 to 1000000, and the step finite");
     let manifest = capture::Manifest::read(&path).unwrap();
     let open = |name: &str| Ok((*scene(name)).clone());
     let result = capture::replay(&lab, &path, &manifest, open, None).unwrap();
@@ -522,12 +523,12 @@ fn damaged_captures_are_told_and_listed() {
     let outside = project.write("secret.png", "outside");
     let broken = |text: &str| {
         project.write("captures/run/capture.json", text);
-        let told = project.tidy(&fails(&mut project.command(&["replay", "captures/run"])));
+        let message = project.tidy(&fails(&mut project.command(&["replay", "captures/run"])));
         let list = capture::list(&folder);
         assert_eq!(list.len(), 2);
         let listed = list[0].manifest.as_ref().unwrap_err();
-        assert!(told.contains(project.tidy(listed).as_str()), "{told} is not {listed}");
-        told
+        assert!(message.contains(project.tidy(listed).as_str()), "{message} is not {listed}");
+        message
     };
     for cut in [0, 1, whole.len() / 2, whole.len() - 3] {
         assert!(broken(&whole[..cut]).starts_with("error: 'captures/run/capture.json': it is damaged: "), "{cut}");
@@ -545,15 +546,15 @@ fn damaged_captures_are_told_and_listed() {
     assert!(capture::list(&folder)[0].manifest.as_ref().unwrap_err().ends_with("the file 'picture.png' is missing"));
     // A texture that the graph does not have.
     project.write("captures/run-2/capture.json", &whole.replace("\"texture\": \"image\"", "\"texture\": \"imago\""));
-    let told = fails(&mut project.command(&["replay", "captures/run-2"]));
-    assert!(told.contains("no texture 'imago' (did you mean 'image'?)"), "{told}");
+    let message = fails(&mut project.command(&["replay", "captures/run-2"]));
+    assert!(message.contains("no texture 'imago' (did you mean 'image'?)"), "{message}");
     project.write("captures/run-2/experiment.ron", "(graph: \"../../../passes/graph.ron\", scene: \"furnace\")");
-    let told = fails(&mut project.command(&["replay", "captures/run-2"]));
-    assert!(told.contains("its graph must be a bare file name"), "{told}");
-    let told = project.tidy(&fails(&mut project.command(&["capture", "configs/run.ron", "--name", "a/b"])));
-    assert!(told.contains("'a/b' cannot be a name: '/' is not allowed"), "{told}");
-    let told = project.tidy(&fails(&mut project.command(&["capture", "configs/run.ron", "--resource", "lihgt"])));
-    assert!(told.contains("no texture 'lihgt' (did you mean 'light'?)"), "{told}");
+    let message = fails(&mut project.command(&["replay", "captures/run-2"]));
+    assert!(message.contains("its graph must be a bare file name"), "{message}");
+    let message = project.tidy(&fails(&mut project.command(&["capture", "configs/run.ron", "--name", "a/b"])));
+    assert!(message.contains("'a/b' cannot be a name: '/' is not allowed"), "{message}");
+    let message = project.tidy(&fails(&mut project.command(&["capture", "configs/run.ron", "--resource", "lihgt"])));
+    assert!(message.contains("no texture 'lihgt' (did you mean 'light'?)"), "{message}");
     assert_eq!(project.names("captures"), ["run", "run-2", "tour"], "nothing is left of what failed");
 }
 
@@ -720,25 +721,25 @@ fn paths_are_edited_written_and_read() {
     let file = project.path("configs/paths/bent.ron");
     camera_path::write(&path, &file, false).unwrap();
     assert_eq!(CameraPath::read(&file).unwrap(), path);
-    let told = camera_path::write(&bent(true), &file, false).unwrap_err().to_string();
-    assert!(told.contains("it exists; choose another name"), "{told}");
+    let message = camera_path::write(&bent(true), &file, false).unwrap_err().to_string();
+    assert!(message.contains("it exists; choose another name"), "{message}");
     camera_path::write(&bent(true), &file, true).unwrap();
     assert_eq!(CameraPath::read(&file).unwrap(), bent(true));
     assert!(camera_path::write(&CameraPath::default(), &file, true).is_err());
     assert_eq!(CameraPath::read(&file).unwrap(), bent(true));
 
-    let told = |keys: &str| {
+    let message = |keys: &str| {
         let file = project.write("configs/paths/wrong.ron", &format!("(keys: [\n{keys}\n])"));
         let list = CameraPath::read(&file).unwrap_err();
         project.tidy(&list.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
     };
     let key = |time: &str, more: &str| format!("(time: {time}, eye: (0, 0, 1), target: (0, 0, 0){more}),");
-    let two = |a: &str, b: &str| told(&format!("{}\n{}", key(a, ", fov_y: 60"), key(b, ", fov_y: 60")));
+    let two = |a: &str, b: &str| message(&format!("{}\n{}", key(a, ", fov_y: 60"), key(b, ", fov_y: 60")));
     assert!(two("1", "1").starts_with("configs/paths/wrong.ron:3:1: error: a key's time must be greater than"));
     assert!(two("1", "inf").starts_with("configs/paths/wrong.ron:3:1: error: a key's numbers must be finite"));
-    assert!(told(&key("0", "")).starts_with("configs/paths/wrong.ron:2:"));
-    assert!(told(&key("0", ", fov_y: 180")).contains("fov_y must be 1 to 170 degrees"));
-    assert!(told("").contains("a path has 1 to 100000 keys, this one has 0"));
+    assert!(message(&key("0", "")).starts_with("configs/paths/wrong.ron:2:"));
+    assert!(message(&key("0", ", fov_y: 180")).contains("fov_y must be 1 to 170 degrees"));
+    assert!(message("").contains("a path has 1 to 100000 keys, this one has 0"));
 }
 
 #[test]
@@ -776,8 +777,8 @@ fn a_sequence_is_written_once_and_follows_the_path() {
     );
     let still = conelab::picture::read(&project.path("still.exr"), (64, 64)).unwrap();
     assert_eq!(found, still);
-    let told = fails(&mut sequence(&["--sequence", "film"]));
-    assert_eq!(told, "error: cannot write frames to 'film': it has 'frame-00000.png'; choose an empty folder\n");
+    let message = fails(&mut sequence(&["--sequence", "film"]));
+    assert_eq!(message, "error: cannot write frames to 'film': it has 'frame-00000.png'; choose an empty folder\n");
     let neither = sequence(&[]).output().unwrap();
     assert!(String::from_utf8_lossy(&neither.stderr).contains("--output"), "one of them is needed");
 }

@@ -335,7 +335,7 @@ fn damaged_references_are_told_and_not_trusted() {
     let folder = trace(&lab, &experiment, &cornell, 1, 32).folder;
     let (json, sums) = (folder.join("reference.json"), folder.join("sums-32.exr"));
     let (record, texels) = (std::fs::read_to_string(&json).unwrap(), std::fs::read(&sums).unwrap());
-    let told = |what: &str, hint: &str| {
+    let rejected = |what: &str, hint: &str| {
         let error = find(&lab.home, &experiment, &cornell, 1).expect_err(what).to_string();
         println!("{what}: {error}");
         assert!(error.contains("delete the folder") && error.contains(hint), "{what}: {error}");
@@ -343,16 +343,16 @@ fn damaged_references_are_told_and_not_trusted() {
         assert!(error.is_err(), "{what}: more samples were added");
     };
     std::fs::write(&sums, &texels[..texels.len() / 2]).unwrap();
-    told("half a file", "not what was written");
+    rejected("half a file", "not what was written");
     let mut flipped = texels.clone();
     let last = flipped.len() - 100;
     flipped[last] ^= 1;
     std::fs::write(&sums, &flipped).unwrap();
-    told("one bit", "not what was written");
+    rejected("one bit", "not what was written");
     std::fs::write(&sums, vec![0; 4 << 20]).unwrap();
-    told("a large file", "more than its samples take");
+    rejected("a large file", "more than its samples take");
     std::fs::remove_file(&sums).unwrap();
-    told("no file", "sums-32.exr");
+    rejected("no file", "sums-32.exr");
     std::fs::write(&sums, &texels).unwrap();
     for (what, text, hint) in [
         ("half a record", record[..record.len() / 2].to_owned(), "reference.json"),
@@ -363,7 +363,7 @@ fn damaged_references_are_told_and_not_trusted() {
     ] {
         assert_ne!(text, record, "{what}");
         std::fs::write(&json, text).unwrap();
-        told(what, hint);
+        rejected(what, hint);
     }
     std::fs::write(&json, &record).unwrap();
     assert!(find(&lab.home, &experiment, &cornell, 1).unwrap().is_some());

@@ -78,12 +78,12 @@ impl Bench {
         let experiment = self.experiment(params);
         let loaded = self.lab.home.load(&experiment.graph).map_err(LabError::Input)?;
         let wanted = vec!["count".into(), "sized".into()];
-        self.lab.build(&experiment, &loaded, self.scene.clone(), wanted, old.map(Session::seed).as_ref())
+        self.lab.build(&experiment, &loaded, self.scene.clone(), wanted, old.map(Session::reusable_parts).as_ref())
     }
 
     fn reload(&self, params: &str, old: &mut Session) -> Session {
         let mut new = self.session(params, Some(old)).unwrap();
-        new.succeed(old).unwrap();
+        new.swap_in(old).unwrap();
         new
     }
 }
@@ -181,14 +181,14 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
     let loaded = bench.lab.home.load_for(&once, &bench.scene).unwrap();
     assert_eq!(loaded.warnings, []);
     let wanted = || vec!["count".into(), "sized".into()];
-    let build = |experiment: &Experiment, seed: Option<&Session>| {
-        bench.lab.build(experiment, &loaded, bench.scene.clone(), wanted(), seed.map(Session::seed).as_ref())
+    let build = |experiment: &Experiment, reuse: Option<&Session>| {
+        bench.lab.build(experiment, &loaded, bench.scene.clone(), wanted(), reuse.map(Session::reusable_parts).as_ref())
     };
     let mut session = build(&once, None).unwrap();
     frames(&mut session, 1);
     assert_eq!(floats(&mut session, "sized", 0)[0][0], 1.0);
 
-    // Switched on, it is compiled, and its mistake is told.
+    // Switched on, it is compiled, and its mistake is reported.
     let mut params = session.params.clone();
     params.set("twice", "true").unwrap();
     assert!(!session.set_params(&bench.lab, &params).unwrap(), "it needs a shader that is not there");
@@ -197,7 +197,7 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
     assert!(found[0].place.file.ends_with("again.comp"), "{found:?}");
     bench.write("shaders/again.comp", AGAIN);
     let mut next = build(&twice, Some(&session)).unwrap();
-    next.succeed(&mut session).unwrap();
+    next.swap_in(&mut session).unwrap();
     assert_eq!(next.program.change, Change { kept: 2, built: 1, resized: 0 });
     frames(&mut next, 1);
     assert_eq!(floats(&mut next, "sized", 0)[0][0], 2.0);
@@ -224,11 +224,11 @@ fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
         let experiment = experiment("cornell", (64, 48), &[&small[..], step].concat());
         let loaded = lab.home.load(&experiment.graph).unwrap();
         let wanted = vec!["display".to_string()];
-        let seed = live.as_ref().map(Session::seed);
-        let mut next = lab.build(&experiment, &loaded, cornell.clone(), wanted.clone(), seed.as_ref()).unwrap();
-        drop(seed);
+        let reuse = live.as_ref().map(Session::reusable_parts);
+        let mut next = lab.build(&experiment, &loaded, cornell.clone(), wanted.clone(), reuse.as_ref()).unwrap();
+        drop(reuse);
         if let Some(old) = &mut live {
-            next.succeed(old).unwrap();
+            next.swap_in(old).unwrap();
         }
         frames(&mut next, 1);
         if !step.contains(&("temporal_factor", "0.8")) {

@@ -1,4 +1,4 @@
-//! Scenes: every format loads, every kind of bad input is told as such, nothing is lost on the way.
+//! Scenes: every format loads, every kind of bad input is reported as such, nothing is lost on the way.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -28,19 +28,19 @@ fn opening_ends_when_it_is_told_to() {
     for spec in [path("atrium.glb"), path("atrium.obj"), "atrium".into()] {
         // Before anything, and in the middle of it: each takes longer than the 20 ms between calls.
         for calls in [1, 2] {
-            let (count, told) = (Cell::new(0), Cell::new(None));
+            let (count, asked) = (Cell::new(0), Cell::new(None));
             let result = Scene::open(&spec, &|what, done| {
                 assert!(!what.is_empty() && (0.0..=1.0).contains(&done), "{what} {done}");
                 count.set(count.get() + 1);
                 if count.get() < calls {
                     return ControlFlow::Continue(());
                 }
-                told.set(Some(Instant::now()));
+                asked.set(Some(Instant::now()));
                 ControlFlow::Break(())
             });
             assert!(matches!(result, Err(SceneError::Cancelled)), "{spec}, call {calls}");
             assert_eq!(count.get(), calls, "{spec}: asked again after the end");
-            assert!(told.get().unwrap().elapsed().as_millis() < 500, "{spec}, call {calls}");
+            assert!(asked.get().unwrap().elapsed().as_millis() < 500, "{spec}, call {calls}");
         }
     }
 }
@@ -692,9 +692,9 @@ fn shuffling_permutes_triangles_inside_parts() {
     assert_ne!(other.meshes, shuffled.meshes);
     assert_eq!(scene.shuffled(1).meshes, shuffled.meshes);
     for (a, b) in scene.meshes.iter().zip(&shuffled.meshes) {
-        assert_eq!((&a.vertices, &a.parts), (&b.vertices, &b.parts));
-        for part in &a.parts {
-            let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
+        assert_eq!((&a.vertices, &a.submeshes), (&b.vertices, &b.submeshes));
+        for submesh in &a.submeshes {
+            let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
             let sorted = |indices: &[u32]| {
                 let mut triangles = indices.as_chunks::<3>().0.to_vec();
                 triangles.sort();

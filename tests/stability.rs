@@ -36,18 +36,18 @@ fn flicker_index() {
     assert_eq!(index_of(&[0.0; 8]), 0.0, "black does not flicker");
 }
 
-/// What the truth does is no error; a pop in a few pixels is in the percentile and the jump, hardly in the mean.
+/// What the reference does is no error; a pop in a few pixels is in the percentile and the jump, hardly in the mean.
 #[test]
 fn change_of_a_frame() {
     let (a, b) = (grey(&[0.1, 0.2, 0.3]), grey(&[0.2, 0.4, 0.1]));
     let none = change(Kind::Radiance, [&a, &b], Some([&a, &b]));
     assert_eq!((none.rms, none.p999, none.jump), (0.0, 0.0, 0.0));
-    // The truth rises by 1 everywhere, the method in one of four pixels only: errors 0, 1, 1, 1.
+    // The reference rises by 1 everywhere, the method in one of four pixels only: errors 0, 1, 1, 1.
     let (x0, x1) = (grey(&[0.0; 4]), grey(&[1.0, 0.0, 0.0, 0.0]));
     let (r0, r1) = (grey(&[0.0; 4]), grey(&[1.0; 4]));
     let c = change(Kind::Radiance, [&x0, &x1], Some([&r0, &r1]));
     assert!((c.rms - 0.75f64.sqrt()).abs() < 1e-12 && (c.p999 - 1.0).abs() < 1e-12);
-    // 1 is shown as 1/2, which sRGB encodes as .7354.
+    // 1 is shown as 1/2, which sRGB encodes as 0.7354.
     assert!((c.jump - 255.0 * 0.735_357).abs() < 0.01, "{}", c.jump);
     assert!((display(Kind::Displayed, 1.0) - 1.0).abs() < 1e-9);
     // One pixel in 500 pops.
@@ -57,7 +57,7 @@ fn change_of_a_frame() {
     assert!((c.p999 - 1.0).abs() < 1e-6 && (c.rms - (1.0f64 / 500.0).sqrt()).abs() < 1e-6);
 }
 
-/// A step that decays by a factor arrives after log(.05) / log(factor) frames; one that overshoots says by how much.
+/// A step that decays by a factor arrives after log(0.05) / log(factor) frames; one that overshoots says by how much.
 #[test]
 fn step_response() {
     for factor in [0.0f64, 0.5, 0.8, 0.9] {
@@ -137,7 +137,7 @@ fn a_still_scene_is_still() {
 }
 
 /// A path tracer with other random numbers as the method: two pictures of s samples each differ by 2/s, the two halves of
-/// one by 4/s of a sample's variance, so E_t is .71 of the noise that is told, and not told apart from it.
+/// one by 4/s of a sample's variance, so E_t is 0.71 of the noise that is reported, and not told apart from it.
 #[test]
 fn the_reference_as_a_method_is_at_its_own_noise() {
     let home = home();
@@ -161,7 +161,7 @@ fn the_reference_as_a_method_is_at_its_own_noise() {
 }
 
 /// T11: a lamp is switched on. Without a filter the voxels follow at once; with one that keeps a part f of the frame before,
-/// 5 % are left after log(.05) / log(f) frames.
+/// 5 % are left after log(0.05) / log(f) frames.
 #[test]
 fn a_switched_light_arrives_as_late_as_the_filter_says() {
     let home = home();
@@ -186,7 +186,7 @@ fn a_switched_light_arrives_as_late_as_the_filter_says() {
 fn settling_frames() {
     let mut errors = vec![9.0; 3];
     errors.extend((1..200).map(|k| 0.5 + 4.0 * 0.8f64.powi(k)));
-    // 4 f^k <= .05 * .5
+    // 4 f^k <= 0.05 * 0.5
     assert_eq!(settling(&errors, 3), Some((0.05f64 * 0.5 / 4.0).log(0.8).ceil() as usize));
     assert_eq!(settling(&[7.0, 1.0, 1.0, 1.0], 1), Some(1));
     assert_eq!(settling(&[7.0, 1.0, 0.9, 1.0, 1.0], 1), Some(3), "below is not settled either");
@@ -247,8 +247,9 @@ fn references_know_what_moved() {
     assert!(pictures.iter().all(|p| page.contains(&*p.to_string_lossy())), "every worst frame is named in the page");
 }
 
-/// A volume that moves while pixels stand still: there the truth's change is 0 to the bit and no reference is needed. One
-/// that snaps to its own cells (31 cm) stands still until it crosses half of one; one that does not pops in every frame.
+/// A volume that moves while pixels stand still: there the reference's change is 0 to the bit and no reference is
+/// needed. One that snaps to its own cells (31 cm) stands still until it crosses half of one; one that does not pops in
+/// every frame.
 #[test]
 fn a_parameter_moves() {
     let home = home();
@@ -280,9 +281,9 @@ fn a_parameter_moves() {
     }
 }
 
-/// A parameter that references have too moves the truth.
+/// A parameter that references have too moves the reference.
 #[test]
-fn a_parameter_of_the_truth() {
+fn a_parameter_that_references_have_too() {
     let home = home();
     let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"ggx_alpha\", values: [\"squared\", \"roughness\", \"roughness\"]))";
     let file = suite(home.path(), "\"a\": { \"scene\": \"configs/stability/scenes/metal-rough.ron\" }", cases);
@@ -291,9 +292,9 @@ fn a_parameter_of_the_truth() {
     assert_eq!(references, 2);
     let frames = table(&home.path().join("out/frames.csv"));
     let own = frames.iter().filter(|r| r["part"] == "specular");
-    let truth: Vec<&str> = own.map(|r| r["reference mean luminance"].as_str()).collect();
-    assert!(truth[0] != truth[1] && truth[1] == truth[2], "{truth:?}");
-    // Without references nobody knows the truth's change.
+    let reference: Vec<&str> = own.map(|r| r["reference mean luminance"].as_str()).collect();
+    assert!(reference[0] != reference[1] && reference[1] == reference[2], "{reference:?}");
+    // Without references nobody knows the reference's change.
     succeeds(&mut stability(home.path(), &file, "none", &["--no-reference"]));
     assert_eq!(value(&table(&home.path().join("none/stability.csv")), "lobe", "a", "total E_t"), None);
 }
@@ -354,8 +355,8 @@ fn equal_cost() {
     assert!(out("index.html").contains(&svg) && out("index.html").contains("What stability costs"));
     // What was chosen is taken again.
     let before = ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out);
-    let told = succeeds(&mut stability(home.path(), &file, "out", &[]));
-    assert!(told.contains("9 done, 0 failed"), "{told}");
+    let message = succeeds(&mut stability(home.path(), &file, "out", &[]));
+    assert!(message.contains("9 done, 0 failed"), "{message}");
     assert_eq!(before, ["cost.json", "cost.csv", "charts/cost.svg", "stability.json"].map(out));
 }
 
@@ -384,8 +385,8 @@ fn killed_and_continued() {
     child.wait().unwrap();
     let before = finished();
     assert!((2..9).contains(&before.len()), "{} of 9 were finished", before.len());
-    let told = succeeds(&mut stability(home.path(), &file, "out", &[]));
-    assert!(told.contains(&format!("{} are finished already", before.len())), "{told}");
+    let message = succeeds(&mut stability(home.path(), &file, "out", &[]));
+    assert!(message.contains(&format!("{} are finished already", before.len())), "{message}");
     let after = finished();
     assert_eq!(after.len(), 9);
     assert!(before.iter().all(|(name, bytes)| after[name] == *bytes), "what was finished is kept as it was");
@@ -405,12 +406,12 @@ fn a_sheet_of_failures() {
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replacen("methods:", "pictures: \"diffuse\", methods:", 1)).unwrap();
     let picture = home.path().join("failures.jpg");
-    let told = succeeds(&mut stability(home.path(), &file, "out", &["--sheet", picture.to_str().unwrap()]));
+    let message = succeeds(&mut stability(home.path(), &file, "out", &["--sheet", picture.to_str().unwrap()]));
     let bytes = std::fs::read(&picture).unwrap();
     assert!(bytes.len() < 200_000, "{} bytes", bytes.len());
     let sheet = image::load_from_memory(&bytes).unwrap().to_luma8();
     let rows: Vec<Vec<&str>> =
-        told.lines().filter(|l| l.starts_with("| ")).skip(1).map(|l| l.split(" | ").collect()).collect();
+        message.lines().filter(|l| l.starts_with("| ")).skip(1).map(|l| l.split(" | ").collect()).collect();
     let names: Vec<(&str, &str)> = rows.iter().map(|r| (r[0], &r[2][..5])).collect();
     assert_eq!(names, [("| fine", "relMS"), ("| fine", "E_t o"), ("| coarse", "relMS"), ("| coarse", "E_t o")]);
     // The number is the largest of the method's cases of one frame.
@@ -474,29 +475,29 @@ fn shipped_suites() {
     }
 }
 
-/// Mistakes are told before anything is measured.
+/// Mistakes are reported before anything is measured.
 #[test]
 fn mistakes() {
     let home = home();
-    let told = |methods: &str, cases: &str, more: &[&str]| {
+    let message = |methods: &str, cases: &str, more: &[&str]| {
         let file = suite(home.path(), methods, cases);
         fails(&mut stability(home.path(), &file, "out", more))
     };
     let has = |text: String, part: &str| assert!(text.contains(part), "{text}");
-    has(told("\"a\": {}", "\"x\": (motion: Light(name: \"sun\"))", &[]), "has no light 'sun'; it has lamp");
+    has(message("\"a\": {}", "\"x\": (motion: Light(name: \"sun\"))", &[]), "has no light 'sun'; it has lamp");
     has(
-        told("\"a\": {}", "\"x\": (set: { \"scene\": \"cornell\" }, motion: Actors(step: 0.1))", &[]),
+        message("\"a\": {}", "\"x\": (set: { \"scene\": \"cornell\" }, motion: Actors(step: 0.1))", &[]),
         "nothing is animated",
     );
-    has(told("\"a\": {}", "\"x\": ()", &["--only", "y"]), "the suite's cases are x");
-    has(told("\"a\": { \"voxel_dimm\": 3 }", "\"x\": ()", &[]), "voxel_dim");
-    has(told("\"a\": {}", "\"x\": (methods: [\"b\"])", &[]), "none of the suite's");
-    has(told("\"a\": {}", "\"x\": (motion: Camera(dolley: 1))", &[]), "dolley");
+    has(message("\"a\": {}", "\"x\": ()", &["--only", "y"]), "the suite's cases are x");
+    has(message("\"a\": { \"voxel_dimm\": 3 }", "\"x\": ()", &[]), "voxel_dim");
+    has(message("\"a\": {}", "\"x\": (methods: [\"b\"])", &[]), "none of the suite's");
+    has(message("\"a\": {}", "\"x\": (motion: Camera(dolley: 1))", &[]), "dolley");
     has(
-        told("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
+        message("\"a\": {}", "\"x\": (motion: Switch(name: \"lamp\", at: 9, from: 0, to: 1))", &[]),
         "needs two frames more, there are 4",
     );
-    let moves = |text: &str| told("\"a\": {}", &format!("\"x\": (motion: Parameter(name: {text}))"), &[]);
+    let moves = |text: &str| message("\"a\": {}", &format!("\"x\": (motion: Parameter(name: {text}))"), &[]);
     has(moves("\"volume_ofset\", step: (1, 0, 0)"), "volume_offset");
     has(moves("\"volume_offset\", step: 1"), "expected 3 numbers");
     has(moves("\"volume_offset\""), "either a `step` or `values`");
@@ -516,13 +517,13 @@ fn mistakes() {
     has(equal("\"voxel_dim\", values: [32], methods: [\"a\"]"), "'a' is the suite's first method");
     has(equal("\"voxel_dimm\", values: [32], methods: [\"b\"]"), "voxel_dim");
     has(equal("\"voxel_dim\", values: [3], methods: [\"b\"]"), "outside 16 to 512");
-    has(told("\"a\": {}", "\"x\": (motion: Cut(to: \"behind\", at: 1))", &[]), "no camera 'behind'");
-    has(told("\"a\": {}", "\"x\": (motion: Cut(to: \"default\", at: 0))", &[]), "`at` of 1 or more");
-    has(told("\"a\": {}", "\"x\": (motion: Path(file: \"none.ron\", step: 1))", &[]), "none.ron");
+    has(message("\"a\": {}", "\"x\": (motion: Cut(to: \"behind\", at: 1))", &[]), "no camera 'behind'");
+    has(message("\"a\": {}", "\"x\": (motion: Cut(to: \"default\", at: 0))", &[]), "`at` of 1 or more");
+    has(message("\"a\": {}", "\"x\": (motion: Path(file: \"none.ron\", step: 1))", &[]), "none.ron");
     let file = suite(home.path(), "\"a\": {}", "\"x\": ()");
     let text = std::fs::read_to_string(&file).unwrap();
     std::fs::write(&file, text.replacen("methods:", "pictures: \"glow\", methods:", 1)).unwrap();
     has(fails(&mut stability(home.path(), &file, "out", &[])), "no pictures of 'glow'");
-    has(told("", "\"x\": ()", &[]), "at least one method");
+    has(message("", "\"x\": ()", &[]), "at least one method");
     assert!(!home.path().join("out").exists(), "nothing was written");
 }

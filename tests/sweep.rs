@@ -163,7 +163,7 @@ fn points_are_scored_against_references_and_measured_again_when_there_is_one() {
     for part in ["total", "direct", "diffuse", "specular", "occlusion"] {
         assert!(score(0, &format!("{part} relmse")).is_finite());
     }
-    // Three times the indirect light is far from the truth, and changes direct light in nothing.
+    // Three times the indirect light is far from the reference, and changes direct light in nothing.
     assert!(score(1, "diffuse relmse") > 2.0 * score(0, "diffuse relmse"), "{rows:?}");
     assert!(score(1, "total relmse") > 2.0 * score(0, "total relmse"), "{rows:?}");
     assert_eq!(rows[0]["direct relmse"], rows[1]["direct relmse"]);
@@ -364,7 +364,7 @@ fn recorded_times_are_measured_again_and_what_became_slower_fails() {
     let said = fails(&mut against(home.path(), &edited, &["configs/nothing.ron"]));
     assert!(said.contains("the record has no times of 'configs/nothing.ron'"), "{said}");
 
-    // Stages with other names: the total is compared still. Settings, scene and driver that differ are told.
+    // Stages with other names: the total is compared still. Settings, scene and driver that differ are named.
     let mut renamed = json.clone();
     renamed["device"]["driver"] = "another".into();
     let first = &mut renamed["configurations"][0];
@@ -421,7 +421,7 @@ fn a_record_that_does_not_fit_says_why() {
     let said = fails(&mut against(home.path(), &home.path().join("nowhere"), &[]));
     assert!(said.contains("nothing to compare") && said.contains("--record"), "{said}");
 
-    // What no longer fits is told, what fits is compared, and the run fails.
+    // What no longer fits is named, what fits is compared, and the run fails.
     let mut unknown = json.clone();
     unknown["configurations"][0]["settings"]["voxel_dimm"] = "32".into();
     std::fs::write(&edited, unknown.to_string()).unwrap();
@@ -441,7 +441,7 @@ fn a_record_that_does_not_fit_says_why() {
     assert!(!ok && said.contains("error: no parameter 'voxel_dimm'") && said.ends_with(" 1 errors\n"), "{said}");
     assert!(check(&path).0);
 
-    // A scene that is not on this machine is told and is no failure; nothing but such scenes is one.
+    // A scene that is not on this machine is named and is no failure; nothing but such scenes is one.
     let mut missing = json.clone();
     let scene = r#"(models: [(file: "nowhere/nothing.obj")])"#;
     std::fs::write(home.path().join("missing.ron"), scene).unwrap();

@@ -61,21 +61,21 @@ fn check(trial: &str, rows: &[Row]) {
         std::fs::write(&path, out.join("\n") + "\n").unwrap();
         return;
     }
-    let told: Vec<&str> = text.lines().filter(mine).collect();
-    assert_eq!(told.len(), rows.len(), "{trial}: docs/trials.md has other rows");
+    let documented: Vec<&str> = text.lines().filter(mine).collect();
+    assert_eq!(documented.len(), rows.len(), "{trial}: docs/trials.md has other rows");
     let mut wrong = String::new();
-    for ((told, line), r) in told.iter().zip(&lines).zip(rows) {
-        let (a, b): (Vec<&str>, Vec<&str>) = (told.split('|').collect(), line.split('|').collect());
+    for ((documented, line), r) in documented.iter().zip(&lines).zip(rows) {
+        let (a, b): (Vec<&str>, Vec<&str>) = (documented.split('|').collect(), line.split('|').collect());
         let number: f64 = a[4].trim().parse().unwrap();
         let near = (number - r.value).abs() <= 0.03 * number.abs().max(0.02);
         if !near || [1, 2, 3, 5, 6].iter().any(|i| a[*i] != b[*i]) {
-            let _ = writeln!(wrong, "told     {told}\nmeasured {line}");
+            let _ = writeln!(wrong, "documented     {documented}\nmeasured {line}");
         }
     }
     assert!(wrong.is_empty(), "docs/trials.md no longer says what is measured:\n{wrong}");
 }
 
-/// The parts of an experiment's light, and its truth after so many samples.
+/// The parts of an experiment's light, and its reference after so many samples.
 fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Linear>, Reference) {
     let scene = Scene::open(&experiment.scene, &|_, _| ControlFlow::Continue(())).unwrap();
     let scene = experiment.adapted(Arc::new(scene)).unwrap();
@@ -90,9 +90,9 @@ fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Li
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
     let parts = session.parts().unwrap();
     drop(session);
-    let truth = gather(lab, experiment, &scene, 1, Goal::Samples(samples), &mut |_| ControlFlow::Continue(()));
+    let reference = gather(lab, experiment, &scene, 1, Goal::Samples(samples), &mut |_| ControlFlow::Continue(()));
     assert_clean(lab);
-    (parts, truth.unwrap_or_else(|e| panic!("{e}")))
+    (parts, reference.unwrap_or_else(|e| panic!("{e}")))
 }
 
 /// A scene of quads in a folder of its own: (material, corners) in metres, counter-clockwise from the side that is seen.
@@ -136,7 +136,7 @@ fn sides(material: &'static str, low: [f64; 3], high: [f64; 3], inside: bool) ->
 const ANY: f64 = f64::INFINITY;
 const QUICK: (&str, &str) = ("shadow_dim", "1024");
 
-/// T1. A closed box with albedo .5 and emission 1: one bounce adds a half, at every voxel size.
+/// T1. A closed box with albedo 0.5 and emission 1: one bounce adds a half, at every voxel size.
 #[test]
 fn furnace() {
     let lab = lab(root());
@@ -154,8 +154,8 @@ fn white_sky() {
     let lab = lab(root());
     let mut rows = Vec::new();
     for dim in ["32", "64"] {
-        let (parts, truth) = run(&lab, &experiment("white-sky", (64, 64), &[("voxel_dim", dim), QUICK]), 32);
-        let ratio = parts["occlusion"].mean() / truth.parts["occlusion"].mean.mean();
+        let (parts, reference) = run(&lab, &experiment("white-sky", (64, 64), &[("voxel_dim", dim), QUICK]), 32);
+        let ratio = parts["occlusion"].mean() / reference.parts["occlusion"].mean.mean();
         rows.push(row(format!("{dim} voxels"), "openness / exact", ratio, (0.99, 1.01)));
     }
     check("T2 white sky", &rows);
@@ -173,12 +173,12 @@ fn resolution() {
         if finer.contains(dim) {
             set.extend([("voxel_capacity", "2700000"), ("fragment_capacity", "64000000")]);
         }
-        let (parts, truth) = run(&lab, &experiment("cornell", (100, 75), &set), 256);
-        let truth = &truth.parts["diffuse"].mean;
-        let most = truth.rgb.iter().map(|t| t.iter().sum::<f32>()).fold(0.0, f32::max);
-        let share = f64::from(most) / (3.0 * truth.mean() * truth.rgb.len() as f64);
+        let (parts, reference) = run(&lab, &experiment("cornell", (100, 75), &set), 256);
+        let expected = &reference.parts["diffuse"].mean;
+        let most = expected.rgb.iter().map(|t| t.iter().sum::<f32>()).fold(0.0, f32::max);
+        let share = f64::from(most) / (3.0 * expected.mean() * expected.rgb.len() as f64);
         assert!(share < 0.005, "one pixel holds {share:.4} of the reference: the mean says little about the others");
-        let mean = parts["diffuse"].mean() / truth.mean();
+        let mean = parts["diffuse"].mean() / expected.mean();
         rows.push(row(format!("{dim} voxels"), "diffuse / reference", mean, (0.9, 1.1)));
         means.push(mean);
     }
@@ -221,10 +221,10 @@ fn walls() {
                 e.camera = conelab::experiment::CameraChoice::Named(camera.into());
                 run(&lab, &e, 128)
             };
-            let (lit, lit_truth) = of("lit");
-            let (dark, dark_truth) = of("dark");
-            assert_eq!(dark_truth.parts["diffuse"].mean.mean(), 0.0, "the dark chamber is closed");
-            let bright = lit_truth.parts["diffuse"].mean.mean();
+            let (lit, lit_reference) = of("lit");
+            let (dark, dark_reference) = of("dark");
+            assert_eq!(dark_reference.parts["diffuse"].mean.mean(), 0.0, "the dark chamber is closed");
+            let bright = lit_reference.parts["diffuse"].mean.mean();
             let setting = format!("{voxels} voxels thick, {degrees} degrees");
             let leak = dark["diffuse"].mean() / bright;
             rows.push(row(setting.clone(), "leak / lit chamber", leak, (-ANY, 0.01)));
@@ -288,12 +288,12 @@ fn edge() {
     {
         let mut settings = vec![("voxel_dim", "64"), QUICK];
         settings.extend(set);
-        let (parts, truth) = run(&lab, &experiment(&file, (width, height), &settings), 512);
+        let (parts, reference) = run(&lab, &experiment(&file, (width, height), &settings), 512);
         if cones == "default" {
             rows.push(row(
                 "reference, 512 samples",
                 "RMS of openness",
-                error(&truth.parts["occlusion"].mean),
+                error(&reference.parts["occlusion"].mean),
                 (-ANY, 0.03),
             ));
         }
@@ -306,17 +306,17 @@ fn edge() {
 #[test]
 fn colour_bleed() {
     let lab = lab(root());
-    let (parts, truth) = run(&lab, &experiment("cornell", (96, 72), &[("voxel_dim", "64"), QUICK]), 512);
-    let truth = &truth.parts["diffuse"].mean;
+    let (parts, reference) = run(&lab, &experiment("cornell", (96, 72), &[("voxel_dim", "64"), QUICK]), 512);
+    let expected = &reference.parts["diffuse"].mean;
     let light = &parts["diffuse"];
-    let s = scores(light, truth).unwrap();
+    let s = scores(light, expected).unwrap();
     // The floor beside each wall, in pixels of this view.
     let redness = |picture: &Linear, columns: std::ops::Range<usize>| {
         let texels = (62..68).flat_map(|y| columns.clone().map(move |x| 96 * y + x)).map(|i| picture.rgb[i]);
         let (r, g) = texels.fold((0.0, 0.0), |(r, g), t| (r + f64::from(t[0]), g + f64::from(t[1])));
         r / g
     };
-    let bleed = |columns: std::ops::Range<usize>| redness(light, columns.clone()) / redness(truth, columns);
+    let bleed = |columns: std::ops::Range<usize>| redness(light, columns.clone()) / redness(expected, columns);
     check(
         "T13 colour bleed",
         &[
@@ -343,14 +343,14 @@ fn specular_lobe() {
         let name = format!("strip-{roughness}");
         let scene = scene.replace("NAME", &name);
         let file = quads(&name, &materials, &[("metal", floor), ("strip", strip)], &scene);
-        let (parts, truth) = run(&lab, &experiment(&file, (64, 48), &[("voxel_dim", "128"), QUICK]), 256);
-        let s = scores(&parts["specular"], &truth.parts["specular"].mean).unwrap();
+        let (parts, reference) = run(&lab, &experiment(&file, (64, 48), &[("voxel_dim", "128"), QUICK]), 256);
+        let s = scores(&parts["specular"], &reference.parts["specular"].mean).unwrap();
         let setting = format!("roughness {roughness}");
         rows.push(row(setting.clone(), "specular / reference", s.energy_ratio, (0.8, 1.2)));
         rows.push(row(setting.clone(), "relMSE of specular", s.relmse, (-ANY, 0.1)));
         let rays = experiment(&file, (64, 48), &[("voxel_dim", "128"), ("trace", "lobe_rays"), QUICK]);
-        let (parts, truth) = run(&lab, &rays, 256);
-        let s = scores(&parts["specular"], &truth.parts["specular"].mean).unwrap();
+        let (parts, reference) = run(&lab, &rays, 256);
+        let s = scores(&parts["specular"], &reference.parts["specular"].mean).unwrap();
         rows.push(row(format!("{setting}, rays"), "specular / reference", s.energy_ratio, (0.8, 1.2)));
     }
     check("T15 specular lobe", &rows);

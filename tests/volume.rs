@@ -296,7 +296,7 @@ fn scrolling_ends_where_voxelizing_anew_does() {
     assert_clean(&lab);
 }
 
-/// What changed beside the volume's place is seen too: settings of the list and of the warp, steps far below a cell, a
+/// What changed besides the volume's place is seen too: settings of the list and of the warp, steps far below a cell, a
 /// warped box that moves, another scene.
 #[test]
 fn scrolling_sees_every_change() {
@@ -309,7 +309,7 @@ fn scrolling_sees_every_change() {
         ("slope", &[("warp", "spline")], &[("warp", "spline"), ("warp_alpha", "0.6")], 1),
         ("warped box", &[("warp", "spline")], &[("warp", "spline"), ("volume_offset", "(-0.5, 0, -0.5)")], 1),
         ("far", &[], &[("volume_offset", "(-0.5, 0, -0.5)")], 1),
-        ("steps of .3 % of a cell", &[], &[("volume_offset", "(-0.12, 0, 0)")], 320),
+        ("steps of 0.3 % of a cell", &[], &[("volume_offset", "(-0.12, 0, 0)")], 320),
     ];
     for (name, before, after, frames) in cases {
         let with = |settings: &Settings, scroll| {
@@ -327,8 +327,9 @@ fn scrolling_sees_every_change() {
             if !kept.set_params(&lab, &params).unwrap() {
                 let loaded = lab.home.load_for(&wanted, &kept.scene).unwrap();
                 let names = ["voxelIndex", "voxelColor"].map(String::from).to_vec();
-                let mut next = lab.build(&wanted, &loaded, kept.scene.clone(), names, Some(&kept.seed())).unwrap();
-                next.succeed(&mut kept).unwrap();
+                let mut next =
+                    lab.build(&wanted, &loaded, kept.scene.clone(), names, Some(&kept.reusable_parts())).unwrap();
+                next.swap_in(&mut kept).unwrap();
                 kept = next;
             }
             run(&mut kept, 1);
@@ -389,7 +390,7 @@ fn a_snapped_volume_stands_still() {
         ),
         ("perspective", vec![("warp", "perspective"), ("warp_near", "0.3"), ("warp_far", "6")]),
     ] {
-        // The box moves by 2 m, its coarsest cell, where the camera has gone .3 m.
+        // The box moves by 2 m, its coarsest cell, where the camera has gone 0.3 m.
         let (peak, mean) = jump(&settings, 0.0);
         let (crossing, mean_crossing) = jump(&settings, 0.2);
         println!("{name}: peak jump {peak:.2} / 255, mean {mean:.4}; across a step {crossing:.2}, {mean_crossing:.4}");
@@ -416,10 +417,10 @@ fn the_temporal_filter_gains_nothing() {
         &[&set[..], &[("temporal_factor", "0.95"), ("temporal_cut", "100")]].concat(),
     ));
     let mut plain = frames(&lab, &e, &["voxelRadiance"], 1);
-    let truth = mean(&floats(&mut plain, "voxelRadiance", 0));
+    let unfiltered = mean(&floats(&mut plain, "voxelRadiance", 0));
     let mut session = prepare(&lab, &filtered, &["voxelRadiance"]);
     run(&mut session, 200);
-    let still = mean(&floats(&mut session, "voxelRadiance", 0)) / truth;
+    let still = mean(&floats(&mut session, "voxelRadiance", 0)) / unfiltered;
     for i in 0..200 {
         let angle = f64::from(i) * 0.37;
         offset(&lab, &mut session, &filtered, [0.6 * angle.sin(), 0.0, 0.6 * angle.cos() - 0.6]);
@@ -427,7 +428,7 @@ fn the_temporal_filter_gains_nothing() {
     }
     offset(&lab, &mut session, &filtered, [0.0; 3]);
     run(&mut session, 1);
-    let moved = mean(&floats(&mut session, "voxelRadiance", 0)) / truth;
+    let moved = mean(&floats(&mut session, "voxelRadiance", 0)) / unfiltered;
     println!("radiance against no filter: after 200 frames {still:.4}, after 200 more on the move {moved:.4}");
     assert!((still - 1.0).abs() < 0.002 && moved < 1.002 && moved > 0.9, "the filter gains or loses light");
     assert_clean(&lab);

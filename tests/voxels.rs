@@ -3,13 +3,13 @@
 
 mod common;
 
-use common::bodies::{cube, placed, poses, torus};
+use common::closed_meshes::{cube, placed, poses, torus};
 use common::{assert_clean, conelab, experiment, fails, lab, prepare, root, scene, succeeds};
 use conelab::lab::Session;
 use conelab::oracle::{
     Axes, Cell, Grid, Neighbours, Overlap, Score, Surfaces, clip, compare, exact, flood, read, triangles_of,
 };
-use conelab::scene::{Material, Mesh, Part, Scene, Vertex};
+use conelab::scene::{Material, Mesh, Scene, Submesh, Vertex};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -126,9 +126,9 @@ fn cells_hold_the_mean_of_what_is_in_them() {
     let mesh = Mesh {
         vertices: corners.map(|[x, y]| vertex(x, y)).to_vec(),
         indices: vec![0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2],
-        parts: vec![
-            Part { first_index: 0, index_count: 6, material: 0 },
-            Part { first_index: 6, index_count: 6, material: 1 },
+        submeshes: vec![
+            Submesh { first_index: 0, index_count: 6, material: 0 },
+            Submesh { first_index: 6, index_count: 6, material: 1 },
         ],
         ..Mesh::default()
     };
@@ -192,7 +192,7 @@ struct Known {
 const POSES: usize = 34;
 
 #[test]
-fn closed_bodies_in_a_hundred_poses() {
+fn closed_meshes_in_a_hundred_poses() {
     let lab = lab(root());
     let modes = [
         Known {
@@ -237,26 +237,26 @@ fn closed_bodies_in_a_hundred_poses() {
         },
     ];
     let paint = vec![Material { base_color: [0.7, 0.4, 0.1, 1.0].into(), two_sided: true, ..Material::default() }];
-    let bodies = [("cube", cube(1, 0.0)), ("sphere", cube(8, 1.0)), ("torus", torus(24, 12))]
+    let meshes = [("cube", cube(1, 0.0)), ("sphere", cube(8, 1.0)), ("torus", torus(24, 12))]
         .map(|(name, mesh)| (name, Arc::new(placed(mesh, paint.clone(), poses(POSES)))));
     let base = [("voxel_dim", "32"), ("volume", "box"), ("volume_size", "(2, 2, 2)"), QUICK];
     let mut wrong = Vec::new();
-    let mut truth: Vec<Vec<Vec<Cell>>> = Vec::new();
+    let mut exact_cells: Vec<Vec<Vec<Cell>>> = Vec::new();
     for mode in &modes {
         let mut sum = Sum::default();
-        for (b, (name, body)) in bodies.iter().enumerate() {
+        for (b, (name, mesh)) in meshes.iter().enumerate() {
             let experiment = experiment("cornell", (16, 16), &[&base[..], mode.set].concat());
             let graph_wants = |g: &_| conelab::oracle::wanted(g);
-            let (mut session, _) = lab.prepare(&experiment, body.clone(), graph_wants).unwrap();
+            let (mut session, _) = lab.prepare(&experiment, mesh.clone(), graph_wants).unwrap();
             for pose in 0..POSES {
                 session.set_time(pose as f64);
                 session.frame(0.0).unwrap();
                 session.finish().unwrap();
                 let (grid, voxels) = read(&mut session).unwrap();
-                if truth.len() == b {
-                    truth.push((0..POSES).map(|p| cells_of(body, p as f64, &grid)).collect());
+                if exact_cells.len() == b {
+                    exact_cells.push((0..POSES).map(|p| cells_of(mesh, p as f64, &grid)).collect());
                 }
-                let score = compare(&grid, &truth[b][pose], &voxels).score;
+                let score = compare(&grid, &exact_cells[b][pose], &voxels).score;
                 assert!(score.enclosed > 500, "{name}, pose {pose}: only {} cells are enclosed", score.enclosed);
                 assert!(score.color_rms < 0.01, "{name}, pose {pose}: one paint, colour error {}", score.color_rms);
                 sum.add(&score);

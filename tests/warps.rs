@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::bodies::{placed, torus};
+use common::closed_meshes::{placed, torus};
 use common::{assert_clean, copy, experiment, floats, lab, prepare, root, scene};
 use conelab::experiment::PlacedCamera;
 use conelab::graph::table::{Cell, decode};
@@ -13,7 +13,7 @@ use glam::{DMat3, DVec3, Quat, Vec3};
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// What is known of a warp beside its shader.
+/// What is known of a warp besides its shader.
 enum Shape {
     /// A function of each axis of a box (thesis, Section 4.6).
     Box(fn(f64) -> f64),
@@ -31,10 +31,14 @@ struct Warp {
 
 const WARPS: [Warp; 9] = [
     Warp { title: "none", set: &[], shape: Shape::Box(|x| x) },
-    Warp { title: "spline .05", set: &[SPLINE, ("warp_alpha", "0.05")], shape: Shape::Box(|x| spline(0.05, x)) },
-    Warp { title: "spline .25", set: &[SPLINE, ("warp_alpha", "0.25")], shape: Shape::Box(|x| spline(0.25, x)) },
+    Warp { title: "spline 0.05", set: &[SPLINE, ("warp_alpha", "0.05")], shape: Shape::Box(|x| spline(0.05, x)) },
+    Warp { title: "spline 0.25", set: &[SPLINE, ("warp_alpha", "0.25")], shape: Shape::Box(|x| spline(0.25, x)) },
     Warp { title: "spline 1", set: &[SPLINE, ("warp_alpha", "1.0")], shape: Shape::Box(|x| spline(1.0, x)) },
-    Warp { title: "logistic .5", set: &[LOGISTIC, ("warp_steepness", "0.5")], shape: Shape::Box(|x| logistic(0.5, x)) },
+    Warp {
+        title: "logistic 0.5",
+        set: &[LOGISTIC, ("warp_steepness", "0.5")],
+        shape: Shape::Box(|x| logistic(0.5, x)),
+    },
     Warp { title: "logistic 8", set: &[LOGISTIC, ("warp_steepness", "8.0")], shape: Shape::Box(|x| logistic(8.0, x)) },
     Warp {
         title: "logistic 20",
@@ -75,17 +79,17 @@ const FAR: f64 = 30.0;
 const POINTS: usize = 100_000;
 const LINE: usize = 4096;
 
-/// The method with one pass more, which tells what `volume.glsl` says about points.
+/// The method with one pass more, which writes what `volume.glsl` says about points.
 const GRAPH: &str = r#"(
     include: ["warps.ron"],
     params: [
         Vec3(name: "density_at", default: (0.5, 0.5, 0.5), help: "Places along x, from 0 to 1, whose density colours are asked for."),
     ],
-    buffers: { "told": (size: "100000 * 192 + 4096 * 3 * 32 + 27 * 48 + 3 * 16") },
-    passes: [ (name: "tell", shaders: ["tell.comp"], dispatch: Threads("100000", "1", "1")) ],
+    buffers: { "mapping": (size: "100000 * 192 + 4096 * 3 * 32 + 27 * 48 + 3 * 16") },
+    passes: [ (name: "map points", shaders: ["map_points.comp"], dispatch: Threads("100000", "1", "1")) ],
 )"#;
 
-const TELL: &str = "#version 460
+const MAP_POINTS: &str = "#version 460
 #extension GL_GOOGLE_include_directive : require
 #include \"params.glsl\"
 #include \"common/scene.glsl\"
@@ -96,7 +100,7 @@ layout(local_size_x = 64) in;
 struct Row { vec4 there, back, at, image, again, a0, a1, a2, d0, d1, d2, inside; };
 struct Step { vec4 at, image; };
 struct End { vec4 at, image, past; };
-layout(std430) writeonly buffer Told { Row rows[100000]; Step line[3 * 4096]; End ends[27]; vec4 density[3]; } told;
+layout(std430) writeonly buffer Mapping { Row rows[100000]; Step line[3 * 4096]; End ends[27]; vec4 density[3]; } mapping;
 const float STEP = 0.01; // m
 
 vec3 forward(vec3 p) { return worldToVolume(volume.maps[0], p); }
@@ -121,22 +125,22 @@ void main() {
     }
     // Not where spheres have their seam and their poles.
     if (CURVED_SEAM && (abs(image.x - 0.5) > 0.45 || abs(image.y - 0.5) > 0.35)) inside = vec3(0.0);
-    told.rows[i] = Row(vec4(u, 0.0), vec4(forward(world(u)), 0.0), vec4(p, 0.0), vec4(image, 0.0), vec4(world(image), 0.0),
+    mapping.rows[i] = Row(vec4(u, 0.0), vec4(forward(world(u)), 0.0), vec4(p, 0.0), vec4(image, 0.0), vec4(world(image), 0.0),
         vec4(axes[0], 0.0), vec4(axes[1], 0.0), vec4(axes[2], 0.0), vec4(d[0], 0.0), vec4(d[1], 0.0), vec4(d[2], 0.0), vec4(inside, 0.0));
     if (i < 3u * 4096u) {
         vec3 at = vec3(0.3, 0.6, 0.4);
         at[i / 4096u] = float(i % 4096u) / 4095.0;
-        told.line[i] = Step(vec4(world(at), 0.0), vec4(forward(world(at)), 0.0));
+        mapping.line[i] = Step(vec4(world(at), 0.0), vec4(forward(world(at)), 0.0));
     }
     if (i < 27u) {
         vec3 end = 0.5 * vec3(i % 3u, i / 3u % 3u, i / 9u);
         vec3 middle = world(vec3(0.5)), at = world(end);
-        told.ends[i] = End(vec4(at, 0.0), vec4(forward(at), 0.0), vec4(forward(middle + 1.02 * (at - middle)), 0.0));
+        mapping.ends[i] = End(vec4(at, 0.0), vec4(forward(at), 0.0), vec4(forward(middle + 1.02 * (at - middle)), 0.0));
     }
     if (i < 3u) {
         vec3 at = world(vec3(0.5));
         at.x = mix(world(vec3(0.0)).x, world(vec3(1.0)).x, params.density_at[i]);
-        told.density[i] = vec4(densityColor(volume.maps[0], at), 0.0);
+        mapping.density[i] = vec4(densityColor(volume.maps[0], at), 0.0);
     }
 }
 ";
@@ -146,38 +150,38 @@ fn home() -> TempDir {
     for folder in ["passes", "shaders"] {
         copy(&root().join(folder), &home.path().join(folder));
     }
-    std::fs::write(home.path().join("passes/told.ron"), GRAPH).unwrap();
-    std::fs::write(home.path().join("shaders/tell.comp"), TELL).unwrap();
+    std::fs::write(home.path().join("passes/mapping.ron"), GRAPH).unwrap();
+    std::fs::write(home.path().join("shaders/map_points.comp"), MAP_POINTS).unwrap();
     home
 }
 
-/// A session that tells about the volume.
-fn teller(lab: &Lab, settings: &[(&str, &str)]) -> Session {
+/// A session that writes the mapping of the volume.
+fn mapping_session(lab: &Lab, settings: &[(&str, &str)]) -> Session {
     let mut experiment = experiment("cornell", (16, 16), &[&BASE[..], settings].concat());
-    experiment.graph = "told.ron".into();
-    prepare(lab, &experiment, &["told"])
+    experiment.graph = "mapping.ron".into();
+    prepare(lab, &experiment, &["mapping"])
 }
 
-/// What the shader told, by kind: rows of so many vectors.
-struct Told {
+/// What the shader wrote, by kind: rows of so many vectors.
+struct Mapping {
     rows: Vec<[DVec3; 12]>,
     lines: Vec<[DVec3; 2]>,
     ends: Vec<[DVec3; 3]>,
     density: Vec<DVec3>,
 }
 
-fn told(lab: &Lab, session: &mut Session) -> Told {
+fn mapping(lab: &Lab, session: &mut Session) -> Mapping {
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     assert_clean(lab);
-    let bytes = session.buffer("told").unwrap();
+    let bytes = session.buffer("mapping").unwrap();
     let numbers: Vec<f64> = bytes.as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_ne_bytes(*b))).collect();
     assert!(numbers.iter().all(|n| n.is_finite()), "every point has a place");
     let vectors: Vec<DVec3> = numbers.as_chunks::<4>().0.iter().map(|v| DVec3::new(v[0], v[1], v[2])).collect();
     let (rows, rest) = vectors.split_at(12 * POINTS);
     let (lines, rest) = rest.split_at(2 * 3 * LINE);
     let (ends, density) = rest.split_at(3 * 27);
-    Told {
+    Mapping {
         rows: rows.as_chunks().0.to_vec(),
         lines: lines.as_chunks().0.to_vec(),
         ends: ends.as_chunks().0.to_vec(),
@@ -220,15 +224,15 @@ fn every_warp_is_a_bijection() {
     let home = home();
     let lab = lab(home.path());
     for warp in &WARPS {
-        let mut session = teller(&lab, warp.set);
+        let mut session = mapping_session(&lab, warp.set);
         for camera in cameras() {
-            session.look(&camera);
-            let told = told(&lab, &mut session);
+            session.place_camera(&camera);
+            let mapping = mapping(&lab, &mut session);
             let title = format!("{} from {:?}", warp.title, camera.eye);
             let size = if matches!(warp.shape, Shape::Box(_)) { SIZE } else { FAR };
 
             let mut worst = (0.0f64, 0.0f64, 0.0f64, 0.0f64);
-            for [u, back, p, image, again, a0, a1, a2, ..] in &told.rows {
+            for [u, back, p, image, again, a0, a1, a2, ..] in &mapping.rows {
                 let mut off = (*back - *u).abs();
                 if let Shape::Sphere = warp.shape {
                     // The first azimuth is the last, and towards the poles it is less and less of a way.
@@ -255,7 +259,7 @@ fn every_warp_is_a_bijection() {
             assert!(worst.2 <= 1.0, "{title}: to the volume and back {}, {} of what floats allow", worst.1, worst.2);
             assert!(worst.3 <= 1e-5, "{title}: {} from the formula", worst.3);
 
-            for (axis, line) in told.lines.as_chunks::<LINE>().0.iter().enumerate() {
+            for (axis, line) in mapping.lines.as_chunks::<LINE>().0.iter().enumerate() {
                 let whole = line[LINE - 1][0] - line[0][0];
                 let circle = matches!(warp.shape, Shape::Sphere) && axis < 2;
                 let rises = |w: &[[DVec3; 2]]| {
@@ -265,7 +269,7 @@ fn every_warp_is_a_bijection() {
                 let line = if circle { &line[1..LINE - 1] } else { &line[..] };
                 assert!(line.windows(2).all(rises), "{title}: not monotonic along axis {axis}");
             }
-            for (i, [at, image, past]) in told.ends.iter().enumerate() {
+            for (i, [at, image, past]) in mapping.ends.iter().enumerate() {
                 let end = 0.5 * DVec3::new((i % 3) as f64, (i / 3 % 3) as f64, (i / 9) as f64);
                 let off = at.distance(place(warp, &camera, end)) / size;
                 assert!(off < 2e-6, "{title}: {end} lies at {at}, {off} of the size off");
@@ -286,9 +290,9 @@ fn cells_are_as_long_as_finite_differences_say() {
     let home = home();
     let lab = lab(home.path());
     for warp in &WARPS {
-        let told = told(&lab, &mut teller(&lab, warp.set));
+        let mapping = mapping(&lab, &mut mapping_session(&lab, warp.set));
         let (mut worst, mut rows) = (0.0f64, 0);
-        for [.., a0, a1, a2, d0, d1, d2, inside] in &told.rows {
+        for [.., a0, a1, a2, d0, d1, d2, inside] in &mapping.rows {
             if inside.x == 0.0 {
                 continue;
             }
@@ -324,8 +328,8 @@ fn density_is_told_by_hue() {
     };
     let places = [2.0, 1.0, 0.5].map(at);
     let asked = format!("({}, {}, {})", places[0], places[1], places[2]);
-    let mut session = teller(&lab, &[LOGISTIC, ("warp_steepness", "20.0"), ("density_at", &asked)]);
-    let found = told(&lab, &mut session).density;
+    let mut session = mapping_session(&lab, &[LOGISTIC, ("warp_steepness", "20.0"), ("density_at", &asked)]);
+    let found = mapping(&lab, &mut session).density;
     println!("slope 2, 1, 1/2 at {asked}: {found:?}");
     for (colour, expected) in found.iter().zip([DVec3::Z, DVec3::Y, DVec3::X]) {
         assert!(colour.abs_diff_eq(expected, 0.01), "{colour} is not {expected}");
@@ -354,14 +358,14 @@ fn density_is_told_by_hue() {
 }
 
 /// The voxels of a frame against the exact cells.
-fn score(lab: &Lab, body: &Arc<Scene>, settings: &[(&str, &str)]) -> Score {
+fn score(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Score {
     let experiment = experiment("cornell", (16, 16), settings);
-    let (mut session, _) = lab.prepare(&experiment, body.clone(), conelab::oracle::wanted).unwrap();
+    let (mut session, _) = lab.prepare(&experiment, scene.clone(), conelab::oracle::wanted).unwrap();
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new(), "{settings:?}");
     let (grid, voxels) = read(&mut session).unwrap();
-    compare(&grid, &exact(&triangles_of(body, 0.0), &Surfaces::new(body), &grid), &voxels).score
+    compare(&grid, &exact(&triangles_of(scene, 0.0), &Surfaces::new(scene), &grid), &voxels).score
 }
 
 const OFF: [(&str, &str); 2] = [("voxelizer", "raster"), ("conservative", "off")];
@@ -380,9 +384,9 @@ fn no_warp_loses_voxels() {
         ("tessellated", [("voxelizer", "tessellated"), ("tess_rate", "1.0")]),
     ];
     let base = [("voxel_dim", "48"), ("shadow_dim", "256")];
-    for (name, body) in &scenes {
+    for (name, scene) in &scenes {
         let recall = |set: &[(&str, &str)]| {
-            let score = score(&lab, body, &[&base[..], set].concat());
+            let score = score(&lab, scene, &[&base[..], set].concat());
             (score.recall.unwrap(), score.thin_recall.unwrap())
         };
         for (mode, set) in modes {
@@ -417,7 +421,7 @@ fn the_list_of_fragments_is_long_enough_for_every_slope() {
     let volume = [("volume", "box"), ("volume_center", "(2.78, 2.74, 2.8)"), ("volume_size", "(6, 6, 6)")];
     let warps = [
         ("none", vec![]),
-        ("spline .05", vec![SPLINE, ("warp_alpha", "0.05")]),
+        ("spline 0.05", vec![SPLINE, ("warp_alpha", "0.05")]),
         ("logistic 8", vec![LOGISTIC, ("warp_steepness", "8.0")]),
         ("logistic 20", vec![LOGISTIC, ("warp_steepness", "20.0")]),
         ("perspective", vec![("warp", "perspective")]),
@@ -467,10 +471,9 @@ fn cones_go_by_the_cells_around_them() {
     let mut session = prepare(&lab, &experiment("cornell", (64, 48), &settings), &["coneSamples"]);
     session.frame(0.0).unwrap();
     session.finish().unwrap();
-    let number = session.graph.tables.iter().position(|t| t.value.title == "Cone samples").unwrap();
-    let table = session.table(number).unwrap();
+    let table = session.graph.tables.iter().find(|t| t.title == "Cone samples").unwrap().clone();
     let rows = decode(&table, &session.buffer("coneSamples").unwrap());
-    let column = |name: &str| table.columns.iter().position(|c| c.name == name).unwrap();
+    let column = |name: &str| table.columns.0.iter().position(|c| c.value.name == name).unwrap();
     let number = |row: &[Cell], name: &str| match row[column(name)] {
         Cell::Uint(v) => f64::from(v),
         Cell::Float(v) => f64::from(v),

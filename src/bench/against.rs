@@ -1,4 +1,4 @@
-//! A benchmark beside a recorded one: what became slower.
+//! A benchmark against a recorded one: what became slower.
 //!
 //! Other programs, heat and waking clocks only ever add time, so the least of the rounds' medians says best what a stage
 //! costs, and it is what is compared. Timestamps of very short stages jitter by more than a tenth of them, so a stage
@@ -12,10 +12,10 @@ use std::fmt::Write;
 /// What a stage must lose or win to count, ms.
 pub const FLOOR_MS: f64 = 0.02;
 
-/// Most settings that are told one by one.
-const TOLD: usize = 8;
+/// Most settings that are named one by one.
+const MAX_NAMED: usize = 8;
 
-/// How a time stands to the recorded one.
+/// A stage's time compared with the recorded one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Within the tolerance.
@@ -39,16 +39,16 @@ pub struct Row {
     pub stage: String,
     /// Least of the rounds' medians, ms.
     pub recorded: Option<f64>,
-    /// The same today.
+    /// The time measured today.
     pub now: Option<f64>,
-    /// What that means.
+    /// The comparison of the two.
     pub verdict: Verdict,
 }
 
 /// One configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// What it is.
+    /// Title of the configuration.
     pub title: String,
     /// The stages in the order of today's graph, those that are gone, the total.
     pub rows: Vec<Row>,
@@ -102,9 +102,9 @@ fn notes(recorded: &Recorded, times: &Times, sha256: &str) -> Vec<String> {
         Some(_) => None,
     });
     let differing: Vec<String> = differing.collect();
-    notes.extend(differing.iter().take(TOLD).cloned());
-    if differing.len() > TOLD {
-        notes.push(format!("{} more parameters differ", differing.len() - TOLD));
+    notes.extend(differing.iter().take(MAX_NAMED).cloned());
+    if differing.len() > MAX_NAMED {
+        notes.push(format!("{} more parameters differ", differing.len() - MAX_NAMED));
     }
     notes
 }
@@ -156,12 +156,12 @@ impl Row {
 
 /// The stages that became slower, configuration by configuration, in one line; `None` without any.
 pub fn slower(compared: &[Compared]) -> Option<String> {
-    let told = |row: &Row| match row.ratio() {
+    let line = |row: &Row| match row.ratio() {
         Some(ratio) => format!("{} {ratio:.2} times", row.stage),
         None => row.stage.clone(),
     };
     let of = |c: &Compared| {
-        let list: Vec<String> = c.rows.iter().filter(|r| r.verdict == Verdict::Slower).map(told).collect();
+        let list: Vec<String> = c.rows.iter().filter(|r| r.verdict == Verdict::Slower).map(line).collect();
         (!list.is_empty()).then(|| format!("{} ({})", list.join(", "), c.title))
     };
     let list: Vec<String> = compared.iter().filter_map(of).collect();

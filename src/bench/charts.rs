@@ -13,7 +13,7 @@ const FONT: &str = "sans-serif";
 /// time against what the columns of the tables vary, at the largest size.
 ///
 /// # Errors
-/// None that a benchmark can cause.
+/// Drawing into memory gives none, whatever the benchmark.
 pub fn charts(bench: &Bench) -> Result<Vec<(String, String)>, LabError> {
     let measured: Vec<&Configuration> = bench.configurations.iter().filter(|c| c.times.is_some()).collect();
     let all: Vec<Bar> = measured.iter().map(|c| bar(c)).collect();

@@ -12,17 +12,17 @@ pub use record::{RECORD_SCHEMA, Record, Recorded, check_record, record_file};
 pub use tables::{csv, text};
 
 use crate::graph::run::FrameTimes;
-use crate::lab::{Lab, LabError, Seed, Session};
+use crate::lab::{Lab, LabError, ReusableParts, Session};
 use crate::measure::{Frames, Timed, Warm, timed};
 use crate::stats::{self, DeviceStats, Spread, Stats, spread};
-use crate::sweep::Listed;
+use crate::sweep::SweepPoint;
 use indexmap::IndexMap;
 use serde::Serialize;
 
 /// Version of the JSON file.
 pub const SCHEMA: &str = "conelab-bench-1";
 
-/// What was measured.
+/// The measurements of a benchmark.
 #[derive(Clone, Debug, Serialize)]
 pub struct Bench {
     /// [`SCHEMA`].
@@ -57,9 +57,9 @@ pub struct Configuration {
 /// Times over all rounds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Times {
-    /// Of every pass, with settings and memory; the warm-up is that of the round with the shortest.
+    /// Times of every pass, with settings and memory; the warm-up is that of the round with the shortest.
     pub stats: Stats,
-    /// Of every stage (passes that the graph counts together, added up frame by frame), ms.
+    /// Times of every stage (passes that the graph counts together, added up frame by frame), ms.
     pub stages: IndexMap<String, Spread>,
     /// Median of the total in every round, ms: pairs with those of other configurations.
     pub rounds: Vec<f64>,
@@ -70,7 +70,7 @@ pub struct Times {
 /// What a configuration has gathered so far.
 #[derive(Default)]
 struct Gathered {
-    seed: Option<Seed>,
+    reuse: Option<ReusableParts>,
     /// Frames of every round.
     rounds: Vec<Vec<FrameTimes>>,
     /// Frames before those measured, in the round with the fewest.
@@ -87,20 +87,20 @@ pub fn bench(
     lab: &Lab,
     warm: &mut Warm,
     names: Vec<String>,
-    points: &[Listed],
+    points: &[SweepPoint],
     rounds: usize,
     frames: Frames,
     tick: &dyn Fn(),
 ) -> Result<Bench, LabError> {
     let mut all: Vec<Gathered> = points.iter().map(|_| Gathered::default()).collect();
     for round in 0..rounds {
-        let mut last: Option<Seed> = None;
+        let mut last: Option<ReusableParts> = None;
         for (point, gathered) in points.iter().zip(&mut all) {
             let failed_before = matches!(gathered.result, Some(Err(_)));
             if !failed_before {
                 let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
-                let seed = gathered.seed.as_ref().or(last.as_ref());
-                match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], seed) {
+                let reuse = gathered.reuse.as_ref().or(last.as_ref());
+                match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], reuse) {
                     Ok(Timed { mut session, times, warmup }) => {
                         gathered.warmup = gathered.warmup.map_or(Some(warmup), |least| Some(least.min(warmup)));
                         gathered.rounds.push(times);
@@ -113,8 +113,8 @@ pub fn bench(
                             gathered.result = Some(Ok(times_of(&session, stats, &all, &gathered.rounds)));
                         }
                         // The next configuration's first turn starts from this one's pipelines and scene.
-                        last = (round == 0).then(|| session.lend());
-                        gathered.seed = Some(session.lend());
+                        last = (round == 0).then(|| session.share());
+                        gathered.reuse = Some(session.share());
                     }
                     Err(error) => gathered.result = Some(Err(error.to_string())),
                 }

@@ -7,7 +7,7 @@ use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::{Home, LabError};
 use crate::measure::{Frames, Warm};
 use crate::stats::DeviceStats;
-use crate::sweep::{Labels, Listed, Setting, read_json};
+use crate::sweep::{Labels, Setting, SweepPoint, read_json};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -49,7 +49,7 @@ pub struct Recorded {
     pub settings: IndexMap<String, String>,
     /// SHA-256 of the scene's content.
     pub scene_sha256: String,
-    /// Every parameter, for people: what differs today is told.
+    /// Every parameter, for people: what differs today is named.
     pub params: BTreeMap<String, String>,
     /// Median of the whole frame in every round, ms.
     pub total: Vec<f64>,
@@ -97,7 +97,7 @@ impl Record {
     ///
     /// # Errors
     /// A configuration that failed; a device without timestamps.
-    pub fn of(bench: &Bench, points: &[Listed], home: &Home) -> Result<Record, LabError> {
+    pub fn of(bench: &Bench, points: &[SweepPoint], home: &Home) -> Result<Record, LabError> {
         let mut configurations = Vec::new();
         for (configuration, point) in bench.configurations.iter().zip(points) {
             let Some(times) = &configuration.times else {
@@ -157,7 +157,7 @@ impl Record {
     /// The file's text: JSON with one line for each list, so that people can read it and see what changed.
     ///
     /// # Errors
-    /// None that a record can cause.
+    /// Writing to memory gives none, whatever the record.
     pub fn text(&self) -> Result<String, LabError> {
         self.lines().map_err(|e| LabError::Request(e.to_string()))
     }
@@ -191,7 +191,7 @@ impl Record {
     /// Whether its times can be compared with those of a device.
     ///
     /// # Errors
-    /// It is of another device.
+    /// The record is of another device.
     pub fn check_device(&self, device: &DeviceStats) -> Result<(), LabError> {
         if self.device.name == device.name {
             return Ok(());
@@ -218,8 +218,8 @@ impl Lines {
 }
 
 impl Recorded {
-    fn of(point: &Listed, times: &Times, home: &Home) -> Recorded {
-        let Listed { experiment, subject, .. } = point;
+    fn of(point: &SweepPoint, times: &Times, home: &Home) -> Recorded {
+        let SweepPoint { experiment, subject, .. } = point;
         let file = experiment.sources.paths().next().unwrap_or(Path::new(""));
         let scene = match Path::new(&experiment.scene).is_file() {
             true => from_root(home, Path::new(&experiment.scene)),

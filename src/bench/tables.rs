@@ -148,7 +148,7 @@ fn ratio(first: &Configuration, other: &Configuration) -> Option<String> {
 /// One line for every pass, every stage and the total of each configuration, as comma-separated values.
 ///
 /// # Errors
-/// None that a benchmark can cause.
+/// Writing to memory gives none, whatever the benchmark.
 pub fn csv(bench: &Bench) -> Result<String, LabError> {
     let failed = |e: csv::Error| LabError::Request(format!("cannot make the table: {e}"));
     let mut out = csv::Writer::from_writer(Vec::new());

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 pub struct Summary {
     /// Name: that of its folder.
     pub name: String,
-    /// Its folder.
+    /// Folder of the capture.
     pub folder: PathBuf,
     /// What it says about itself, or what is wrong with it.
     pub manifest: Result<Manifest, String>,

@@ -15,7 +15,7 @@ pub struct Difference {
     pub file: String,
     /// How many texels differ.
     pub texels: usize,
-    /// Of how many.
+    /// Number of texels compared.
     pub of: usize,
     /// Largest difference of a channel: 0 to 255 in a PNG, linear in an EXR; infinite where one is no number.
     pub largest: f64,
@@ -23,14 +23,14 @@ pub struct Difference {
     pub broken: Option<String>,
 }
 
-/// What came of making a capture again.
+/// Differences between a capture and the same one made again.
 #[derive(Clone, Debug, Default)]
 pub struct Replay {
     /// Pictures compared.
     pub images: usize,
     /// Texels compared.
     pub texels: usize,
-    /// Those that differ.
+    /// Pictures that differ.
     pub differences: Vec<Difference>,
     /// What else is not as it was: program, device, driver, scene.
     pub changes: Vec<String>,

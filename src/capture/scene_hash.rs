@@ -12,7 +12,7 @@ pub fn scene_hash(scene: &Scene) -> String {
     for mesh in &scene.meshes {
         hash.bytes(bytemuck::cast_slice(&mesh.vertices));
         hash.words(&mesh.indices);
-        let parts: Vec<u32> = mesh.parts.iter().flat_map(|p| [p.first_index, p.index_count, p.material]).collect();
+        let parts: Vec<u32> = mesh.submeshes.iter().flat_map(|p| [p.first_index, p.index_count, p.material]).collect();
         hash.words(&parts);
     }
     hash.count(scene.materials.len());

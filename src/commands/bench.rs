@@ -10,7 +10,7 @@ use crate::lab::{Home, Lab, LabError};
 use crate::measure::{Frames, Warm};
 use crate::scene::SceneError;
 use crate::stats::DeviceStats;
-use crate::sweep::{Listed, Lister, Sweep, list, write_file};
+use crate::sweep::{PointBuilder, Sweep, SweepPoint, list, write_file};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -80,7 +80,7 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     let record = args.record.as_deref().map(|path| record_file(path, &lab.gpu.info.name));
     record.as_ref().map(|path| super::writable(path, &["json"])).transpose()?;
     let mut warm = Warm::default();
-    let (points, _) = list(&mut Lister::new(&lab.home, &super::open_scene), &mut warm, &sweep, frames)?;
+    let (points, _) = list(&mut PointBuilder::new(&lab.home, &super::open_scene), &mut warm, &sweep, frames)?;
     let result = measured(&lab, &mut warm, sweep.names, &points, rounds, frames)?;
     say_part!("{}", text(&result));
     write_files(args, &lab.home, &sweep.name, &result)?;
@@ -116,7 +116,7 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
     let chosen = chosen(args, &lab.home, &record)?;
     let mut warm = Warm::default();
     let Again { found, skipped, mut broken } = again(&lab.home, &mut warm, chosen, frames);
-    let (recorded, points): (Vec<&Recorded>, Vec<Listed>) = found.into_iter().unzip();
+    let (recorded, points): (Vec<&Recorded>, Vec<SweepPoint>) = found.into_iter().unzip();
     let mut names: Vec<String> = Vec::new();
     for (name, _) in points.iter().flat_map(|p| &p.labels) {
         if !names.contains(name) {
@@ -209,7 +209,7 @@ fn chosen<'r>(args: &BenchArgs, home: &Home, record: &'r Record) -> Result<Vec<&
 /// What can be measured of a record, and what cannot: title and reason.
 #[derive(Default)]
 struct Again<'r> {
-    found: Vec<(&'r Recorded, Listed)>,
+    found: Vec<(&'r Recorded, SweepPoint)>,
     /// Their scene's files are not on this machine.
     skipped: Vec<(String, String)>,
     /// They no longer fit the program.
@@ -217,13 +217,13 @@ struct Again<'r> {
 }
 
 fn again<'r>(home: &Home, warm: &mut Warm, chosen: Vec<&'r Recorded>, frames: Frames) -> Again<'r> {
-    let mut lister = Lister::new(home, &super::open_scene);
+    let mut builder = PointBuilder::new(home, &super::open_scene);
     let mut out = Again::default();
     for recorded in chosen {
         let point = recorded
             .experiment(home)
             .map_err(LabError::Input)
-            .and_then(|experiment| lister.point(warm, experiment, recorded.labels(), frames));
+            .and_then(|experiment| builder.point(warm, experiment, recorded.labels(), frames));
         match point {
             Ok(point) => out.found.push((recorded, point)),
             Err(LabError::Scene(why @ (SceneError::NoModel { .. } | SceneError::Read { .. }))) => {
@@ -239,7 +239,7 @@ fn measured(
     lab: &Lab,
     warm: &mut Warm,
     names: Vec<String>,
-    points: &[Listed],
+    points: &[SweepPoint],
     rounds: usize,
     frames: Frames,
 ) -> Result<Bench, LabError> {

@@ -27,7 +27,7 @@ pub struct FitArgs {
     /// How the error is measured.
     #[arg(long, value_enum, default_value = "relmse")]
     metric: Metric,
-    /// Part of the light that is judged.
+    /// Part of the light that is compared.
     #[arg(long, default_value = "total")]
     part: String,
     /// Vary this parameter over these values, neighbours alike; may be given many times. The graph's own list when
@@ -161,13 +161,13 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         LabError::Request(format!("the setting to start from cannot be run: {why}"))
     })?;
     let best = fit::at(&experiment, &axes, &found.place);
-    let told = told(&found, goal, args, &sizes);
+    let summary = summary(&found, goal, args, &sizes);
     crate::experiment::write(&best, &loaded.graph.params, &output, true)?;
-    comment(&output, &told, &best, &loaded.graph.params)?;
-    let log = log(&found, goal, &subject, &told, &sizes, noise);
+    comment(&output, &summary, &best, &loaded.graph.params)?;
+    let log = log(&found, goal, &subject, &summary, &sizes, noise);
     let json = output.with_extension("json");
     super::write_json(&json, &log)?;
-    say!("{}", told.join("\n"));
+    say!("{}", summary.join("\n"));
     say!("wrote {}", super::shown(&output).display());
     let within = found.trial.bounded <= goal.bound();
     super::validated(&lab)?;
@@ -206,7 +206,7 @@ fn why(stop: Stop) -> &'static str {
 }
 
 /// What the search has found, for people.
-fn told(found: &Found, goal: Goal, args: &FitArgs, sizes: &[usize]) -> Vec<String> {
+fn summary(found: &Found, goal: Goal, args: &FitArgs, sizes: &[usize]) -> Vec<String> {
     let (ms, error) = goal.time_and_error(found.trial);
     let metric = match args.metric {
         Metric::Relmse => "relMSE",
@@ -245,7 +245,7 @@ fn comment(
     crate::files::write_whole(path, out.as_bytes()).map_err(|e| failed(&e))
 }
 
-fn log(found: &Found, goal: Goal, subject: &Subject<'_>, told: &[String], sizes: &[usize], noise: f64) -> Log {
+fn log(found: &Found, goal: Goal, subject: &Subject<'_>, summary: &[String], sizes: &[usize], noise: f64) -> Log {
     let tried = |step: &Step| {
         let both = step.trial.map(|t| goal.time_and_error(t));
         let set = subject.axes.iter().zip(&step.place).map(|(axis, i)| axis.values[*i].clone()).collect();
@@ -257,7 +257,7 @@ fn log(found: &Found, goal: Goal, subject: &Subject<'_>, told: &[String], sizes:
         device: subject.lab.gpu.info.name.clone(),
         scene: subject.scene.name.clone(),
         size: subject.experiment.size,
-        goal: told.first().cloned().unwrap_or_default(),
+        goal: summary.first().cloned().unwrap_or_default(),
         why_it_ended: why(found.stop),
         grid: sizes.iter().map(|n| *n as u64).product(),
         reference_samples: subject.reference.samples,

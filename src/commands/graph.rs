@@ -22,7 +22,7 @@ pub struct GraphArgs {
     /// Set a parameter; may be given many times.
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<String>,
-    /// Resources that are wanted beside the picture.
+    /// Resources that are wanted besides the picture.
     #[arg(long, value_name = "NAME")]
     want: Vec<String>,
     /// Print the parameters with their ranges and help, and the named values as set.

@@ -17,7 +17,8 @@ pub struct ReferenceArgs {
     /// Samples of every pixel, in all; rounded up to a multiple of 32. 256 when neither this nor --until is given.
     #[arg(long, value_name = "N", conflicts_with = "until")]
     spp: Option<u64>,
-    /// Go on until the total's relMSE against the truth, estimated from two halves of the samples, is at most this.
+    /// Go on until the total's relMSE against the converged reference, estimated from two halves of the samples, is at
+    /// most this.
     #[arg(long, value_name = "RELMSE")]
     until: Option<f64>,
     /// Turns of a path behind the first surface; 1 is what voxel cones gather.

@@ -87,7 +87,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     let bar = indicatif::ProgressBar::new((args.warmup + args.frames) as u64);
     for number in 0..args.warmup + args.frames {
         if let Some(path) = &path {
-            session.look(&path.at(experiment.time + number as f64 * args.step));
+            session.place_camera(&path.at(experiment.time + number as f64 * args.step));
         }
         times.extend(session.frame(args.step)?);
         if let (Some((folder, shown)), Some(frame)) = (&frames_of, number.checked_sub(args.warmup)) {

@@ -18,7 +18,7 @@ pub struct ScreenshotArgs {
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long)]
     scene: Option<String>,
-    /// Size of the picture in the middle, pixels; as large as fits when absent.
+    /// Size of the picture in the viewport, pixels; as large as fits when absent.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
     /// Size of the whole interface, pixels.
@@ -66,7 +66,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         .filter(|f| matches!(f, image::ImageFormat::Png | image::ImageFormat::Jpeg))
         .ok_or_else(|| LabError::Request(format!("'{}': give it the ending .png or .jpg", args.output.display())))?;
     if !(0.25..=8.0).contains(&args.scale) {
-        return Err(LabError::Request("--scale must be .25 to 8".into()));
+        return Err(LabError::Request("--scale must be 0.25 to 8".into()));
     }
     let gpu = args.device.options();
     let script = Script {

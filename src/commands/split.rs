@@ -42,7 +42,7 @@ const SCHEMA: &str = "conelab-split-1";
 #[derive(Serialize)]
 struct Step {
     title: String,
-    /// By part: relMSE against the reference, and what the step adds: mean (x - y)^2 / (r^2 + .01), y the step before.
+    /// By part: relMSE against the reference, and what the step adds: mean (x - y)^2 / (r^2 + 0.01), y the step before.
     parts: BTreeMap<String, [f64; 2]>,
 }
 
@@ -95,10 +95,11 @@ pub fn run(args: &SplitArgs) -> Result<(), LabError> {
         }
         let mut errors = BTreeMap::new();
         for (part, light) in &parts {
-            let Some(truth) = reference.parts.get(part) else { continue };
+            let Some(expected) = reference.parts.get(part) else { continue };
             let fail = |e: crate::metrics::MetricError| LabError::Request(format!("part '{part}': {e}"));
-            let adds = relative_distance(light, before.get(part).unwrap_or(&truth.mean), &truth.mean).map_err(fail)?;
-            errors.insert(part.clone(), [relmse(light, &truth.mean).map_err(fail)?, adds]);
+            let adds =
+                relative_distance(light, before.get(part).unwrap_or(&expected.mean), &expected.mean).map_err(fail)?;
+            errors.insert(part.clone(), [relmse(light, &expected.mean).map_err(fail)?, adds]);
         }
         steps.push(Step { title: step.title.clone(), parts: errors });
         before = parts;
@@ -127,7 +128,7 @@ fn print(reference: &Reference, steps: &[Step]) {
         line += &format!("{:>24}", step.title);
     }
     say!("{line}{:>14}", "noise floor");
-    for (part, truth) in &reference.parts {
+    for (part, expected) in &reference.parts {
         let mut line = format!("{part:<12}");
         for step in steps {
             line += &match step.parts.get(part) {
@@ -135,6 +136,6 @@ fn print(reference: &Reference, steps: &[Step]) {
                 None => format!("{:>24}", "-"),
             };
         }
-        say!("{line}{:>14.2e}", truth.noise);
+        say!("{line}{:>14.2e}", expected.noise);
     }
 }

@@ -77,7 +77,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
     );
     let mut doing = String::new();
-    let mut tell = |progress: Progress| match progress {
+    let mut on_progress = |progress: Progress| match progress {
         Progress::Begins { todo, before } => {
             if before > 0 {
                 bar.suspend(|| say!("{before} are finished already, {todo} to go"));
@@ -105,9 +105,9 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         }
     };
     let reopen = || Lab::open(home.clone(), args.device.options());
-    let result = run_suite(&reopen, &super::open_scene, &suite, &options, &mut tell);
+    let result = run_suite(&reopen, &super::open_scene, &suite, &options, &mut on_progress);
     bar.finish_and_clear();
-    let (tally, report) = result?;
+    let (counts, report) = result?;
     for r in &report.results {
         let Some(total) = r.measured().and_then(|m| m.parts.get("total")) else { continue };
         let number = |v: Option<f64>| v.map_or("-".into(), crate::report::short);
@@ -129,8 +129,8 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         write_whole(path, &bytes).map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
         say!("\n{}\nwrote {}", failure_table(&list), path.display());
     }
-    say!("{} done, {} failed", tally.done, tally.failed);
-    match tally.failed {
+    say!("{} done, {} failed", counts.done, counts.failed);
+    match counts.failed {
         0 => Ok(()),
         n => Err(LabError::Request(format!("{n} failed: their errors are in stability.csv"))),
     }

@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use crate::lab::{Home, Lab, LabError};
 use crate::measure::Frames;
-use crate::sweep::{Options, Outcome, Progress, Shard, Sweep, Tally, run as run_sweep};
+use crate::sweep::{Counts, Options, Outcome, Progress, Shard, Sweep, run as run_sweep};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -50,7 +50,7 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
         ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
     );
-    let mut tell = |progress: Progress| match progress {
+    let mut on_progress = |progress: Progress| match progress {
         Progress::Begins { todo, before } => {
             if before > 0 {
                 bar.suspend(|| say!("{before} points are finished already, {todo} to go"));
@@ -78,9 +78,9 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
         }
     };
     let reopen = || Lab::open(home.clone(), args.device.options());
-    let tally = run_sweep(&reopen, &super::open_scene, &sweep, &options, &mut tell);
+    let counts = run_sweep(&reopen, &super::open_scene, &sweep, &options, &mut on_progress);
     bar.finish_and_clear();
-    let Tally { done, failed, left } = tally?;
+    let Counts { done, failed, left } = counts?;
     let of = if shard.of > 1 { format!("shard {}/{}: ", shard.number, shard.of) } else { String::new() };
     say!("wrote {}", super::shown(&options.folder).display());
     say!("{of}{} points: {done} done, {failed} failed, {left} left", done + failed + left);

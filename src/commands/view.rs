@@ -16,7 +16,7 @@ pub struct ViewArgs {
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long)]
     scene: Option<String>,
-    /// Size of the picture in pixels; that of the window's middle when absent.
+    /// Size of the picture in pixels; that of the viewport when absent.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
     /// Size of the window.

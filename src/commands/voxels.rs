@@ -62,7 +62,7 @@ struct Report {
 }
 
 /// The exact cells of a grid; made once for the modes that share it.
-struct Truth {
+struct Exact {
     grid: Grid,
     cells: Vec<Cell>,
 }
@@ -80,7 +80,7 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
     let triangles = oracle::triangles_of(&scene, experiment.time);
     let surfaces = Surfaces::new(&scene);
     let lab = Lab::open(home, args.device.options())?;
-    let mut truth = None;
+    let mut last = None;
     let mut modes = Vec::new();
     for (title, set) in modes_of(&loaded, args.all)? {
         let mut changed = experiment.clone();
@@ -90,15 +90,15 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
         let mut mode = Mode { title, set, score: None, skipped: None, warnings: Vec::new() };
         match voxels_of(&lab, &changed, &loaded, &scene, &wanted) {
             Ok((grid, voxels, warnings)) => {
-                let truth = exact_of(&mut truth, grid, &triangles, &surfaces);
-                let found = oracle::compare(&truth.grid, &truth.cells, &voxels);
+                let exact = exact_of(&mut last, grid, &triangles, &surfaces);
+                let found = oracle::compare(&exact.grid, &exact.cells, &voxels);
                 if let Some(folder) = &args.output {
-                    draw(&lab, &experiment, &scene, &truth.grid, &found, &file_stem(folder, &mode.title))?;
+                    draw(&lab, &experiment, &scene, &exact.grid, &found, &file_stem(folder, &mode.title))?;
                 }
                 mode.warnings = warnings;
                 mode.score = Some(found.score);
             }
-            // One of many that this device cannot run is told; the only one is an error.
+            // One of many that this device cannot run is reported; the only one is an error.
             Err(LabError::Input(why)) if args.all => {
                 mode.skipped = Some(why.iter().map(|d| d.message.clone()).collect::<Vec<_>>().join("; "));
             }
@@ -113,7 +113,7 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
         scene: scene.name.clone(),
         device: lab.gpu.info.name.clone(),
         triangles: triangles.len(),
-        size: truth.as_ref().map_or([0; 3], |t| t.grid.size()),
+        size: last.as_ref().map_or([0; 3], |t| t.grid.size()),
         modes,
     };
     table::print(&report);
@@ -161,9 +161,9 @@ fn voxels_of(
     Ok((grid, voxels, warnings))
 }
 
-fn exact_of<'t>(last: &'t mut Option<Truth>, grid: Grid, triangles: &[Triangle], surfaces: &Surfaces<'_>) -> &'t Truth {
+fn exact_of<'t>(last: &'t mut Option<Exact>, grid: Grid, triangles: &[Triangle], surfaces: &Surfaces<'_>) -> &'t Exact {
     let kept = last.take().filter(|t| t.grid == grid);
-    last.insert(kept.unwrap_or_else(|| Truth { cells: oracle::exact(triangles, surfaces, &grid), grid }))
+    last.insert(kept.unwrap_or_else(|| Exact { cells: oracle::exact(triangles, surfaces, &grid), grid }))
 }
 
 fn file_stem(folder: &Path, title: &str) -> PathBuf {

@@ -17,7 +17,7 @@ use crate::scene::Camera;
 use glam::Vec3;
 use serde::Deserialize;
 
-/// Where a picture is taken from.
+/// The camera of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CameraChoice {
     /// A camera of the scene.

@@ -103,11 +103,11 @@ fn read_back(
     let wrong = |why: String| {
         LabError::Request(format!("'{}' cannot be written: it would not read back as it is: {why}", path.display()))
     };
-    let told = |list: &[Diagnostic]| list.first().map_or(String::new(), |d| d.message.clone());
-    let found = Experiment::from_text(path, text).map_err(|e| wrong(told(&e)))?;
+    let first_message = |list: &[Diagnostic]| list.first().map_or(String::new(), |d| d.message.clone());
+    let found = Experiment::from_text(path, text).map_err(|e| wrong(first_message(&e)))?;
     let values = match found.params_over(defaults) {
         Ok(params) => params.values,
-        Err(LabError::Input(list)) => return Err(wrong(told(&list))),
+        Err(LabError::Input(list)) => return Err(wrong(first_message(&list))),
         Err(e) => return Err(e),
     };
     let checks = [

@@ -3,7 +3,7 @@
 use super::search::Trial;
 use super::{Axis, at};
 use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError, Loaded, Seed};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts};
 use crate::measure::{Frames, Timed, timed};
 use crate::metrics::{Compared, Kind, Linear, relmse};
 use crate::reference::Reference;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
 pub enum Metric {
-    /// mean (x - r)^2 / (r^2 + .01).
+    /// mean (x - r)^2 / (r^2 + 0.01).
     Relmse,
     /// Mean HDR-FLIP.
     HdrFlip,
@@ -59,17 +59,17 @@ pub struct Subject<'a> {
     pub scene: Arc<Scene>,
     /// The experiment.
     pub experiment: &'a Experiment,
-    /// What is varied.
+    /// The varied parameters.
     pub axes: &'a [Axis],
-    /// The truth.
+    /// The reference.
     pub reference: &'a Reference,
-    /// Part of the light that is judged.
+    /// Part of the light that is compared.
     pub part: &'a str,
-    /// How it is judged.
+    /// How it is compared.
     pub metric: Metric,
     /// How long a setting is timed.
     pub frames: Frames,
-    /// What is wanted.
+    /// The quantity that is minimised, and the bound of the other.
     pub goal: Goal,
 }
 
@@ -77,8 +77,8 @@ pub struct Subject<'a> {
 pub struct Evaluator<'a> {
     subject: &'a Subject<'a>,
     texture: String,
-    truth: &'a Linear,
-    seed: Option<Seed>,
+    expected: &'a Linear,
+    reuse: Option<ReusableParts>,
     /// Why the last setting could not be run.
     pub refused: Option<String>,
 }
@@ -92,8 +92,8 @@ impl<'a> Evaluator<'a> {
         let parts = crate::lab::parts_of(&subject.loaded.graph);
         let texture = parts.iter().find(|p| p.0 == subject.part).map(|p| p.1.clone());
         match (texture, subject.reference.parts.get(subject.part)) {
-            (Some(texture), Some(truth)) => {
-                Ok(Evaluator { subject, texture, truth: &truth.mean, seed: None, refused: None })
+            (Some(texture), Some(part)) => {
+                Ok(Evaluator { subject, texture, expected: &part.mean, reuse: None, refused: None })
             }
             _ => {
                 let all: Vec<&str> = parts.iter().map(|p| p.0.as_str()).collect();
@@ -123,18 +123,18 @@ impl<'a> Evaluator<'a> {
         let s = self.subject;
         // The linear picture is made for the display anyway; other parts cost time to write, and get frames of their own.
         let together = s.loaded.graph.hdr.as_ref() == Some(&self.texture);
-        let beside = if together { std::slice::from_ref(&self.texture) } else { &[] };
+        let extra = if together { std::slice::from_ref(&self.texture) } else { &[] };
         let Timed { mut session, times, .. } =
-            timed(s.lab, s.loaded, experiment, &s.scene, s.frames, beside, self.seed.as_ref())?;
+            timed(s.lab, s.loaded, experiment, &s.scene, s.frames, extra, self.reuse.as_ref())?;
         let ms = spread(times.iter().map(|t| t.gpu_ms).collect()).median;
         if let Some(message) = session.failed_checks()?.into_iter().next() {
             self.refused = Some(message);
             return Ok(None);
         }
-        self.seed = Some(session.lend());
+        self.reuse = Some(session.share());
         if !together {
-            let seed = self.seed.as_ref();
-            session = s.lab.build(experiment, s.loaded, s.scene.clone(), vec![self.texture.clone()], seed)?;
+            let reuse = self.reuse.as_ref();
+            session = s.lab.build(experiment, s.loaded, s.scene.clone(), vec![self.texture.clone()], reuse)?;
             for _ in 0..s.frames.warmup + s.frames.count {
                 session.frame(0.0)?;
             }
@@ -142,9 +142,9 @@ impl<'a> Evaluator<'a> {
         }
         let light = crate::picture::to_linear(&session.texels(&self.texture, 0, 0)?);
         let error = match s.metric {
-            Metric::Relmse => relmse(&light, self.truth)?,
+            Metric::Relmse => relmse(&light, self.expected)?,
             Metric::HdrFlip => {
-                let compared = Compared::new(&light, self.truth, Kind::of_part(s.part))?;
+                let compared = Compared::new(&light, self.expected, Kind::of_part(s.part))?;
                 compared.scores(None).map_or(f64::NAN, |scores| scores.hdr_flip)
             }
         };

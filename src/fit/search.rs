@@ -13,7 +13,7 @@ use std::collections::HashMap;
 /// Both quantities of one setting, in their own units; smaller is better.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
-    /// What is made as small as can be.
+    /// The quantity that is made as small as can be.
     pub cost: f64,
     /// What must be at most the limit.
     pub bounded: f64,
@@ -55,7 +55,7 @@ pub enum Stop {
 pub struct Found {
     /// The best setting: within the bound if any that was tried is.
     pub place: Vec<usize>,
-    /// Its quantities.
+    /// Quantities of the best setting.
     pub trial: Trial,
     /// Everything that was tried.
     pub tried: Vec<Step>,
@@ -170,7 +170,7 @@ const PROPOSALS: usize = 24;
 /// the trials so far promise. `evaluate` gives a setting's quantities, or nothing where it cannot be run.
 ///
 /// # Errors
-/// Those of `evaluate`; `None` when not even the start can be run.
+/// The errors of `evaluate`; `None` when not even the start can be run.
 pub fn search<E>(
     sizes: &[usize],
     start: &[usize],
@@ -305,11 +305,11 @@ fn combine<E>(
     for (a, x) in some {
         for (b, y) in others.iter().filter(|(b, _)| b.iter().all(|b| a.iter().all(|a| a.0 != b.0))) {
             let ratio = |of: fn(&Trial) -> f64| of(x) * of(y) / of(&from).max(1e-30);
-            let told = Trial { cost: ratio(|t| t.cost), bounded: ratio(|t| t.bounded) };
+            let expected = Trial { cost: ratio(|t| t.cost), bounded: ratio(|t| t.bounded) };
             // A little beyond the bound may turn out to be within.
-            let near = Trial { bounded: told.bounded / 1.05, ..told };
+            let near = Trial { bounded: expected.bounded / 1.05, ..expected };
             if s.better(near, from) {
-                let merit = if from.bounded <= s.limits.bound { told.cost } else { told.bounded };
+                let merit = if from.bounded <= s.limits.bound { expected.cost } else { expected.bounded };
                 pairs.push((merit, a.iter().chain(b).copied().collect()));
             }
         }

@@ -55,20 +55,20 @@ pub enum LabError {
 /// A device that runs experiments.
 #[derive(Clone)]
 pub struct Lab {
-    /// Its folders.
+    /// The program's folders.
     pub home: Home,
     /// The device.
     pub gpu: Arc<Gpu>,
 }
 
-/// What a session in use lends to the one that will take its place.
-pub struct Seed {
+/// Parts of a session that another one can be built from: pipelines, textures, buffers, the scene on the device.
+pub struct ReusableParts {
     parts: Parts,
     scene: Arc<Scene>,
     max_edge: Option<f64>,
     scene_gpu: SceneGpu,
-    /// Whether the session goes on beside the one that is made.
-    beside: bool,
+    /// Whether the session renders on while the other one is used.
+    shared: bool,
 }
 
 /// A graph on a scene, ready to make frames.
@@ -132,7 +132,7 @@ impl Lab {
         Ok((self.build(experiment, &loaded, scene, wanted, None)?, warnings))
     }
 
-    /// Makes a session, from parts of one in use where they fit; see [`Session::succeed`]. Shaders that `loaded` lacks
+    /// Makes a session, from parts of one in use where they fit; see [`Session::swap_in`]. Shaders that `loaded` lacks
     /// and the experiment runs are compiled.
     ///
     /// # Errors
@@ -143,7 +143,7 @@ impl Lab {
         loaded: &Loaded,
         scene: Arc<Scene>,
         mut wanted: Vec<String>,
-        seed: Option<&Seed>,
+        reuse: Option<&ReusableParts>,
     ) -> Result<Session, LabError> {
         let params = params_of(&loaded.graph, experiment)?;
         let Loaded { graph, linked, .. } = self.home.complete(loaded, experiment, &scene).map_err(LabError::Input)?;
@@ -151,21 +151,21 @@ impl Lab {
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
         let rays = traces_rays(&linked, &plan);
-        let fits = |s: &&Seed| {
+        let fits = |s: &&ReusableParts| {
             Arc::ptr_eq(&s.scene, &scene) && s.max_edge == plan.max_edge && (s.scene_gpu.has_rays() || !rays)
         };
-        let scene_gpu = match seed.filter(fits) {
-            Some(seed) if seed.beside => seed.scene_gpu.fork(&self.gpu, &scene)?,
-            Some(seed) => seed.scene_gpu.clone(),
+        let scene_gpu = match reuse.filter(fits) {
+            Some(reuse) if reuse.shared => reuse.scene_gpu.fork(&self.gpu, &scene)?,
+            Some(reuse) => reuse.scene_gpu.clone(),
             None => {
                 let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
                 SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene), rays)?
             }
         };
         // What textures and buffers hold is of their scene: of another one only the pipelines are taken.
-        let parts = match seed {
-            Some(seed) if Arc::ptr_eq(&seed.scene, &scene) => seed.parts.clone(),
-            Some(seed) => seed.parts.pipelines_only(),
+        let parts = match reuse {
+            Some(reuse) if Arc::ptr_eq(&reuse.scene, &scene) => reuse.parts.clone(),
+            Some(reuse) => reuse.parts.pipelines_only(),
             None => Parts::default(),
         };
         let values = values_of(&graph, &params, &scene, experiment.size);
@@ -258,20 +258,20 @@ pub fn no_texture(graph: &Graph, name: &str) -> LabError {
 }
 
 impl Session {
-    /// What the next session in this one's place can be made from, while this one runs on.
-    pub fn seed(&self) -> Seed {
-        Seed {
+    /// Parts for the session that will replace this one; this one runs on until then.
+    pub fn reusable_parts(&self) -> ReusableParts {
+        ReusableParts {
             parts: self.program.parts(&self.graph),
             scene: self.scene.clone(),
             max_edge: self.program.plan.max_edge,
             scene_gpu: self.scene_gpu.clone(),
-            beside: false,
+            shared: false,
         }
     }
 
-    /// What a session that runs beside this one can share: pipelines, geometry and textures of the scene.
-    pub fn lend(&self) -> Seed {
-        Seed { parts: self.program.shared_parts(), beside: true, ..self.seed() }
+    /// Parts for a session that renders at the same time: pipelines, geometry and textures of the scene.
+    pub fn share(&self) -> ReusableParts {
+        ReusableParts { parts: self.program.shared_parts(), shared: true, ..self.reusable_parts() }
     }
 
     /// Takes the place of the session that this one was made from, at a frame's border: textures keep their content,
@@ -279,7 +279,7 @@ impl Session {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn succeed(&mut self, old: &mut Session) -> Result<(), LabError> {
+    pub fn swap_in(&mut self, old: &mut Session) -> Result<(), LabError> {
         self.program.succeed(&mut old.program)?;
         self.viewpoint = old.viewpoint.clone();
         self.time = old.time;
@@ -360,8 +360,8 @@ impl Session {
     }
 
     /// Sees the next frames from another camera. The frame before stays known to what compares frames.
-    pub fn look(&mut self, placed: &PlacedCamera) {
-        self.viewpoint.look(placed, self.bounds);
+    pub fn place_camera(&mut self, placed: &PlacedCamera) {
+        self.viewpoint.place_camera(placed, self.bounds);
     }
 
     /// Waits for all frames.

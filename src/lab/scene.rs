@@ -308,12 +308,12 @@ fn draws(scene: &Scene, first_index: &[u32]) -> Vec<DrawBlock> {
     let mut list = Vec::new();
     for (i, instance) in (0u32..).zip(&scene.instances) {
         let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
-        for part in mesh.parts.iter().filter(|p| p.index_count > 0) {
+        for submesh in mesh.submeshes.iter().filter(|p| p.index_count > 0) {
             list.push(DrawBlock {
                 instance: i,
-                material: part.material,
-                first_index: first_index[instance.mesh as usize] + part.first_index,
-                index_count: part.index_count,
+                material: submesh.material,
+                first_index: first_index[instance.mesh as usize] + submesh.first_index,
+                index_count: submesh.index_count,
             });
         }
     }

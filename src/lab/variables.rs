@@ -1,4 +1,4 @@
-//! What expressions may read beside parameters.
+//! Variables that expressions may read besides parameters.
 
 use super::view::shadow_view_count;
 use crate::graph::expr::{Env, Var};
@@ -28,7 +28,7 @@ pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
     env
 }
 
-/// The graph's named values; a plan tells those that have none.
+/// The graph's named values; a plan reports those that have none.
 pub fn values_of(graph: &Graph, params: &Params, scene: &Scene, size: (u32, u32)) -> Vec<Value> {
     fill(graph, params, &mut environment(scene, size)).0
 }

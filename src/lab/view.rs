@@ -47,7 +47,7 @@ impl Viewpoint {
     }
 
     /// Another camera, in a scene of these bounds; what was seen in the frame before stays known.
-    pub fn look(&mut self, placed: &PlacedCamera, bounds: (Vec3, Vec3)) {
+    pub fn place_camera(&mut self, placed: &PlacedCamera, bounds: (Vec3, Vec3)) {
         self.camera = camera(placed, bounds);
     }
 

@@ -7,7 +7,7 @@ pub use warm_up::WarmUp;
 
 use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
-use crate::lab::{Lab, LabError, Loaded, Seed, Session};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::metrics::{Compared, Kind, Linear, Scores};
 use crate::reference::Reference;
 use crate::scene::Scene;
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-/// How long to measure.
+/// Frames of a measurement: warm-up and measured ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Frames {
     /// Frames that run first, at least ([`WarmUp`]): caches fill, clocks rise, and what gathers over time settles.
@@ -25,7 +25,7 @@ pub struct Frames {
     pub count: usize,
 }
 
-/// What one experiment costs and how good it is.
+/// Costs and scores of one experiment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Times, memory, settings, device, failed checks.
@@ -42,9 +42,9 @@ pub struct Point {
 pub struct Measured {
     /// The numbers.
     pub point: Point,
-    /// What the graph shows, if it has an `output`.
+    /// The displayed picture, if the graph has an `output`.
     pub picture: Option<Vec<u8>>,
-    /// Where the light differs from the reference, if there is one.
+    /// Map of the error against the reference, if there is one.
     pub error_map: Option<Vec<u8>>,
 }
 
@@ -53,8 +53,8 @@ pub struct Measured {
 #[derive(Default)]
 pub struct Warm {
     loaded: HashMap<String, Loaded>,
-    timed: Option<Seed>,
-    scored: Option<(Arc<Scene>, Seed)>,
+    timed: Option<ReusableParts>,
+    scored: Option<(Arc<Scene>, ReusableParts)>,
 }
 
 impl Warm {
@@ -98,7 +98,7 @@ pub fn measure(
     let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, warmup, warnings);
     let picture = loaded.graph.output.as_ref().map(|name| session.texels(name, 0, 0)).transpose()?;
     let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
-    warm.timed = Some(session.lend());
+    warm.timed = Some(session.share());
     drop(session);
     let mut point = Point { stats, scores: BTreeMap::new(), noise: BTreeMap::new(), references: BTreeMap::new() };
     let mut error_map = None;
@@ -106,17 +106,17 @@ pub fn measure(
         let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
         for (number, (bounces, reference)) in references.iter().enumerate() {
             for (part, light) in &parts {
-                let Some(truth) = reference.parts.get(part).filter(|_| number == 0 || part == "total") else {
+                let Some(expected) = reference.parts.get(part).filter(|_| number == 0 || part == "total") else {
                     continue;
                 };
                 let wrong = |why: &str| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
-                let compared = Compared::new(light, &truth.mean, Kind::of_part(part)).map_err(|e| wrong(&e.0))?;
+                let compared = Compared::new(light, &expected.mean, Kind::of_part(part)).map_err(|e| wrong(&e.0))?;
                 let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
                 let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
                 point.scores.insert(name.clone(), scores);
-                point.noise.insert(name, truth.noise);
+                point.noise.insert(name, expected.noise);
                 if number == 0 && part == "total" {
-                    error_map = Some(pictures::error_map(light, &truth.mean)?);
+                    error_map = Some(pictures::error_map(light, &expected.mean)?);
                 }
             }
             point.references.insert(*bounces, reference.samples);
@@ -129,13 +129,13 @@ pub fn measure(
 pub struct Timed {
     /// After its last frame.
     pub session: Session,
-    /// Of the frames measured.
+    /// Times of the measured frames.
     pub times: Vec<FrameTimes>,
     /// Frames that ran before them.
     pub warmup: usize,
 }
 
-/// Runs an experiment and keeps the times of its last frames; only what the picture needs, and `beside` it these
+/// Runs an experiment and keeps the times of its last frames; only what the picture needs, and these `extra`
 /// textures, is computed.
 ///
 /// # Errors
@@ -146,13 +146,13 @@ pub fn timed(
     experiment: &Experiment,
     scene: &Arc<Scene>,
     frames: Frames,
-    beside: &[String],
-    seed: Option<&Seed>,
+    extra: &[String],
+    reuse: Option<&ReusableParts>,
 ) -> Result<Timed, LabError> {
     let graph = &loaded.graph;
     let shown = graph.output.clone().or_else(|| graph.hdr.clone());
-    let wanted = shown.into_iter().chain(beside.iter().cloned()).collect();
-    let mut session = lab.build(experiment, loaded, scene.clone(), wanted, seed)?;
+    let wanted = shown.into_iter().chain(extra.iter().cloned()).collect();
+    let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;
     let warmup = WarmUp::of(&lab.gpu.info, frames.warmup)
         .run(&mut || Ok::<_, LabError>(session.frame(0.0)?.map_or(0.0, |times| times.gpu_ms)))?;
     let mut times = Vec::new();
@@ -176,13 +176,13 @@ fn parts_of(
 ) -> Result<BTreeMap<String, Linear>, LabError> {
     let wanted = loaded.graph.parts.iter().map(|p| p.1.clone()).collect();
     // The timed session's scene is on the device already: another upload of it would cost memory.
-    let seed = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
-    let mut session = lab.build(experiment, loaded, scene.clone(), wanted, seed)?;
+    let reuse = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
+    let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;
     for _ in 0..frames.warmup + frames.count {
         session.frame(0.0)?;
     }
     session.finish()?;
     let out = session.parts()?;
-    warm.scored = Some((scene.clone(), session.lend()));
+    warm.scored = Some((scene.clone(), session.share()));
     Ok(out)
 }

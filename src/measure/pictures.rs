@@ -9,7 +9,7 @@ use image::{ImageBuffer, Rgb, RgbImage};
 
 /// Longest side, pixels: 200 points with two pictures each stay below 4 MB.
 const SIDE: u32 = 256;
-/// Of JPEG, in percent.
+/// JPEG quality, percent.
 const QUALITY: u8 = 82;
 
 /// A display-encoded picture.

@@ -29,7 +29,7 @@ impl WarmUp {
     /// has finished meanwhile.
     ///
     /// # Errors
-    /// Those of `frame`.
+    /// The errors of `frame`.
     pub fn run<E>(self, frame: &mut dyn FnMut() -> Result<f64, E>) -> Result<usize, E> {
         let (mut frames, mut gpu_ms) = (0, 0.0);
         while frames < self.frames || (gpu_ms < self.gpu_ms && frames < MOST_FRAMES) {

@@ -1,8 +1,9 @@
 //! FLIP: the difference that an observer sees when two pictures alternate on a display.
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: *FLIP: A Difference Evaluator for Alternating Images*,
-//! HPG 2020. Filters are separated as in NVIDIA's evaluator, whose means this code meets within .001 (`tests/metrics.rs`).
-//! Written here because the evaluator's binding takes 8-bit pictures only, and HDR-FLIP needs finer ones.
+//! HPG 2020. Filters are separated as in NVIDIA's evaluator, whose means this code meets within 0.001
+//! (`tests/metrics.rs`). Written here because the evaluator's binding takes 8-bit pictures only, and HDR-FLIP needs
+//! finer ones.
 
 use super::colour::{from_ycxcz, hunt_lab, ycxcz};
 use rayon::prelude::*;

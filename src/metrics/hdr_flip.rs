@@ -15,7 +15,7 @@ const TARGET: f64 = 0.85;
 /// The exposures that are looked at, evenly spaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exposures {
-    /// Stops at which the brightest pixel of the reference is shown at .85.
+    /// Stops at which the brightest pixel of the reference is shown at 0.85.
     pub start: f64,
     /// Stops at which its median pixel is.
     pub stop: f64,

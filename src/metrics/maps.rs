@@ -46,7 +46,7 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         png(
             "relative-error.png",
             relative.iter().map(|v| magma.at(logarithmic(v))).collect(),
-            format!("(x - r)^2 / (r^2 + .01), magma, logarithmic from 1e{} to 1e{}", DECADES.0, DECADES.1),
+            format!("(x - r)^2 / (r^2 + 0.01), magma, logarithmic from 1e{} to 1e{}", DECADES.0, DECADES.1),
         )?,
         png(
             "luminance.png",

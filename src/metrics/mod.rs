@@ -37,7 +37,7 @@ impl Linear {
     }
 }
 
-/// mean (x - r)^2 / (r^2 + .01) alone, for who needs no more. Pixels that are no number make it none.
+/// relMSE alone: mean (x - r)^2 / (r^2 + 0.01). NaN where a pixel is no number.
 ///
 /// # Errors
 /// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
@@ -45,7 +45,7 @@ pub fn relmse(test: &Linear, reference: &Linear) -> Result<f64, MetricError> {
     relative_distance(test, reference, reference)
 }
 
-/// mean (x - y)^2 / (r^2 + .01): how far x is from y in the measure of relMSE.
+/// mean (x - y)^2 / (r^2 + 0.01): how far x is from y in the measure of relMSE.
 ///
 /// # Errors
 /// As [`relmse`].
@@ -78,14 +78,14 @@ impl Kind {
 /// that are infinite or no number in either picture are left out of all means but those of FLIP, where they count as 1.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scores {
-    /// mean (x - r)^2 / (r^2 + .01), of squared radiance over squared radiance.
+    /// mean (x - r)^2 / (r^2 + 0.01), of squared radiance over squared radiance.
     pub relmse: f64,
     /// Root of mean (x - r)^2, radiance.
     pub rmse: f64,
     /// mean x / mean r; no number (null in JSON) where the reference's mean is 0.
     #[serde(deserialize_with = "null_is_no_number")]
     pub energy_ratio: f64,
-    /// mean |x - r| / (|x| + |r| + .01), 0 to 1.
+    /// mean |x - r| / (|x| + |r| + 0.01), 0 to 1.
     pub smape: f64,
     /// Mean FLIP of the displayed picture, 0 to 1.
     pub flip: f64,
@@ -119,7 +119,7 @@ pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> 
     compared.scores(None).ok_or_else(|| MetricError("no pixel is a finite number in both pictures".into()))
 }
 
-/// A picture beside a reference, with the maps that cost time.
+/// A picture against a reference, with the maps that cost time.
 pub struct Compared<'a> {
     test: &'a Linear,
     reference: &'a Linear,

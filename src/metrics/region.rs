@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// Some pixels of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region {
-    /// Its name.
+    /// Name of the region.
     pub name: String,
     /// Whether each pixel belongs to it, rows from the top.
     pub mask: Vec<bool>,
@@ -36,11 +36,11 @@ impl Region {
 ///
 /// | Region | Pixels of the reference |
 /// |---|---|
-/// | `dark` | luminance of `total` at most .01 of its mean: behind walls, in deep shadow |
+/// | `dark` | luminance of `total` at most 0.01 of its mean: behind walls, in deep shadow |
 /// | `bright` | luminance of `total` at least 4 times its mean |
-/// | `indirect only` | luminance of `direct` at most .01 of its mean, but `total` not dark: shadow lit by bounced light |
-/// | `concave corners` | openness (`occlusion`) below .5 |
-/// | `open` | openness at least .9 |
+/// | `indirect only` | luminance of `direct` at most 0.01 of its mean, but `total` not dark: shadow lit by bounced light |
+/// | `concave corners` | openness (`occlusion`) below 0.5 |
+/// | `open` | openness at least 0.9 |
 pub fn regions(reference: &BTreeMap<String, Linear>) -> Vec<Region> {
     let luminances = |part: &str| -> Option<(Vec<f64>, f64)> {
         let values: Vec<f64> = reference.get(part)?.rgb.iter().map(|c| luminance(*c)).collect();

@@ -32,9 +32,9 @@ pub struct Score {
     pub thin_recall: Option<f64>,
     /// Cells that the exact surfaces enclose; 0 where nothing is closed, and then the next two say nothing.
     pub enclosed: u64,
-    /// Those of them that a way from outside through faces reaches past V.
+    /// Cells of them that a path from outside through faces reaches past V.
     pub leaked_6: u64,
-    /// Those that a way through faces, edges and corners reaches.
+    /// Cells of them that a path through faces, edges and corners reaches.
     pub leaked_26: u64,
     /// Over V & E: root of the mean squared difference of a linear base colour's channel, and the largest.
     pub color_rms: f64,
@@ -46,7 +46,7 @@ pub struct Score {
     pub opacity_bias: f64,
     /// Root mean square of the same.
     pub opacity_rms: f64,
-    /// The same by class of triangle.
+    /// The scores by class of triangle.
     pub shapes: BTreeMap<String, ShapeScore>,
 }
 
@@ -55,7 +55,7 @@ pub struct Score {
 pub struct ShapeScore {
     /// Exact cells.
     pub exact: u64,
-    /// Those that the voxelizer misses.
+    /// Cells that the voxelizer misses.
     pub holes: u64,
     /// Extras beside (26 neighbours) such a cell.
     pub extras: u64,

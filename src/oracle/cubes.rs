@@ -2,7 +2,7 @@
 
 use super::compare::Comparison;
 use super::grid::Grid;
-use crate::scene::{Instance, Material, Mesh, Part, Scene, Vertex};
+use crate::scene::{Instance, Material, Mesh, Scene, Submesh, Vertex};
 use glam::{DVec3, Mat4, Vec3, Vec4};
 
 /// Most cells in a picture: their faces then take less than 1 GB.
@@ -36,7 +36,7 @@ pub fn cubes(grid: &Grid, found: &Comparison, like: &Scene) -> Result<Scene, Str
         }
         let index_count = mesh.indices.len() as u32 - first_index;
         if index_count > 0 {
-            mesh.parts.push(Part { first_index, index_count, material: materials.len() as u32 });
+            mesh.submeshes.push(Submesh { first_index, index_count, material: materials.len() as u32 });
             materials.push(Material { name: name.into(), base_color: Vec4::from((color, 1.0)), ..Material::default() });
         }
     }

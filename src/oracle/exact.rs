@@ -20,7 +20,7 @@ pub struct Cell {
     pub number: u32,
     /// Whether any triangle overlaps it. Borderline also where alpha masks may or may not let through.
     pub overlap: Overlap,
-    /// The same for the thin set.
+    /// Overlap with the thin set.
     pub thin: Overlap,
     /// Bit i: a triangle of class `SHAPES[i]` overlaps it.
     pub shapes: u8,

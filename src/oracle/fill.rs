@@ -5,9 +5,9 @@ use super::grid::Grid;
 /// Cells that count as beside each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Neighbours {
-    /// Those with a common face.
+    /// Cells with a common face.
     Six,
-    /// Those with a common face, edge or corner.
+    /// Cells with a common face, edge or corner.
     TwentySix,
 }
 

@@ -23,15 +23,16 @@ pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
         let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
         let model = scene.instance_transform(i, time as f32);
         let turn = Mat3::from_mat4(model).inverse().transpose();
-        for part in &mesh.parts {
-            let indices = &mesh.indices[part.first_index as usize..(part.first_index + part.index_count) as usize];
+        for submesh in &mesh.submeshes {
+            let indices =
+                &mesh.indices[submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize];
             list.extend(indices.as_chunks::<3>().0.iter().map(|t| {
                 let v = t.map(|i| mesh.vertices[i as usize]);
                 Triangle {
                     corners: v.map(|v| model.transform_point3(v.position.into()).as_dvec3()),
                     normals: v.map(|v| (turn * Vec3::from_array(v.normal)).normalize_or_zero()),
                     uv: v.map(|v| v.uv.into()),
-                    material: part.material,
+                    material: submesh.material,
                 }
             }));
         }

@@ -3,7 +3,7 @@
 use super::store::{self, Sums};
 use super::{Reference, key};
 use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError, Loaded, Seed, Session};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::metrics::Linear;
 use crate::picture::to_floats;
 use crate::scene::Scene;
@@ -18,18 +18,18 @@ use std::time::{Duration, Instant};
 pub enum Goal {
     /// So many samples of every pixel, rounded up to a multiple of [`store::BLOCK`].
     Samples(u64),
-    /// Until relMSE of the total against the truth, as estimated from its halves, is at most this.
+    /// Until relMSE of the total against the converged reference, as estimated from its halves, is at most this.
     Noise(f64),
 }
 
-/// How far it is.
+/// Progress towards the goal.
 #[derive(Clone, Copy, Debug)]
 pub struct Gathered {
     /// Samples of every pixel so far.
     pub samples: u64,
     /// Samples that will be enough, as far as can be told.
     pub goal: u64,
-    /// Estimated relMSE of the total against the truth.
+    /// Estimated relMSE of the total against the converged reference.
     pub noise: f64,
 }
 
@@ -62,7 +62,7 @@ pub fn gather(
 #[derive(Default)]
 pub struct Tracer {
     loaded: Option<Loaded>,
-    lent: Option<Seed>,
+    shared: Option<ReusableParts>,
 }
 
 impl Tracer {
@@ -111,7 +111,7 @@ impl Tracer {
         let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
         traced.set("samples", &per_frame.to_string());
         let wanted = parts.iter().map(|p| store::sum_texture(p)).collect();
-        let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, self.lent.as_ref())?;
+        let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, self.shared.as_ref())?;
         let mut kept = Instant::now();
         while now.samples < now.goal {
             frame(lab, &mut session, &mut sums, &parts, per_frame)?;
@@ -127,7 +127,7 @@ impl Tracer {
                 break;
             }
         }
-        self.lent = Some(session.lend());
+        self.shared = Some(session.share());
         Ok((sums, folder))
     }
 }

@@ -25,7 +25,7 @@ pub struct Reference {
     pub samples: u64,
     /// Parts of the graph by name: total, direct, diffuse, specular, occlusion.
     pub parts: BTreeMap<String, ReferencePart>,
-    /// Where it is kept.
+    /// Folder of the reference.
     pub folder: PathBuf,
 }
 

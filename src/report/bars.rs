@@ -52,7 +52,7 @@ pub fn names(bars: &[Bar]) -> Vec<&str> {
 /// Horizontal bars, one below the other, on one scale, as SVG.
 ///
 /// # Errors
-/// None that data can cause.
+/// Drawing into memory gives none, whatever the data.
 pub fn bars(title: &str, bars: &[Bar]) -> Result<String, LabError> {
     let mut svg = String::new();
     draw(&mut svg, title, bars).map_err(|e| LabError::Request(format!("cannot draw '{title}': {e}")))?;

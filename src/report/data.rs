@@ -110,7 +110,7 @@ impl Data {
         };
         let mut keys = Vec::new();
         let mut room = MAX_PICTURES;
-        for (listed, record) in &collected.points {
+        for (planned, record) in &collected.points {
             let Some(record) = record else {
                 data.left += 1;
                 continue;
@@ -118,7 +118,7 @@ impl Data {
             let point = match &record.outcome {
                 Outcome::Done(point) => point,
                 Outcome::Failed(error) => {
-                    data.failed.push((listed.labels.clone(), error.clone()));
+                    data.failed.push((planned.labels.clone(), error.clone()));
                     continue;
                 }
             };
@@ -163,7 +163,7 @@ impl Data {
             };
             data.dots.push(Dot {
                 id: record.id.clone(),
-                labels: listed.labels.clone(),
+                labels: planned.labels.clone(),
                 subject,
                 ms: point.stats.total_gpu_ms.median,
                 p95: point.stats.total_gpu_ms.p95,

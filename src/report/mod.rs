@@ -2,14 +2,14 @@
 
 mod bars;
 mod data;
-mod front;
 mod page;
+mod pareto;
 mod scatter;
 
 pub use bars::{Bar, COLORS, bars};
 pub(crate) use data::{Data, Dot, Scored, error_of};
-pub use front::front;
 pub(crate) use page::escaped;
+pub use pareto::pareto;
 pub(crate) use scatter::{axis_title, short, ticks};
 
 use crate::lab::LabError;
@@ -23,7 +23,7 @@ pub const METRICS: [&str; 2] = ["relmse", "hdr_flip"];
 const MAX_BARS: usize = 40;
 
 /// Writes `index.html`, `points.csv` and the charts to a folder: error against time for every part of the light and
-/// every metric, and the passes of the points on the front of the total.
+/// every metric, and the passes of the points on the Pareto front of the total.
 ///
 /// # Errors
 /// No finished point; a folder that cannot be written to.
@@ -72,12 +72,12 @@ fn charts(data: &Data, metrics: &[String]) -> Result<Vec<Chart>, LabError> {
     Ok(out)
 }
 
-/// Stacked bars of the points on the front of the total's relMSE; of all points where nothing is scored.
+/// Stacked bars of the points on the Pareto front of the total's relMSE; of all points where nothing is scored.
 fn passes(data: &Data, subject: usize) -> Result<String, LabError> {
     let scored = data.scored(subject, "total", "relmse");
     let pairs: Vec<(f64, f64)> = scored.iter().map(|d| (d.ms, d.error)).collect();
-    let mut chosen: Vec<usize> = front(&pairs).into_iter().map(|i| scored[i].index).collect();
-    let what = if chosen.is_empty() { "fastest points" } else { "points on the front of the total" };
+    let mut chosen: Vec<usize> = pareto(&pairs).into_iter().map(|i| scored[i].index).collect();
+    let what = if chosen.is_empty() { "fastest points" } else { "points on the Pareto front of the total" };
     if chosen.is_empty() {
         chosen = (0..data.dots.len()).filter(|i| data.dots[*i].subject == subject).collect();
     }

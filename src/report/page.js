@@ -71,14 +71,14 @@ const errorOf = (d) => {
   return v === undefined || v === null ? undefined : state.metric === "energy_ratio" ? Math.abs(Math.log(v)) : v;
 };
 // The points that none of those shown beats in both time and error.
-function front(indices) {
+function pareto(indices) {
   const order = indices.filter((i) => errorOf(data.dots[i]) !== undefined)
     .sort((a, b) => data.dots[a].ms - data.dots[b].ms || errorOf(data.dots[a]) - errorOf(data.dots[b]));
   let least = Infinity;
   return order.filter((i) => { const e = errorOf(data.dots[i]); const better = e < least; least = Math.min(least, e); return better; });
 }
 
-function tell(index, event, pinned) {
+function describe(index, event, pinned) {
   const d = data.dots[index];
   tip.replaceChildren();
   tip.className = pinned ? "pinned" : "";
@@ -113,12 +113,12 @@ function tell(index, event, pinned) {
   tip.style.top = event.pageY + 14 + "px";
 }
 function hover(element, index) {
-  element.addEventListener("mouseenter", (e) => { if (state.held < 0) tell(index, e, false); });
+  element.addEventListener("mouseenter", (e) => { if (state.held < 0) describe(index, e, false); });
   element.addEventListener("mouseleave", () => { if (state.held < 0) tip.hidden = true; });
   element.addEventListener("click", (e) => {
     e.stopPropagation();
     state.held = index;
-    tell(index, e, true);
+    describe(index, e, true);
     update();
   });
 }
@@ -172,7 +172,7 @@ function update() {
   document.getElementById("settings").textContent = data.settings[state.subject] || "";
   document.querySelectorAll("figure[data-passes]").forEach((f) => { f.hidden = Number(f.dataset.passes) !== state.subject; });
   const shown = data.dots.map((_, i) => i).filter((i) => kept(data.dots[i]));
-  const best = front(shown);
+  const best = pareto(shown);
   document.querySelectorAll("figure[data-chart]").forEach((figure) => {
     const chart = data.charts[Number(figure.dataset.chart)];
     figure.hidden = chart.subject !== state.subject || chart.part !== state.part || chart.metric !== state.metric;

@@ -41,7 +41,7 @@ struct PageData<'a> {
 /// The page as HTML.
 ///
 /// # Errors
-/// None that data can cause.
+/// Writing to memory gives none, whatever the data.
 pub fn page(data: &Data, charts: &[Chart], passes: &[(String, String)], table: &str) -> Result<String, LabError> {
     let url = |kind: &str, bytes: &[u8]| format!("data:{kind};base64,{}", STANDARD.encode(bytes));
     let jpeg = |bytes: &Option<Vec<u8>>| bytes.as_ref().map(|b| url("image/jpeg", b));

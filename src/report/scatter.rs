@@ -1,7 +1,7 @@
 //! Error against time, both logarithmic, with the Pareto front.
 
 use super::data::Scored;
-use super::front::front;
+use super::pareto::pareto;
 use crate::lab::LabError;
 use plotters::coord::combinators::BindKeyPoints;
 use plotters::prelude::*;
@@ -60,7 +60,7 @@ fn draw(svg: &mut String, title: &str, metric: &str, dots: &[Scored]) -> Result<
         .bold_line_style(RGBColor(220, 220, 220))
         .draw()?;
     let pairs: Vec<(f64, f64)> = dots.iter().map(|d| (d.ms, d.error)).collect();
-    let front = front(&pairs);
+    let front = pareto(&pairs);
     let mut steps: Vec<(f64, f64)> = Vec::new();
     for i in &front {
         let at = place(&dots[*i]);

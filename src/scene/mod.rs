@@ -57,18 +57,18 @@ pub struct Vertex {
     pub uv: [f32; 2],
 }
 
-/// Indexed triangles in one model space, split into parts of one material each.
+/// Indexed triangles in one model space, split into submeshes of one material each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     pub name: String,
     pub vertices: Vec<Vertex>,
     pub indices: Vec<u32>,
-    pub parts: Vec<Part>,
+    pub submeshes: Vec<Submesh>,
 }
 
 /// A run of a mesh's indices that has one material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Part {
+pub struct Submesh {
     pub first_index: u32,
     pub index_count: u32,
     pub material: u32,

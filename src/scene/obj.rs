@@ -9,7 +9,7 @@ use glam::{Mat4, Vec3};
 use super::mesh::{RawMesh, prepare_all};
 use super::progress::Progress;
 use super::texture::{Recipe, Requests, Source};
-use super::{Instance, Material, Mesh, Part, Scene, SceneError, Vertex};
+use super::{Instance, Material, Mesh, Scene, SceneError, Submesh, Vertex};
 
 /// Geometry, materials and textures of an OBJ file; no lights, cameras or sky.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
@@ -41,7 +41,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let (textures, texture_warnings) = requests.load(progress)?;
     warnings.extend(texture_warnings);
 
-    let meshes: Vec<Mesh> = meshes.into_iter().filter(|mesh| !mesh.parts.is_empty()).collect();
+    let meshes: Vec<Mesh> = meshes.into_iter().filter(|mesh| !mesh.submeshes.is_empty()).collect();
     let instances = meshes.iter().enumerate().map(|(i, mesh)| Instance {
         name: mesh.name.clone(),
         mesh: i as u32,
@@ -123,7 +123,7 @@ fn merge_objects(models: Vec<tobj::Model>, default_material: u32, progress: Prog
         }
         let material = piece.material_id.map_or(default_material, |id| id as u32);
         let index_count = (piece.indices.len() / 3 * 3) as u32;
-        mesh.parts.push(Part { first_index, index_count, material });
+        mesh.submeshes.push(Submesh { first_index, index_count, material });
     }
     Ok(meshes)
 }

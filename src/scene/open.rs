@@ -14,12 +14,12 @@ const ASK: Duration = Duration::from_millis(20);
 impl Scene {
     /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb).
     ///
-    /// A model without lights gets a sun and a sky, one without cameras a camera `default`. `progress` is told
+    /// A model without lights gets a sun and a sky, one without cameras a camera `default`. `progress` is called with
     /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
     /// answers `Break`, the opening ends at once with [`SceneError::Cancelled`].
     pub fn open(spec: &str, progress: &dyn Fn(&str, f32) -> ControlFlow<()>) -> Result<Scene, SceneError> {
-        // Decoders and parsers cannot be interrupted. They run beside; once cancelled, the step that is under way
-        // ends unheard and the next one does not begin.
+        // Decoders and parsers cannot be interrupted. They run on another thread; once cancelled, the step that is
+        // under way ends unheard and the next one does not begin.
         let watch = Arc::new(Watch::new(spec));
         let (send, result) = mpsc::channel();
         let worker = std::thread::spawn({

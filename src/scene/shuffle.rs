@@ -3,13 +3,13 @@
 use super::Scene;
 
 impl Scene {
-    /// A copy with the triangles inside each part in random order; a triangle's own vertices keep theirs.
+    /// A copy with the triangles inside each submesh in random order; a triangle's own vertices keep theirs.
     pub fn shuffled(&self, seed: u64) -> Scene {
         let mut scene = self.clone();
         let mut state = seed;
         for mesh in &mut scene.meshes {
-            for part in &mesh.parts {
-                let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
+            for submesh in &mesh.submeshes {
+                let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
                 let triangles = mesh.indices[range].as_chunks_mut::<3>().0;
                 // Fisher and Yates, from the end.
                 for i in (1..triangles.len()).rev() {

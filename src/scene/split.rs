@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::{Mat3, Vec3, Vec4};
 use rayon::prelude::*;
 
-use super::{Mesh, Part, Scene, Vertex};
+use super::{Mesh, Scene, Submesh, Vertex};
 
 /// Splitting stops before a scene has more triangles than this.
 pub const MAX_TRIANGLES: usize = 64 << 20;
@@ -79,14 +79,18 @@ fn long_edges(mesh: &Mesh, triangle: &[u32; 3], too_long: impl Fn(Vec3, Vec3) ->
 fn split_once(mesh: &Mesh, marks: &[[bool; 3]]) -> Mesh {
     let mut split = Mesh { name: mesh.name.clone(), vertices: mesh.vertices.clone(), ..Mesh::default() };
     let mut midpoints: HashMap<(u32, u32), u32> = HashMap::new();
-    for part in &mesh.parts {
+    for submesh in &mesh.submeshes {
         let first_index = split.indices.len() as u32;
-        let triangles = part.first_index as usize / 3..(part.first_index + part.index_count) as usize / 3;
+        let triangles = submesh.first_index as usize / 3..(submesh.first_index + submesh.index_count) as usize / 3;
         for i in triangles {
             let triangle = [0, 1, 2].map(|k| mesh.indices[3 * i + k]);
             split_triangle(&mut split, &mut midpoints, triangle, marks[i]);
         }
-        split.parts.push(Part { first_index, index_count: split.indices.len() as u32 - first_index, ..*part });
+        split.submeshes.push(Submesh {
+            first_index,
+            index_count: split.indices.len() as u32 - first_index,
+            ..*submesh
+        });
     }
     split
 }

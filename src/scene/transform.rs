@@ -54,7 +54,7 @@ impl Scene {
 impl Mesh {
     /// Triangles of the mesh itself.
     pub fn triangle_count(&self) -> usize {
-        self.parts.iter().map(|part| part.index_count as usize / 3).sum()
+        self.submeshes.iter().map(|submesh| submesh.index_count as usize / 3).sum()
     }
 }
 

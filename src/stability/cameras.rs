@@ -12,9 +12,9 @@ use std::path::Path;
 pub enum Cameras {
     /// Another camera from a frame on.
     Cut {
-        /// That camera.
+        /// The camera after the cut.
         to: PlacedCamera,
-        /// Its first frame.
+        /// The first frame of that camera.
         at: usize,
     },
     /// Along a path.
@@ -29,7 +29,7 @@ pub enum Cameras {
 }
 
 impl Cameras {
-    /// Those of a motion; none of one that moves the experiment's own camera, or no camera at all.
+    /// The cameras of a cut or a path. `None` for a motion that moves the experiment's own camera or none at all.
     ///
     /// # Errors
     /// No such camera in the scene; all mistakes of the path's file.

@@ -84,8 +84,8 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
         }
         if of().any(|r| r.measured().is_some_and(|m| m.parts.values().any(|p| p.step.is_some()))) {
             let mut lines = frames(&|f| f.mean, "diffuse");
-            let truth = frames(&|f| f.reference_mean, "diffuse").into_iter().next();
-            lines.extend(truth.map(|(_, points)| (REFERENCE.to_string(), points)));
+            let reference = frames(&|f| f.reference_mean, "diffuse").into_iter().next();
+            lines.extend(reference.map(|(_, points)| (REFERENCE.to_string(), points)));
             let title = format!("{case}: mean luminance of diffuse light");
             add(&format!("{case} response"), Some(case), lines_of(&title, "radiance", &lines))?;
         }

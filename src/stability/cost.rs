@@ -3,15 +3,15 @@
 //! the values of a parameter are taken to be in the order of their costs: halving finds the two between which the first's
 //! time lies, and the nearer is taken.
 
+use super::chart_spec::CostChart;
 use super::file::{Method, Suite};
 use super::plan::{Job, Options, plan};
 use super::record::{json, lasting};
 use super::run::{Progress, cell_of, median, place};
-use super::wish::CostChart;
-use crate::lab::{Lab, LabError, Seed};
+use crate::lab::{Lab, LabError, ReusableParts};
 use crate::measure::{Warm, WarmUp};
 use crate::oracle;
-use crate::sweep::Lister;
+use crate::sweep::PointBuilder;
 use crate::vulkan::VulkanError;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -101,11 +101,11 @@ impl Cost {
 /// What is wrong with the suite; no device; a method that can be timed at none of its values.
 pub(super) fn costs(
     lab: &Lab,
-    lister: &mut Lister,
+    builder: &mut PointBuilder,
     warm: &mut Warm,
     (suite, chart): (&Suite, &CostChart),
     options: &Options,
-    tell: &mut dyn FnMut(Progress),
+    on_progress: &mut dyn FnMut(Progress),
 ) -> Result<Vec<Cost>, LabError> {
     let charted = |m: &&Method| chart.groups.iter().any(|g| g.1.contains(&m.name));
     let names: Vec<&Method> =
@@ -117,7 +117,7 @@ pub(super) fn costs(
         ..suite.clone()
     };
     let options = Options { only: Vec::new(), ..options.clone() };
-    let jobs = plan(&lab.home, &lab.gpu.info, lister, warm, &timed, &options)?;
+    let jobs = plan(&lab.home, &lab.gpu.info, builder, warm, &timed, &options)?;
     let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
     let path = options.folder.join("cost.json");
     let kept = read(&path);
@@ -149,10 +149,10 @@ pub(super) fn costs(
     if todo.is_empty() {
         return Ok(costs);
     }
-    let mut lent = HashMap::new();
+    let mut shared = HashMap::new();
     let todo = between(&todo, &mut |job| {
-        tell(Progress::Times { method: &job.method, done: 0, of: ROUNDS * todo.len() });
-        Ok((time(lab, warm, job, &mut lent), time(lab, warm, first, &mut lent)?.0))
+        on_progress(Progress::Times { method: &job.method, done: 0, of: ROUNDS * todo.len() });
+        Ok((time(lab, warm, job, &mut shared), time(lab, warm, first, &mut shared)?.0))
     })?;
     let steps = ROUNDS * todo.len();
     for round in 0..ROUNDS {
@@ -162,14 +162,14 @@ pub(super) fn costs(
         for (i, (cost, candidate, job)) in todo.iter().enumerate() {
             if before != Some(*cost) {
                 before = Some(*cost);
-                first_cost = time(lab, warm, first, &mut lent)?;
+                first_cost = time(lab, warm, first, &mut shared)?;
             }
             let candidate = &mut costs[*cost].candidates[*candidate];
             if candidate.failed.is_some() {
                 continue;
             }
-            tell(Progress::Times { method: &job.method, done: round * todo.len() + i, of: steps });
-            let cost = if job.work == first.work { Ok(first_cost) } else { time(lab, warm, job, &mut lent) };
+            on_progress(Progress::Times { method: &job.method, done: round * todo.len() + i, of: steps });
+            let cost = if job.work == first.work { Ok(first_cost) } else { time(lab, warm, job, &mut shared) };
             match cost {
                 Ok((ms, bytes)) => {
                     candidate.ms.push(ms);
@@ -200,12 +200,13 @@ type Open<'j> = (usize, usize, &'j Job);
 /// Median of a job's frames, ms, and the bytes of its resources.
 type Timed = Result<(f64, u64), LabError>;
 
-/// The same of a candidate, and the first method's ms right after it.
-type Beside = Result<(Timed, f64), LabError>;
+/// Median and bytes of a candidate, and the first method's ms right after it.
+type CandidateTime = Result<(Timed, f64), LabError>;
 
-/// Of every method the two neighbouring candidates between which the first method's time lies, or all of no more than two.
-/// `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too slow.
-fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> Beside) -> Result<Vec<Open<'j>>, LabError> {
+/// For every method, the two neighbouring candidates whose times enclose the first method's; all where there are at
+/// most two. `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too
+/// slow.
+fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> CandidateTime) -> Result<Vec<Open<'j>>, LabError> {
     let mut left = Vec::new();
     for own in todo.chunk_by(|a, b| a.0 == b.0) {
         let (mut low, mut high) = (0, own.len() - 1);
@@ -249,13 +250,13 @@ pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite 
 }
 
 /// Times a job. Every session is a new one: memory holds one at a time.
-fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>) -> Timed {
+fn time(lab: &Lab, warm: &mut Warm, job: &Job, shared: &mut HashMap<String, ReusableParts>) -> Timed {
     let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
     let mut wanted: Vec<String> = loaded.graph.output.iter().chain(&loaded.graph.hdr).take(1).cloned().collect();
     if job.case.motion.in_voxels() {
         wanted.extend(oracle::wanted(&loaded.graph)?);
     }
-    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, lent.get(&job.method))?;
+    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, shared.get(&job.method))?;
     let cell = cell_of(&mut session, job)?;
     let mut lights = job.scene.lights.clone();
     // Sessions are built between the frames of one and the next: a GPU that waits for them falls to a low clock.
@@ -271,6 +272,6 @@ fn time(lab: &Lab, warm: &mut Warm, job: &Job, lent: &mut HashMap<String, Seed>)
     let frames = times.split_off(times.len().saturating_sub(FRAMES as usize));
     let sums = frames.iter().map(|t| t.passes.iter().map(|p| p.1).sum()).collect();
     let bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
-    lent.insert(job.method.clone(), session.lend());
+    shared.insert(job.method.clone(), session.share());
     Ok((median(sums), bytes))
 }

@@ -1,7 +1,7 @@
 //! Suite files: methods, and what moves (docs/stability.md).
 
+use super::chart_spec::{ChartFile, CostChart};
 use super::motion::Motion;
-use super::wish::{ChartFile, CostChart};
 use crate::camera_path::CameraPath;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
@@ -66,18 +66,18 @@ struct CaseFile {
 /// A method: what it sets over the suite's experiment.
 #[derive(Clone, Debug)]
 pub struct Method {
-    /// Its name.
+    /// Name of the method.
     pub name: String,
-    /// Its settings.
+    /// Settings of the method.
     pub set: Vec<Setting>,
 }
 
 /// Something that methods are looked at in.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// Its name.
+    /// Name of the case.
     pub name: String,
-    /// Of its variants, if it has some.
+    /// Name of the variant, if the case has some.
     pub variant: String,
     /// For people.
     pub about: String,
@@ -120,7 +120,7 @@ pub struct Suite {
     pub cases: Vec<Case>,
     /// The part of the light whose worst frames are kept as pictures.
     pub pictures: String,
-    /// What is charted beside the cases.
+    /// The chart of costs, besides the cases.
     pub chart: Option<CostChart>,
     /// Folder of the file.
     pub folder: PathBuf,
@@ -229,7 +229,7 @@ impl Suite {
         let chart = parsed
             .chart
             .as_ref()
-            .and_then(|c| c.value.wish(&methods, &cases).map_err(|why| errors.push(sources.error(c.at, why))).ok());
+            .and_then(|c| c.value.spec(&methods, &cases).map_err(|why| errors.push(sources.error(c.at, why))).ok());
         let experiment = match Experiment::read(&folder.join(&parsed.experiment.value)) {
             Ok(experiment) => Some(experiment),
             Err(found) if found.iter().all(|d| d.place.line == 0) => {

@@ -1,33 +1,33 @@
-//! Stability: how methods behave when camera, actors or light move, frame by frame beside the truth, and how they fail in
-//! pictures that do not move (docs/stability.md).
+//! Stability: how methods behave when camera, actors or light move, frame by frame against the reference, and how they
+//! fail in pictures that do not move (docs/stability.md).
 
 mod cameras;
 mod chart;
+mod chart_spec;
 mod cost;
 mod file;
 mod motion;
-mod moved;
 mod page;
+mod param_track;
 mod pictures;
 mod plan;
 mod plot;
 mod record;
+mod references;
 mod run;
 mod score;
 mod series;
 mod sheet;
 mod table;
-mod truth;
-mod wish;
 
 pub use cameras::Cameras;
+pub use chart_spec::{CostChart, EqualTime};
 pub use cost::{Candidate, Cost};
 pub use file::{Suite, check};
-pub use motion::{Moment, Motion, Unit};
-pub use moved::Moved;
+pub use motion::{FrameState, Motion, Unit};
+pub use param_track::ParamTrack;
 pub use plan::{Job, Options, plan};
 pub use record::{FrameScore, Measured, Outcome, PartResult, Record, Report, Worst};
-pub use run::{Progress, Tally, run};
+pub use run::{Counts, Progress, run};
 pub use score::{Change, Flicker, Step, change, display, flicker, settling, step};
 pub use sheet::{Failure, failures, sheet, table as failure_table};
-pub use wish::{CostChart, EqualTime};

@@ -11,7 +11,7 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Motion {
-    /// Nothing.
+    /// Nothing moves.
     #[default]
     Still,
     /// The camera, by so much a frame.
@@ -31,11 +31,11 @@ pub enum Motion {
         /// Upwards, degrees.
         #[serde(default)]
         pitch: f32,
-        /// Of the lengths.
+        /// Unit of the lengths.
         #[serde(default)]
         unit: Unit,
     },
-    /// What is animated in the scene.
+    /// The animated instances of the scene.
     Actors {
         /// Time from frame to frame, s.
         step: f64,
@@ -84,7 +84,7 @@ pub enum Motion {
     },
     /// A parameter of the method's graph.
     Parameter {
-        /// Its name.
+        /// Name of the parameter.
         name: String,
         /// What a number or vector grows by, a frame.
         #[serde(default)]
@@ -110,12 +110,12 @@ pub enum Unit {
     Voxels,
 }
 
-/// What a frame sees: two frames with the same one have the same truth.
+/// State of the scene at a frame: two frames with equal states have the same reference.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moment {
-    /// From where.
+pub struct FrameState {
+    /// The camera.
     pub camera: PlacedCamera,
-    /// s.
+    /// Time of the scene, s.
     pub time: f64,
     /// The scene's lights.
     pub lights: Vec<Light>,
@@ -169,7 +169,7 @@ impl Motion {
     }
 
     /// The scene with its actors as large as the motion says.
-    pub fn stage(&self, scene: &Scene) -> Option<Scene> {
+    pub fn scaled_scene(&self, scene: &Scene) -> Option<Scene> {
         let Motion::Actors { scale, .. } = self else { return None };
         if *scale == one() {
             return None;
@@ -194,19 +194,19 @@ impl Motion {
         }
     }
 
-    /// Time from frame to frame as the method is told it, s.
+    /// Time from frame to frame as the method gets it, s.
     pub fn delta(&self) -> f64 {
         if let Motion::Actors { step, .. } = self { *step } else { 0.0 }
     }
 
     /// Frame `number`, where 0 is the first measured one and those before are negative: what moves has moved before. `cell`
     /// is the edge of a cell, m.
-    pub fn moment(&self, start: &Moment, number: i64, cell: f32) -> Moment {
+    pub fn frame_state(&self, start: &FrameState, number: i64, cell: f32) -> FrameState {
         let n = number as f32;
-        let mut moment = start.clone();
+        let mut state = start.clone();
         if number == 0 && !matches!(self, Motion::Switch { .. }) {
             // To the bit: cases that begin alike share a reference.
-            return moment;
+            return state;
         }
         match self {
             Motion::Still | Motion::Parameter { .. } | Motion::Cut { .. } | Motion::Path { .. } => {}
@@ -220,12 +220,12 @@ impl Motion {
                 let eye = eye + (forward * *dolly + right * *strafe + above * *rise) * length;
                 let turn = Quat::from_axis_angle(above, (n * yaw).to_radians())
                     * Quat::from_axis_angle(right, (n * pitch).to_radians());
-                moment.camera.eye = eye.into();
-                moment.camera.target = (eye + turn * view).into();
+                state.camera.eye = eye.into();
+                state.camera.target = (eye + turn * view).into();
             }
-            Motion::Actors { step, .. } => moment.time = start.time + number as f64 * step,
+            Motion::Actors { step, .. } => state.time = start.time + number as f64 * step,
             Motion::Light { name, shift, turn } => {
-                for light in moment.lights.iter_mut().filter(|l| l.name == *name) {
+                for light in state.lights.iter_mut().filter(|l| l.name == *name) {
                     light.position += Vec3::from(*shift) * n;
                     let turned = Quat::from_rotation_y((n * turn).to_radians()) * light.direction;
                     light.direction = if *turn == 0.0 { light.direction } else { turned.normalize_or(light.direction) };
@@ -233,16 +233,16 @@ impl Motion {
             }
             Motion::Switch { name, at, from, to } => {
                 let part = if number < *at as i64 { *from } else { *to };
-                for light in moment.lights.iter_mut().filter(|l| l.name == *name) {
+                for light in state.lights.iter_mut().filter(|l| l.name == *name) {
                     light.color *= part;
                 }
             }
         }
-        moment
+        state
     }
 
-    /// In a few words.
-    pub fn told(&self) -> String {
+    /// The motion in a few words.
+    pub fn describe(&self) -> String {
         match self {
             Motion::Still => "still".into(),
             Motion::Camera { dolly, strafe, rise, yaw, pitch, unit } => {

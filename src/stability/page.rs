@@ -23,7 +23,7 @@ pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> St
     );
     let reference = match report.reference {
         Some((samples, bounces)) => format!("path traced, {samples} samples a pixel, {bounces} bounces, one seed"),
-        None => "none: changes are told only where the truth does not change".into(),
+        None => "none: changes are measured only where the reference does not change".into(),
     };
     let devices: std::collections::BTreeSet<&str> = report.results.iter().map(|r| r.device.name.as_str()).collect();
     let devices = devices.into_iter().collect::<Vec<_>>().join(", ");
@@ -125,9 +125,9 @@ fn table(out: &mut String, part: &str, records: &[&Record]) {
             let _ = write!(out, "<td class=\"bad\" colspan=\"{}\">{}</td>", columns.len(), escaped(why));
         }
         for c in columns.iter().filter(|_| r.measured().is_some()) {
-            let untold = c.0 == "E_t"
+            let mark = c.0 == "E_t"
                 && r.measured().and_then(|m| m.parts.get(part)).is_some_and(|p| p.told_apart == Some(false));
-            let class = if untold { " class=\"noise\"" } else { "" };
+            let class = if mark { " class=\"noise\"" } else { "" };
             let _ = write!(out, "<td{class}>{}</td>", found(r, c).map_or(String::new(), short));
         }
         *out += "</tr>\n";

@@ -21,7 +21,12 @@ pub(super) struct Panels {
 impl Panels {
     /// Of radiance: what was before, what is, the reference, and the difference: of the changes where there is a frame
     /// before, of the pictures otherwise.
-    pub fn new(before: Option<&Linear>, x: &Linear, truth: Option<&Linear>, truth_before: Option<&Linear>) -> Panels {
+    pub fn new(
+        before: Option<&Linear>,
+        x: &Linear,
+        reference: Option<&Linear>,
+        reference_before: Option<&Linear>,
+    ) -> Panels {
         let shown = |p: &Linear| -> Vec<[f64; 3]> {
             p.rgb.iter().map(|c| c.map(|v| display(Kind::Radiance, if v.is_finite() { v } else { 0.0 }))).collect()
         };
@@ -32,20 +37,20 @@ impl Panels {
         let mut less = |list: &[[f64; 3]], sign: f64| {
             difference.iter_mut().enumerate().for_each(|(i, d)| *d -= sign * mean(list, i));
         };
-        let truth = truth.map(shown);
+        let reference = reference.map(shown);
         match before.map(shown) {
             Some(before) => {
                 less(&before, 1.0);
-                if let (Some(r), Some(old)) = (&truth, truth_before.map(shown)) {
+                if let (Some(r), Some(old)) = (&reference, reference_before.map(shown)) {
                     less(r, 1.0);
                     less(&old, -1.0);
                 }
                 pictures.push(("the frame before", before));
             }
-            None => less(truth.as_deref().unwrap_or(&now), 1.0),
+            None => less(reference.as_deref().unwrap_or(&now), 1.0),
         }
         pictures.push(("the frame", now));
-        pictures.extend(truth.map(|t| ("reference", t)));
+        pictures.extend(reference.map(|t| ("reference", t)));
         Panels { size: (x.size.0 as usize, x.size.1 as usize), pictures, difference }
     }
 

@@ -2,8 +2,8 @@
 
 use super::cameras::Cameras;
 use super::file::{Case, Method, Suite};
-use super::motion::Moment;
-use super::moved::Moved;
+use super::motion::FrameState;
+use super::param_track::ParamTrack;
 use crate::capture::{hex, scene_hash};
 use crate::experiment::{Experiment, check_size};
 use crate::graph::source::{At, Diagnostic, Loc};
@@ -11,7 +11,7 @@ use crate::lab::{Home, LabError, camera_of, parts_of};
 use crate::measure::{Frames, Warm};
 use crate::reference;
 use crate::scene::Scene;
-use crate::sweep::Lister;
+use crate::sweep::PointBuilder;
 use crate::vulkan::DeviceInfo;
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
@@ -51,20 +51,20 @@ pub struct Job {
     pub method: String,
     /// The case.
     pub case: Case,
-    /// What is run.
+    /// The experiment that is run.
     pub experiment: Experiment,
     /// The scene, lit as the experiment says.
     pub scene: Arc<Scene>,
     /// Its content as a number.
     pub scene_hash: String,
     /// Camera, time and light before anything moved.
-    pub start: Moment,
+    pub start: FrameState,
     /// Cameras that do not move on from the start.
     pub cameras: Option<Cameras>,
     /// The parameter that moves.
-    pub moved: Option<Moved>,
-    /// Whether the graph of references has it too, so that the truth moves with it.
-    pub truth_moves: bool,
+    pub track: Option<ParamTrack>,
+    /// Whether the graph of references has it too, so that the reference moves with it.
+    pub reference_moves: bool,
     /// Frames measured.
     pub frames: usize,
 }
@@ -76,7 +76,7 @@ pub struct Job {
 pub fn plan(
     home: &Home,
     device: &DeviceInfo,
-    lister: &mut Lister,
+    builder: &mut PointBuilder,
     warm: &mut Warm,
     suite: &Suite,
     options: &Options,
@@ -87,13 +87,13 @@ pub fn plan(
         return Err(LabError::Request(format!("--only {name}: the suite's cases are {}", known.join(", "))));
     }
     // What the frames are compared with is part of a result.
-    let truth = if options.reference { reference::shaders(home)? } else { String::new() };
+    let shaders = if options.reference { reference::shaders(home)? } else { String::new() };
     let mut jobs: Vec<Job> = Vec::new();
     let mut errors: Vec<Diagnostic> = Vec::new();
     let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
     for case in suite.cases.iter().filter(wanted) {
         for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
-            match job(home, device, lister, warm, suite, options, (method, case, &truth)) {
+            match job(home, device, builder, warm, suite, options, (method, case, &shaders)) {
                 Ok(job) => jobs.push(job),
                 Err(LabError::Input(list)) => {
                     for diagnostic in list {
@@ -112,11 +112,11 @@ pub fn plan(
 fn job(
     home: &Home,
     device: &DeviceInfo,
-    lister: &mut Lister,
+    builder: &mut PointBuilder,
     warm: &mut Warm,
     suite: &Suite,
     options: &Options,
-    (method, case, truth): (&Method, &Case, &str),
+    (method, case, shaders): (&Method, &Case, &str),
 ) -> Result<Job, LabError> {
     let mut params = |graph: &str| warm.graph(home, graph).ok().map(|l| l.graph.params.clone());
     let mut experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input)?;
@@ -154,37 +154,37 @@ fn job(
         let (part, known) = (&suite.pictures, names.join(", "));
         return Err(wrong(format!("no pictures of '{part}': the parts of graph '{}' are {known}", loaded.graph.name)));
     }
-    let listed = lister.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
-    case.motion.check(&listed.scene).map_err(wrong)?;
-    let params = listed.experiment.params_over(&loaded.graph.params)?;
-    let moved = Moved::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
-    let truth_moves = match &moved {
-        Some(moved) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&moved.name).is_some(),
+    let point = builder.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
+    case.motion.check(&point.scene).map_err(wrong)?;
+    let params = point.experiment.params_over(&loaded.graph.params)?;
+    let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
+    let reference_moves = match &track {
+        Some(track) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&track.name).is_some(),
         None => false,
     };
     if let Some(at) = case.motion.event().filter(|at| frames.saturating_sub(2) < *at) {
         return Err(wrong(format!("what happens at frame {at} needs two frames more, there are {frames}")));
     }
-    let cameras = Cameras::of(&case.motion, &listed.experiment, &listed.scene, &suite.folder)?;
-    let (scene, hash) = match case.motion.stage(&listed.scene) {
+    let cameras = Cameras::of(&case.motion, &point.experiment, &point.scene, &suite.folder)?;
+    let (scene, hash) = match case.motion.scaled_scene(&point.scene) {
         Some(staged) => {
             let hash = scene_hash(&staged);
             (Arc::new(staged), hash)
         }
-        None => (listed.scene.clone(), listed.subject.sha256.clone()),
+        None => (point.scene.clone(), point.subject.sha256.clone()),
     };
-    let start = Moment {
-        camera: camera_of(&listed.experiment, &scene)?,
-        time: listed.experiment.time,
+    let start = FrameState {
+        camera: camera_of(&point.experiment, &scene)?,
+        time: point.experiment.time,
         lights: scene.lights.clone(),
         setting: None,
     };
     let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
     let work =
-        number(&[listed.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
+        number(&[point.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
     let id = number(&[
         work.clone(),
-        format!("{samples:?} {} {} {} {} {truth}", suite.bounces, suite.seed, case.voxels, suite.pictures),
+        format!("{samples:?} {} {} {} {} {shaders}", suite.bounces, suite.seed, case.voxels, suite.pictures),
         // Two names of the same thing are two rows.
         format!("{:?} {:?} {:?}", method.name, case.name, case.variant),
     ]);
@@ -193,13 +193,13 @@ fn job(
         work,
         method: method.name.clone(),
         case: case.clone(),
-        experiment: listed.experiment,
+        experiment: point.experiment,
         scene,
         scene_hash: hash,
         start,
         cameras,
-        moved,
-        truth_moves,
+        track,
+        reference_moves,
         frames,
     })
 }
@@ -217,11 +217,11 @@ fn number(facts: &[String]) -> String {
 }
 
 impl Job {
-    /// What frame `number` sees; see [`super::Motion::moment`].
-    pub fn moment(&self, number: i64, cell: f32) -> Moment {
-        let setting = self.moved.as_ref().filter(|_| self.truth_moves).map(|m| (m.name.clone(), m.at(number)));
-        let moment = self.case.motion.moment(&self.start, number, cell);
-        let camera = self.cameras.as_ref().map_or(moment.camera, |c| c.at(&self.start.camera, number));
-        Moment { camera, setting, ..moment }
+    /// What frame `number` sees; see [`super::Motion::frame_state`].
+    pub fn frame_state(&self, number: i64, cell: f32) -> FrameState {
+        let setting = self.track.as_ref().filter(|_| self.reference_moves).map(|m| (m.name.clone(), m.at(number)));
+        let state = self.case.motion.frame_state(&self.start, number, cell);
+        let camera = self.cameras.as_ref().map_or(state.camera, |c| c.at(&self.start.camera, number));
+        FrameState { camera, setting, ..state }
     }
 }

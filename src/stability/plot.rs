@@ -1,9 +1,9 @@
 //! Static error against stability with costs: rows, table and chart.
 
+use super::chart_spec::CostChart;
 use super::cost::Cost;
 use super::record::{Measured, PartResult, Report};
 use super::table::{mebibytes, text, write};
-use super::wish::CostChart;
 use crate::lab::LabError;
 use crate::report::{COLORS, escaped, short, ticks};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
@@ -34,11 +34,11 @@ struct Score {
 /// A method in a group.
 struct Row {
     method: String,
-    /// What was chosen for it.
+    /// The value that was chosen for the method.
     setting: String,
     ms: Option<f64>,
     ratio: Option<f64>,
-    /// It was to be as fast as the first, and is not.
+    /// Whether the method was to be as fast as the first, and is not.
     off: bool,
     memory_bytes: Option<u64>,
     error: Option<Score>,
@@ -47,7 +47,7 @@ struct Row {
 
 /// The chart of a suite's costs.
 pub(super) struct Plot<'a> {
-    wish: &'a CostChart,
+    spec: &'a CostChart,
     groups: Vec<(String, Vec<Row>)>,
     /// Panels side by side; none where no method has both values.
     pub svg: Option<String>,
@@ -57,18 +57,18 @@ impl Plot<'_> {
     /// From the results of a suite.
     ///
     /// # Errors
-    /// None that results can cause.
-    pub fn new<'a>(report: &Report, wish: &'a CostChart) -> Result<Plot<'a>, LabError> {
-        let rows = |list: &[String]| list.iter().map(|m| row(report, wish, m)).collect();
-        let groups: Vec<(String, Vec<Row>)> = wish.groups.iter().map(|g| (g.0.clone(), rows(&g.1))).collect();
-        let svg = draw(wish, &groups).map_err(|e| LabError::Request(format!("cannot draw the chart of costs: {e}")))?;
-        Ok(Plot { wish, groups, svg })
+    /// Drawing into memory gives none, whatever the results.
+    pub fn new<'a>(report: &Report, spec: &'a CostChart) -> Result<Plot<'a>, LabError> {
+        let rows = |list: &[String]| list.iter().map(|m| row(report, spec, m)).collect();
+        let groups: Vec<(String, Vec<Row>)> = spec.groups.iter().map(|g| (g.0.clone(), rows(&g.1))).collect();
+        let svg = draw(spec, &groups).map_err(|e| LabError::Request(format!("cannot draw the chart of costs: {e}")))?;
+        Ok(Plot { spec, groups, svg })
     }
 
     /// `cost.csv`.
     pub fn csv(&self) -> Result<String, LabError> {
         let header = ["group", "method", "setting", "GPU ms", "part of the first's ms", "memory MiB"].map(String::from);
-        let scores = ["relMSE", "relMSE noise", "E_t", "E_t noise"].map(|c| format!("{} {c}", self.wish.part));
+        let scores = ["relMSE", "relMSE noise", "E_t", "E_t noise"].map(|c| format!("{} {c}", self.spec.part));
         let mut lines = vec![header.into_iter().chain(scores).collect::<Vec<_>>()];
         for (group, rows) in &self.groups {
             lines.extend(rows.iter().map(|r| {
@@ -90,10 +90,10 @@ impl Plot<'_> {
              both are better towards the lower left. Times and memory are of frames that make the picture alone, timed \
              in '{}'. A bar reaches to what is left without the noise that the reference adds on average; hollow: less \
              than {NOISE_FACTOR} times the noise between its halves. <a href=\"cost.csv\">cost.csv</a></p>",
-            escaped(&self.wish.part),
-            escaped(&self.wish.error.join(", ")),
-            escaped(&self.wish.motions.join(", ")),
-            escaped(self.wish.motions.first().map_or("", String::as_str))
+            escaped(&self.spec.part),
+            escaped(&self.spec.error.join(", ")),
+            escaped(&self.spec.motions.join(", ")),
+            escaped(self.spec.motions.first().map_or("", String::as_str))
         );
         match &self.svg {
             Some(svg) => drop(writeln!(out, "<figure>{svg}</figure>")),
@@ -114,7 +114,7 @@ impl Plot<'_> {
                 let _ = write!(out, "<td>{}</td><td{off}>{ratio}</td>", number(r.ms));
                 let _ = write!(out, "<td>{}</td>", r.memory_bytes.map_or(String::new(), mebibytes));
                 for score in [r.error, r.change] {
-                    let noisy = if score.is_some_and(|s| s.untold()) { " class=\"noise\"" } else { "" };
+                    let noisy = if score.is_some_and(|s| s.within_noise()) { " class=\"noise\"" } else { "" };
                     let (value, noise) = (number(score.map(|s| s.value)), number(score.map(|s| s.noise)));
                     let _ = write!(out, "<td{noisy}>{value}</td><td>{noise}</td>");
                 }
@@ -122,7 +122,7 @@ impl Plot<'_> {
             }
             out += "</table></div>\n";
         }
-        if let Some(equal) = &self.wish.equal_time
+        if let Some(equal) = &self.spec.equal_time
             && self.groups.iter().flat_map(|g| &g.1).any(|r| r.off)
         {
             let percent = 100.0 * equal.tolerance;
@@ -134,16 +134,16 @@ impl Plot<'_> {
 }
 
 impl Score {
-    fn untold(&self) -> bool {
+    fn within_noise(&self) -> bool {
         self.value < NOISE_FACTOR * self.noise
     }
 }
 
-fn row(report: &Report, wish: &CostChart, method: &str) -> Row {
+fn row(report: &Report, spec: &CostChart, method: &str) -> Row {
     let cost: Option<&Cost> = report.costs.iter().find(|c| c.method == method);
     let taken = cost.and_then(Cost::taken);
     let ratio = taken.and_then(|c| c.ratio());
-    let tolerance = wish.equal_time.as_ref().filter(|_| !wish.varied(method).is_empty()).map(|e| e.tolerance);
+    let tolerance = spec.equal_time.as_ref().filter(|_| !spec.varied(method).is_empty()).map(|e| e.tolerance);
     Row {
         method: method.to_string(),
         setting: match (cost, taken) {
@@ -155,12 +155,12 @@ fn row(report: &Report, wish: &CostChart, method: &str) -> Row {
         off: tolerance.zip(ratio).is_some_and(|(t, r)| (r - 1.0).abs() > t),
         memory_bytes: taken.map(|c| c.memory_bytes),
         // The halves differ by four times the variance of their mean (half the samples each, and two of them).
-        error: values(report, wish, &wish.error, method, |p| Some((p.scores.as_ref()?.relmse, p.noise?))).map(|list| {
+        error: values(report, spec, &spec.error, method, |p| Some((p.scores.as_ref()?.relmse, p.noise?))).map(|list| {
             let mean = |f: fn(&(f64, f64)) -> f64| list.iter().map(f).sum::<f64>() / list.len() as f64;
             let (value, noise) = (mean(|v| v.0), mean(|v| v.1));
             Score { value, noise, without: (value - noise / 4.0).max(0.0) }
         }),
-        change: values(report, wish, &wish.motions, method, |p| Some((p.e?, p.e_noise?))).map(|list| {
+        change: values(report, spec, &spec.motions, method, |p| Some((p.e?, p.e_noise?))).map(|list| {
             let square = |f: fn(&(f64, f64)) -> f64| list.iter().map(|v| f(v).powi(2)).sum::<f64>() / list.len() as f64;
             let (value, noise) = (square(|v| v.0), square(|v| v.1));
             Score { value: value.sqrt(), noise: noise.sqrt(), without: (value - noise / 4.0).max(0.0).sqrt() }
@@ -171,7 +171,7 @@ fn row(report: &Report, wish: &CostChart, method: &str) -> Row {
 /// A method's values in all variants of some cases; none if one is missing: a mean over other cases is another number.
 fn values(
     report: &Report,
-    wish: &CostChart,
+    spec: &CostChart,
     cases: &[String],
     method: &str,
     value: impl Fn(&PartResult) -> Option<(f64, f64)>,
@@ -181,7 +181,7 @@ fn values(
         let own = report.results.iter().filter(|r| r.case == *case && r.method == method);
         let before = list.len();
         for record in own {
-            let part = record.measured().and_then(|m: &Measured| m.parts.get(&wish.part))?;
+            let part = record.measured().and_then(|m: &Measured| m.parts.get(&spec.part))?;
             list.push(value(part).filter(|v| v.0.is_finite() && v.1.is_finite())?);
         }
         (list.len() > before).then_some(())?;
@@ -246,7 +246,7 @@ impl Ranged for Axis {
 type Failure = Box<dyn std::error::Error>;
 
 /// A panel a group, on equal axes; a colour for each place in a group.
-fn draw(wish: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String>, Failure> {
+fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String>, Failure> {
     type Dot<'a> = (&'a str, Score, Score, RGBColor);
     fn dots(rows: &[Row]) -> Vec<Dot<'_>> {
         let colors = COLORS.iter().cycle();
@@ -277,8 +277,8 @@ fn draw(wish: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
                 .build_cartesian_2d(x.clone(), y.clone())?;
             chart
                 .configure_mesh()
-                .x_desc(x.title(&format!("relMSE of {}, standing still", wish.part)))
-                .y_desc(y.title(&format!("E_t of {}, moving", wish.part)))
+                .x_desc(x.title(&format!("relMSE of {}, standing still", spec.part)))
+                .y_desc(y.title(&format!("E_t of {}, moving", spec.part)))
                 .x_label_formatter(&|v| short(*v))
                 .y_label_formatter(&|v| short(*v))
                 .axis_desc_style((FONT, 15))
@@ -293,7 +293,7 @@ fn draw(wish: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
                 let at = (error.value, change.value);
                 let bars = [vec![(error.without, at.1), at], vec![(at.0, change.without), at]];
                 chart.draw_series(bars.map(|bar| PathElement::new(bar, color.stroke_width(1))))?;
-                let hollow = error.untold() || change.untold();
+                let hollow = error.within_noise() || change.within_noise();
                 let inside = if hollow { WHITE.filled() } else { color.filled() };
                 chart.draw_series([Circle::new(at, 5, inside), Circle::new(at, 5, color.stroke_width(2))])?;
                 // Labels stand beside their dots, on the left above the bar, and below those of dots that are close.

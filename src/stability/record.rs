@@ -24,13 +24,13 @@ const MAX_FILE: u64 = 64 << 20;
 pub struct FrameScore {
     /// From 0, the first measured one.
     pub frame: usize,
-    /// Against the frame before; none at the first, and where the truth's change is not known.
+    /// Against the frame before; none at the first, and where the reference's change is not known.
     pub change: Option<Change>,
     /// E_t between the two halves of the reference.
     pub noise: Option<f64>,
     /// Mean luminance.
     pub mean: Option<f64>,
-    /// That of the reference.
+    /// Mean luminance of the reference.
     pub reference_mean: Option<f64>,
     /// relMSE against the reference.
     pub relmse: Option<f64>,
@@ -41,7 +41,7 @@ pub struct FrameScore {
 pub struct PartResult {
     /// Root of the mean square of the frames' E_t.
     pub e: Option<f64>,
-    /// The same between the halves of the references.
+    /// E_t between the halves of the references.
     pub e_noise: Option<f64>,
     /// Whether `e` is at least four times `e_noise`.
     pub told_apart: Option<bool>,
@@ -66,12 +66,12 @@ pub struct PartResult {
     pub frames: Vec<FrameScore>,
 }
 
-/// The frame that is farthest from its truth.
+/// The frame that is farthest from its reference.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// The part of the light.
     pub part: String,
-    /// Its number.
+    /// Number of the frame.
     pub frame: usize,
     /// What the panels of its picture show, from the left.
     pub panels: Vec<String>,
@@ -79,7 +79,7 @@ pub struct Worst {
     pub full: f64,
 }
 
-/// What was measured.
+/// The scores of a method in a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Median of the frames' time on the device, ms.
@@ -102,7 +102,7 @@ pub struct Measured {
     pub warnings: Vec<String>,
 }
 
-/// How it ended.
+/// The result of a method in a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -139,7 +139,7 @@ pub struct Record {
     pub frames: usize,
     /// Device.
     pub device: DeviceStats,
-    /// How it ended.
+    /// Result of the method in the case.
     pub outcome: Outcome,
 }
 
@@ -152,7 +152,7 @@ pub struct Report {
     pub version: String,
     /// Name of the suite.
     pub suite: String,
-    /// Its text.
+    /// Text of the suite's file.
     pub text: String,
     /// Samples a pixel and bounces of the references; none without.
     pub reference: Option<(u64, u32)>,
@@ -164,7 +164,7 @@ pub struct Report {
 }
 
 impl Record {
-    /// What was measured, if it was.
+    /// The scores, if there are any.
     pub fn measured(&self) -> Option<&Measured> {
         match &self.outcome {
             Outcome::Done(measured) => Some(measured),

@@ -1,30 +1,30 @@
 //! Running a suite: every method in every case, one after another, each kept as soon as it is finished.
 
+use super::chart_spec::CostChart;
 use super::file::Suite;
-use super::motion::{Moment, Motion};
+use super::motion::{FrameState, Motion};
 use super::pictures::Panels;
 use super::plan::{Job, Options, plan};
 use super::plot::Plot;
 use super::record::{Folder, Measured, Outcome, RESULT_SCHEMA, Record, Report, SCHEMA, Worst, json, lasting};
+use super::references::{FrameReference, References, Tracing};
 use super::series::{Known, PartSeries};
-use super::truth::{Tracing, Truth, Truths};
-use super::wish::CostChart;
 use super::{chart, cost, page, table};
 use crate::graph::param::Value;
-use crate::lab::{Lab, LabError, Seed, Session, parts_of};
+use crate::lab::{Lab, LabError, ReusableParts, Session, parts_of};
 use crate::measure::Warm;
 use crate::metrics::Linear;
 use crate::oracle::{self, Surfaces};
 use crate::reference::Gathered;
 use crate::scene::{Light, Scene};
 use crate::stats::DeviceStats;
-use crate::sweep::Lister;
+use crate::sweep::PointBuilder;
 use crate::vulkan::VulkanError;
 use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
-/// What a suite tells while it runs.
+/// Progress that a suite reports while it runs.
 pub enum Progress<'a> {
     /// Methods in cases: to measure, and finished before.
     Begins {
@@ -35,7 +35,7 @@ pub enum Progress<'a> {
     },
     /// A method is timed for the chart of costs.
     Times {
-        /// Its name.
+        /// Name of the method.
         method: &'a str,
         /// Measurements before it.
         done: usize,
@@ -50,9 +50,9 @@ pub enum Progress<'a> {
     Finished(&'a Record),
 }
 
-/// How far a suite is.
+/// Counts of a suite's results.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct Counts {
     /// Measured.
     pub done: usize,
     /// Failed.
@@ -69,40 +69,40 @@ pub fn run(
     open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
     suite: &Suite,
     options: &Options,
-    tell: &mut dyn FnMut(Progress),
-) -> Result<(Tally, Report), LabError> {
+    on_progress: &mut dyn FnMut(Progress),
+) -> Result<(Counts, Report), LabError> {
     let mut lab = reopen()?;
     let mut warm = Warm::default();
     let home = lab.home.clone();
     // Opens each scene once for all plans.
-    let mut lister = Lister::new(&home, open_scene);
-    let mut jobs = plan(&home, &lab.gpu.info, &mut lister, &mut warm, suite, options)?;
+    let mut builder = PointBuilder::new(&home, open_scene);
+    let mut jobs = plan(&home, &lab.gpu.info, &mut builder, &mut warm, suite, options)?;
     let mut costs = Vec::new();
     if let Some(chart) = &suite.chart {
-        costs = cost::costs(&lab, &mut lister, &mut warm, (suite, chart), options, tell)?;
+        costs = cost::costs(&lab, &mut builder, &mut warm, (suite, chart), options, on_progress)?;
         let chosen = cost::chosen(suite, chart, &costs);
-        jobs = plan(&home, &lab.gpu.info, &mut lister, &mut warm, &chosen, options)?;
+        jobs = plan(&home, &lab.gpu.info, &mut builder, &mut warm, &chosen, options)?;
     }
     let folder = Folder(options.folder.clone());
     let samples = options.samples.unwrap_or(suite.samples);
     let tracing = Tracing { samples, bounces: suite.bounces, seed: suite.seed };
     let (reference, pictures) = (options.reference, suite.pictures.clone());
-    let mut runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), reference, pictures };
+    let mut runner = Runner { references: References::new(tracing), shared: HashMap::new(), reference, pictures };
     let finished: Vec<Option<Record>> = jobs.iter().map(|j| folder.read(&j.id)).collect();
     let before = finished.iter().flatten().count();
-    tell(Progress::Begins { todo: jobs.len() - before, before });
+    on_progress(Progress::Begins { todo: jobs.len() - before, before });
     let mut results = Vec::new();
-    let mut tally = Tally::default();
+    let mut counts = Counts::default();
     for (job, kept) in jobs.iter().zip(finished) {
         let record = match kept {
             Some(record) => record,
             None => {
-                tell(Progress::Runs(job));
-                let result = runner.measure(&lab, &mut warm, job, tell);
+                on_progress(Progress::Runs(job));
+                let result = runner.measure(&lab, &mut warm, job, on_progress);
                 if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
                     warm.leave_device();
                     lab = reopen()?;
-                    runner = Runner { truths: Truths::new(tracing), lent: HashMap::new(), ..runner };
+                    runner = Runner { references: References::new(tracing), shared: HashMap::new(), ..runner };
                 }
                 let (outcome, picture) = match result {
                     Ok((measured, picture)) => (Outcome::Done(Box::new(measured)), picture),
@@ -110,14 +110,14 @@ pub fn run(
                 };
                 let record = record_of(&lab, job, outcome);
                 folder.write(&record, picture.as_deref())?;
-                tell(Progress::Finished(&record));
+                on_progress(Progress::Finished(&record));
                 // As the next run will read it: numbers that JSON rounds in the last place are the same in all tables.
                 folder.read(&record.id).unwrap_or(record)
             }
         };
         match record.outcome {
-            Outcome::Done(_) => tally.done += 1,
-            Outcome::Failed(_) => tally.failed += 1,
+            Outcome::Done(_) => counts.done += 1,
+            Outcome::Failed(_) => counts.failed += 1,
         }
         results.push(record);
     }
@@ -131,13 +131,13 @@ pub fn run(
         results,
     };
     write(&report, suite.chart.as_ref(), options)?;
-    Ok((tally, report))
+    Ok((counts, report))
 }
 
 /// Tables, JSON, charts and the page.
-fn write(report: &Report, wish: Option<&CostChart>, options: &Options) -> Result<(), LabError> {
+fn write(report: &Report, spec: Option<&CostChart>, options: &Options) -> Result<(), LabError> {
     let charts = chart::charts(report)?;
-    let plot = wish.map(|wish| Plot::new(report, wish)).transpose()?;
+    let plot = spec.map(|spec| Plot::new(report, spec)).transpose()?;
     let mut files = vec![
         ("stability.json".to_string(), json(report)?),
         ("stability.csv".into(), table::rows(report)?.into_bytes()),
@@ -159,7 +159,7 @@ fn record_of(lab: &Lab, job: &Job, outcome: Outcome) -> Record {
         case: job.case.name.clone(),
         variant: job.case.variant.clone(),
         about: job.case.about.clone(),
-        motion: job.case.motion.told(),
+        motion: job.case.motion.describe(),
         method: job.method.clone(),
         scene: job.scene.name.clone(),
         size: job.experiment.size.into(),
@@ -172,8 +172,8 @@ fn record_of(lab: &Lab, job: &Job, outcome: Outcome) -> Record {
 
 /// What one method in a case leaves to the next: references, and each method's pipelines.
 struct Runner {
-    truths: Truths,
-    lent: HashMap<String, Seed>,
+    references: References,
+    shared: HashMap<String, ReusableParts>,
     reference: bool,
     /// The part whose worst frames are kept.
     pictures: String,
@@ -192,7 +192,7 @@ impl Runner {
         lab: &Lab,
         warm: &mut Warm,
         job: &Job,
-        tell: &mut dyn FnMut(Progress),
+        on_progress: &mut dyn FnMut(Progress),
     ) -> Result<(Measured, Option<Vec<u8>>), LabError> {
         let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
         let motion = &job.case.motion;
@@ -200,19 +200,19 @@ impl Runner {
         if job.case.voxels && loaded.graph.voxels.is_some() || motion.in_voxels() {
             wanted.extend(oracle::wanted(&loaded.graph)?);
         }
-        let seed = self.lent.get(&job.method);
-        let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, seed)?;
+        let reuse = self.shared.get(&job.method);
+        let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, reuse)?;
         let cell = cell_of(&mut session, job)?;
         let (mut times, mut warnings) = (Vec::new(), Vec::new());
         let mut series: BTreeMap<String, PartSeries> = BTreeMap::new();
         let mut worst: Option<Bad> = None;
         let mut samples = 0;
         let mut lights = job.scene.lights.clone();
-        let mut before: Option<(Moment, Option<Arc<Truth>>)> = None;
+        let mut before: Option<(FrameState, Option<Arc<FrameReference>>)> = None;
         let warmup = i64::try_from(job.case.warmup).unwrap_or(0);
         let frames = i64::try_from(job.frames).unwrap_or(1);
         for number in -warmup..frames {
-            let moment = place(lab, &mut session, job, number, cell, &mut lights)?;
+            let state = place(lab, &mut session, job, number, cell, &mut lights)?;
             times.extend(session.frame(motion.delta())?);
             let Ok(frame) = usize::try_from(number) else { continue };
             times.extend(session.finish()?);
@@ -221,30 +221,30 @@ impl Runner {
                     warnings.push(message);
                 }
             }
-            let changed = before.as_ref().is_none_or(|b| b.0 != moment);
-            let truth = match (&before, self.reference) {
+            let changed = before.as_ref().is_none_or(|b| b.0 != state);
+            let reference = match (&before, self.reference) {
                 (_, false) => None,
-                (Some((_, Some(truth))), true) if !changed => Some(truth.clone()),
-                _ => Some(self.truths.get(lab, warm, job, &moment, &mut |now| tell(Progress::Gathers(now)))?),
+                (Some((_, Some(reference))), true) if !changed => Some(reference.clone()),
+                _ => Some(self.references.get(lab, warm, job, &state, &mut |now| on_progress(Progress::Gathers(now)))?),
             };
-            if let Some(truth) = &truth {
-                if frame > 0 && truth.samples != samples {
+            if let Some(reference) = &reference {
+                if frame > 0 && reference.samples != samples {
                     let unequal =
                         "references have different numbers of samples, some were kept with more: noise is larger";
                     if !warnings.iter().any(|w| w == unequal) {
                         warnings.push(unequal.into());
                     }
                 }
-                samples = truth.samples;
+                samples = reference.samples;
             }
             let earlier = before.as_ref().and_then(|b| b.1.as_ref());
             for (part, x) in session.parts()? {
                 let lost = x.rgb.iter().filter(|c| !c.iter().all(|v| v.is_finite())).count();
-                let told = format!("pixels of '{part}' are no number and left out of its scores");
-                if lost > 0 && !warnings.iter().any(|w| w.ends_with(&told)) {
-                    warnings.push(format!("frame {frame}, perhaps others too: {lost} {told}"));
+                let note = format!("pixels of '{part}' are no number and left out of its scores");
+                if lost > 0 && !warnings.iter().any(|w| w.ends_with(&note)) {
+                    warnings.push(format!("frame {frame}, perhaps others too: {lost} {note}"));
                 }
-                let known = known(&part, truth.as_deref(), earlier.map(|t| &**t), changed);
+                let known = known(&part, reference.as_deref(), earlier.map(|t| &**t), changed);
                 let own = series.entry(part.clone()).or_insert_with(|| PartSeries::new(&part));
                 let shown = (part == self.pictures).then(|| Panels::of(own.before(), &x, known));
                 let bad = own.add(x, known, number + 1 == frames);
@@ -254,12 +254,12 @@ impl Runner {
                     worst = Some(Bad { frame, bad, panels });
                 }
             }
-            before = Some((moment, truth));
+            before = Some((state, reference));
         }
         let times: Vec<f64> = times.iter().skip(job.case.warmup).map(|t| t.gpu_ms).collect();
         let last = before.map_or(job.start.time, |b| b.0.time);
         let voxels = voxels(&mut session, job, last, &mut warnings)?;
-        self.lent.insert(job.method.clone(), session.lend());
+        self.shared.insert(job.method.clone(), session.share());
         let (event, switched) = (motion.event(), matches!(motion, Motion::Switch { .. }));
         let memory_bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
         let parts = series.into_iter().map(|(name, s)| (name, s.finish(event, switched))).collect();
@@ -289,11 +289,16 @@ fn set(lab: &Lab, session: &mut Session, name: &str, value: Value) -> Result<(),
     }
 }
 
-/// What is known of a part's truth; `earlier` is that of the frame before.
-fn known<'a>(part: &str, truth: Option<&'a Truth>, earlier: Option<&'a Truth>, changed: bool) -> Known<'a> {
-    let of = |t: Option<&'a Truth>| t.and_then(|t| t.parts.get(part));
-    match (of(truth), of(earlier)) {
-        (Some(now), before) => Known::Truth { now, before: before.filter(|_| changed) },
+/// What is known of a part's reference; `earlier` is that of the frame before.
+fn known<'a>(
+    part: &str,
+    reference: Option<&'a FrameReference>,
+    earlier: Option<&'a FrameReference>,
+    changed: bool,
+) -> Known<'a> {
+    let of = |t: Option<&'a FrameReference>| t.and_then(|t| t.parts.get(part));
+    match (of(reference), of(earlier)) {
+        (Some(now), before) => Known::Reference { now, before: before.filter(|_| changed) },
         (None, _) => Known::Nothing { changed },
     }
 }
@@ -303,7 +308,7 @@ pub(super) fn cell_of(session: &mut Session, job: &Job) -> Result<f32, LabError>
     if !job.case.motion.in_voxels() {
         return Ok(0.0);
     }
-    session.look(&job.start.camera);
+    session.place_camera(&job.start.camera);
     session.frame(0.0)?;
     session.finish()?;
     let (x, y, z) = job.start.camera.eye;
@@ -319,20 +324,20 @@ pub(super) fn place(
     number: i64,
     cell: f32,
     lights: &mut Vec<Light>,
-) -> Result<Moment, LabError> {
-    let moment = job.moment(number, cell);
-    if let Some(moved) = &job.moved {
-        set(lab, session, &moved.name, moved.at(number))?;
+) -> Result<FrameState, LabError> {
+    let state = job.frame_state(number, cell);
+    if let Some(track) = &job.track {
+        set(lab, session, &track.name, track.at(number))?;
     }
-    session.look(&moment.camera);
-    session.set_time(moment.time);
-    if moment.lights != *lights {
-        if !session.set_lights(&moment.lights, job.scene.sky) {
+    session.place_camera(&state.camera);
+    session.set_time(state.time);
+    if state.lights != *lights {
+        if !session.set_lights(&state.lights, job.scene.sky) {
             return Err(LabError::Request("a light that moves must keep its kind and its shadow".into()));
         }
-        lights.clone_from(&moment.lights);
+        lights.clone_from(&state.lights);
     }
-    Ok(moment)
+    Ok(state)
 }
 
 /// The voxels of the last frame against exact ones, if the case asks for it and the method can.
@@ -368,10 +373,10 @@ impl Panels {
     /// The pictures of a frame: before, now, the reference, and how the change differs from the reference's; of a first
     /// frame, how the picture differs.
     fn of(before: Option<&Linear>, x: &Linear, known: Known) -> Panels {
-        let (truth, truth_before) = match known {
-            Known::Truth { now, before } => (Some(&now.mean), before.map(|b| &b.mean)),
+        let (reference, reference_before) = match known {
+            Known::Reference { now, before } => (Some(&now.mean), before.map(|b| &b.mean)),
             Known::Nothing { .. } => (None, None),
         };
-        Panels::new(before, x, truth, truth_before)
+        Panels::new(before, x, reference, reference_before)
     }
 }

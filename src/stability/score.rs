@@ -1,4 +1,4 @@
-//! The definitions, on pictures and sequences at hand; docs/stability.md tells them with their sources.
+//! The definitions, on pictures and sequences at hand; docs/stability.md explains them with their sources.
 
 use crate::metrics::colour::luminance;
 use crate::metrics::{Kind, Linear};
@@ -73,9 +73,9 @@ pub struct Flicker {
     pub p99: f64,
 }
 
-/// The flicker index of every pixel's luminance, less the truth's own change: of y_t = x_t - (r_t - r_0), whose area is
-/// taken to be that of x. `differences` holds (x_t - x_0) - (r_t - r_0) of every pixel, frame by frame; `areas` the sum
-/// of x over the frames. Where nothing moves y is x, and the index is the usual one.
+/// The flicker index of every pixel's luminance, less the reference's own change: of y_t = x_t - (r_t - r_0), whose
+/// area is taken to be that of x. `differences` holds (x_t - x_0) - (r_t - r_0) of every pixel, frame by frame; `areas`
+/// the sum of x over the frames. Where nothing moves y is x, and the index is the usual one.
 pub fn flicker(differences: &[Vec<f32>], areas: &[f64]) -> Flicker {
     let frames = differences.len() as f64;
     let index = |(i, area): (usize, &f64)| {
@@ -106,8 +106,8 @@ impl FlickerSeries {
     pub fn add(&mut self, x: &Linear, r: Option<&Linear>) {
         let finite = |v: f64| if v.is_finite() { v } else { 0.0 };
         let pair = |i: usize| {
-            let truth = r.map_or(0.0, |r| finite(luminance(r.rgb[i])));
-            (finite(luminance(x.rgb[i])), truth)
+            let reference = r.map_or(0.0, |r| finite(luminance(r.rgb[i])));
+            (finite(luminance(x.rgb[i])), reference)
         };
         let now: Vec<(f64, f64)> = (0..x.rgb.len()).map(pair).collect();
         if self.first.is_empty() {

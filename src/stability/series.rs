@@ -1,21 +1,21 @@
-//! A part of the light, frame by frame beside its truth.
+//! A part of the light, frame by frame against its reference.
 
 use super::record::{FrameScore, PartResult};
+use super::references::ReferencePart;
 use super::score::{FlickerSeries, change, settling, step};
-use super::truth::TruthPart;
 use crate::metrics::colour::luminance;
 use crate::metrics::{Compared, Kind, Linear, relmse};
 
 /// Results below so many times what the noise of the reference gives are not told apart from it.
 const NOISE_FACTOR: f64 = 4.0;
 
-/// What is known of the truth at a frame.
+/// What is known of the reference at a frame.
 #[derive(Clone, Copy)]
 pub(super) enum Known<'a> {
     /// Nothing; whether it may have changed since the frame before.
     Nothing { changed: bool },
     /// The reference now, and at the frame before where it is another one.
-    Truth { now: &'a TruthPart, before: Option<&'a TruthPart> },
+    Reference { now: &'a ReferencePart, before: Option<&'a ReferencePart> },
 }
 
 /// Gathers the scores of a part.
@@ -25,7 +25,7 @@ pub(super) struct PartSeries {
     frames: Vec<FrameScore>,
     flicker: FlickerSeries,
     noise: FlickerSeries,
-    /// The truth's changes are known at every frame so far.
+    /// The reference's changes are known at every frame so far.
     known: bool,
     result: PartResult,
 }
@@ -46,36 +46,36 @@ impl PartSeries {
     /// Adds the next frame; `last`: the whole of its scores against the reference is wanted. Gives E_t, or relMSE at the
     /// first frame: how bad it is.
     pub fn add(&mut self, x: Linear, known: Known, last: bool) -> Option<f64> {
-        let truth = match known {
-            Known::Truth { now, .. } => Some(now),
+        let reference = match known {
+            Known::Reference { now, .. } => Some(now),
             Known::Nothing { .. } => None,
         };
         let mut frame = FrameScore {
             frame: self.frames.len(),
             mean: number(mean_luminance(&x)),
-            reference_mean: truth.and_then(|t| number(mean_luminance(&t.mean))),
-            relmse: truth.and_then(|t| relmse(&x, &t.mean).ok()).and_then(number),
+            reference_mean: reference.and_then(|t| number(mean_luminance(&t.mean))),
+            relmse: reference.and_then(|t| relmse(&x, &t.mean).ok()).and_then(number),
             ..FrameScore::default()
         };
         if let Some(previous) = &self.before {
             let now = [previous, &x];
             match known {
                 Known::Nothing { changed: true } => self.known = false,
-                Known::Nothing { changed: false } | Known::Truth { before: None, .. } => {
+                Known::Nothing { changed: false } | Known::Reference { before: None, .. } => {
                     frame.change = Some(change(self.kind, now, None));
-                    frame.noise = truth.map(|_| 0.0);
+                    frame.noise = reference.map(|_| 0.0);
                 }
-                Known::Truth { now: truth, before: Some(before) } => {
-                    frame.change = Some(change(self.kind, now, Some([&before.mean, &truth.mean])));
-                    let halves = |i: usize| [&before.halves[i], &truth.halves[i]];
+                Known::Reference { now: reference, before: Some(before) } => {
+                    frame.change = Some(change(self.kind, now, Some([&before.mean, &reference.mean])));
+                    let halves = |i: usize| [&before.halves[i], &reference.halves[i]];
                     frame.noise = Some(change(self.kind, halves(0), Some(halves(1))).rms);
                 }
             }
         }
         if self.known {
-            self.flicker.add(&x, truth.map(|t| &t.mean));
+            self.flicker.add(&x, reference.map(|t| &t.mean));
         }
-        if let Some(t) = truth {
+        if let Some(t) = reference {
             self.noise.add(&t.halves[0], Some(&t.halves[1]));
             if last {
                 let compared = Compared::new(&x, &t.mean, self.kind).ok();
@@ -94,7 +94,7 @@ impl PartSeries {
         self.before.as_ref()
     }
 
-    /// What came of it; `event` is the first frame after a switch or a cut, `switched` says which.
+    /// The scores of all frames; `event` is the first frame after a switch or a cut, `switched` says which.
     pub fn finish(mut self, event: Option<usize>, switched: bool) -> PartResult {
         let changes: Vec<_> = self.frames.iter().filter_map(|f| f.change).collect();
         let root = |list: &[f64]| (list.iter().map(|v| v * v).sum::<f64>() / list.len() as f64).sqrt();

@@ -35,7 +35,7 @@ pub struct Failure {
     pub metric: String,
     /// The number.
     pub value: f64,
-    /// The same between the halves of the reference.
+    /// The same number between the halves of the reference.
     pub noise: Option<f64>,
     id: String,
     worst: Worst,
@@ -70,13 +70,16 @@ fn worst(report: &Report, method: &str, moving: bool) -> Option<Failure> {
         Some(Failure { method, case, metric, value, noise, id, worst })
     };
     let own = report.results.iter().filter(|r| r.method == method && (r.frames > 1) == moving);
-    own.filter_map(failure)
-        .max_by(|a, b| (a.told(), a.value).partial_cmp(&(b.told(), b.value)).unwrap_or(a.told().cmp(&b.told())))
+    own.filter_map(failure).max_by(|a, b| {
+        (a.above_noise(), a.value)
+            .partial_cmp(&(b.above_noise(), b.value))
+            .unwrap_or(a.above_noise().cmp(&b.above_noise()))
+    })
 }
 
 impl Failure {
     /// Whether it is told apart from the noise of its reference.
-    pub fn told(&self) -> bool {
+    pub fn above_noise(&self) -> bool {
         self.value > 0.0 && self.noise.is_none_or(|n| self.value >= 4.0 * n)
     }
 
@@ -93,8 +96,8 @@ pub fn table(list: &[Failure]) -> String {
     let mut out = String::from("| Method | Worst case | Figure | Noise |\n|---|---|---|---|\n");
     for f in list {
         let noise = f.noise.map_or("-".into(), short);
-        let untold = if f.told() { "" } else { ", not told apart" };
-        out += &format!("| {} | {} | {} {}{untold} | {noise} |\n", f.method, f.case, f.metric, short(f.value));
+        let mark = if f.above_noise() { "" } else { ", not told apart" };
+        out += &format!("| {} | {} | {} {}{mark} | {noise} |\n", f.method, f.case, f.metric, short(f.value));
     }
     out
 }

@@ -38,7 +38,7 @@ pub(super) enum Axis {
     },
 }
 
-/// Where the values of a range lie.
+/// Spacing of a range's values.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Scale {
@@ -49,7 +49,7 @@ pub(super) enum Scale {
     Log,
 }
 
-/// What a sampled setting is drawn from.
+/// The distribution that a sampled setting is drawn from.
 #[derive(Clone, Debug, Deserialize)]
 pub(super) enum Distribution {
     /// Numbers.

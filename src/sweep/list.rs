@@ -15,22 +15,22 @@ use std::sync::Arc;
 
 /// A point that is to be measured.
 #[derive(Clone)]
-pub struct Listed {
+pub struct SweepPoint {
     /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time and frames. Points of
     /// one number have one result, up to times.
     pub id: String,
-    /// What is run.
+    /// The experiment that is run.
     pub experiment: Experiment,
     /// The scene, lit as the experiment says.
     pub scene: Arc<Scene>,
-    /// What is looked at.
+    /// Scene, camera, size and time of the picture.
     pub subject: Subject,
     /// Its values, by the names of what is varied.
     pub labels: Labels,
 }
 
-/// What is opened and hashed once for all points.
-pub struct Lister<'a> {
+/// Makes points; scenes and graphs are opened and hashed once for all of them.
+pub struct PointBuilder<'a> {
     home: &'a Home,
     open: &'a dyn Fn(&str) -> Result<Scene, LabError>,
     scenes: HashMap<String, Arc<Scene>>,
@@ -39,10 +39,10 @@ pub struct Lister<'a> {
     graphs: HashMap<String, String>,
 }
 
-impl<'a> Lister<'a> {
+impl<'a> PointBuilder<'a> {
     /// `open` opens a scene by name or path.
-    pub fn new(home: &'a Home, open: &'a dyn Fn(&str) -> Result<Scene, LabError>) -> Lister<'a> {
-        Lister { home, open, scenes: HashMap::new(), lit: HashMap::new(), graphs: HashMap::new() }
+    pub fn new(home: &'a Home, open: &'a dyn Fn(&str) -> Result<Scene, LabError>) -> PointBuilder<'a> {
+        PointBuilder { home, open, scenes: HashMap::new(), lit: HashMap::new(), graphs: HashMap::new() }
     }
 
     /// The point of an experiment.
@@ -55,7 +55,7 @@ impl<'a> Lister<'a> {
         experiment: Experiment,
         labels: Labels,
         frames: Frames,
-    ) -> Result<Listed, LabError> {
+    ) -> Result<SweepPoint, LabError> {
         let loaded = warm.graph(self.home, &experiment.graph)?;
         let graph = self.graphs.entry(experiment.graph.clone()).or_insert_with(|| graph_hash(loaded)).clone();
         let params = experiment.params_over(&loaded.graph.params)?;
@@ -84,7 +84,7 @@ impl<'a> Lister<'a> {
         }
         let mut id = crate::capture::hex(&hash.finalize());
         id.truncate(32);
-        Ok(Listed { id, experiment, scene, subject, labels })
+        Ok(SweepPoint { id, experiment, scene, subject, labels })
     }
 
     /// The scene under the experiment's light, with its hash.
@@ -114,17 +114,17 @@ impl<'a> Lister<'a> {
 /// # Errors
 /// Everything that is wrong with the sweep's settings: nothing is measured then.
 pub fn list(
-    lister: &mut Lister,
+    builder: &mut PointBuilder,
     warm: &mut Warm,
     sweep: &Sweep,
     frames: Frames,
-) -> Result<(Vec<Listed>, usize), LabError> {
-    let mut points: Vec<Listed> = Vec::new();
+) -> Result<(Vec<SweepPoint>, usize), LabError> {
+    let mut points: Vec<SweepPoint> = Vec::new();
     let mut known = std::collections::HashSet::new();
     let mut errors: Vec<Diagnostic> = Vec::new();
     for index in 0..sweep.len() {
         let point = sweep.point(index).map_err(LabError::Input);
-        match point.and_then(|(experiment, labels)| lister.point(warm, experiment, labels, frames)) {
+        match point.and_then(|(experiment, labels)| builder.point(warm, experiment, labels, frames)) {
             Ok(point) if known.insert(point.id.clone()) => points.push(point),
             Ok(_) => {}
             Err(LabError::Input(list)) => add_new(&mut errors, list),
@@ -161,7 +161,7 @@ pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-/// The same mistake comes back with every combination: it is told once.
+/// The same mistake comes back with every combination: it is reported once.
 fn add_new(errors: &mut Vec<Diagnostic>, list: Vec<Diagnostic>) {
     for diagnostic in list {
         if !errors.contains(&diagnostic) {

@@ -12,10 +12,10 @@ mod sample;
 mod settings;
 mod table;
 
-pub use list::{Listed, Lister, check, list};
+pub use list::{PointBuilder, SweepPoint, check, list};
 pub use points::{Labels, MAX_POINTS, Sweep};
 pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
 pub(crate) use record::{read_json, write_file};
-pub use run::{Options, Progress, Shard, Tally, run};
+pub use run::{Counts, Options, Progress, Shard, run};
 pub use settings::Setting;
 pub use table::{csv, numbers, parts_of};

@@ -1,7 +1,7 @@
 //! What a sweep's folder holds: `sweep.json`, the list of all points, the same in every shard; `points/ID.json`, one
 //! finished point each; `pictures/ID.jpg` and `errors/ID.jpg`. Folders may come from anywhere and are not trusted.
 
-use super::list::Listed;
+use super::list::SweepPoint;
 use crate::files::write_whole;
 use crate::lab::LabError;
 use crate::measure::{Frames, Measured, Point};
@@ -41,7 +41,7 @@ pub struct Manifest {
 /// A point of the list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ManifestPoint {
-    /// Its number, see [`Listed::id`].
+    /// Its number, see [`SweepPoint::id`].
     pub id: String,
     /// Its values, by the names of what is varied.
     pub labels: IndexMap<String, String>,
@@ -52,7 +52,7 @@ pub struct ManifestPoint {
 pub struct Record {
     /// [`POINT_SCHEMA`].
     pub schema: String,
-    /// Its number.
+    /// Number of the point.
     pub id: String,
     /// The experiment with nothing left to defaults, as it would stand in a file of the sweep's folder.
     pub experiment: String,
@@ -60,7 +60,7 @@ pub struct Record {
     pub subject: Subject,
     /// The device.
     pub device: DeviceStats,
-    /// What came of it.
+    /// Result of the point.
     pub outcome: Outcome,
 }
 
@@ -79,7 +79,7 @@ pub struct Subject {
     pub time: String,
 }
 
-/// What came of a point.
+/// The result of a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -133,8 +133,8 @@ impl Folder {
 }
 
 impl Manifest {
-    pub(super) fn new(sweep: &super::Sweep, frames: Frames, points: &[Listed]) -> Manifest {
-        let point = |p: &Listed| ManifestPoint { id: p.id.clone(), labels: p.labels.iter().cloned().collect() };
+    pub(super) fn new(sweep: &super::Sweep, frames: Frames, points: &[SweepPoint]) -> Manifest {
+        let point = |p: &SweepPoint| ManifestPoint { id: p.id.clone(), labels: p.labels.iter().cloned().collect() };
         Manifest {
             schema: MANIFEST_SCHEMA.into(),
             name: sweep.name.clone(),

@@ -1,6 +1,6 @@
 //! The references of a sweep's points.
 
-use super::list::Listed;
+use super::list::SweepPoint;
 use super::run::Progress;
 use crate::lab::{Lab, LabError};
 use crate::measure::Warm;
@@ -25,13 +25,13 @@ impl<'s> References<'s> {
         References { bounces, samples, found: BTreeMap::new() }
     }
 
-    /// Those that a point is scored against, as far as there are any.
+    /// The references that a point is scored against, as far as there are any.
     pub fn get(
         &mut self,
         lab: &Lab,
         warm: &mut Warm,
-        point: &Listed,
-        tell: &mut dyn FnMut(Progress),
+        point: &SweepPoint,
+        on_progress: &mut dyn FnMut(Progress),
     ) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
         let key = key(lab, warm, point)?;
         if let Some(found) = self.found.get(&key) {
@@ -45,7 +45,7 @@ impl<'s> References<'s> {
             let found = match self.samples {
                 Some(samples) => {
                     Some(gather(lab, &point.experiment, &point.scene, *bounces, Goal::Samples(samples), &mut |now| {
-                        tell(Progress::Gathers(now));
+                        on_progress(Progress::Gathers(now));
                         ControlFlow::Continue(())
                     })?)
                 }
@@ -60,7 +60,7 @@ impl<'s> References<'s> {
 
 /// What the reference of a point depends on: what is looked at, and the parameters that its graph shares with that of
 /// references.
-fn key(lab: &Lab, warm: &mut Warm, point: &Listed) -> Result<String, LabError> {
+fn key(lab: &Lab, warm: &mut Warm, point: &SweepPoint) -> Result<String, LabError> {
     let shared = warm.graph(&lab.home, GRAPH)?.graph.params.clone();
     let own = &warm.graph(&lab.home, &point.experiment.graph)?.graph.params;
     let params = point.experiment.params_over(own)?;

@@ -1,6 +1,6 @@
 //! Measuring the points of a sweep, one after another.
 
-use super::list::{Listed, Lister, list};
+use super::list::{PointBuilder, SweepPoint, list};
 use super::points::Sweep;
 use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, collect, write_file};
 use super::references::References;
@@ -38,7 +38,7 @@ pub struct Options {
     pub samples: Option<u64>,
 }
 
-/// What a sweep tells while it runs.
+/// Progress that a sweep reports while it runs.
 pub enum Progress<'a> {
     /// Points of this shard: to measure, and finished before.
     Begins {
@@ -52,12 +52,12 @@ pub enum Progress<'a> {
     /// A reference is being gathered.
     Gathers(Gathered),
     /// A point is finished.
-    Finished(&'a Listed, &'a Record),
+    Finished(&'a SweepPoint, &'a Record),
 }
 
-/// How far a shard is.
+/// Counts of a shard's points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub struct Counts {
     /// Measured.
     pub done: usize,
     /// Failed.
@@ -76,53 +76,53 @@ pub fn run(
     open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
     sweep: &Sweep,
     options: &Options,
-    tell: &mut dyn FnMut(Progress),
-) -> Result<Tally, LabError> {
+    on_progress: &mut dyn FnMut(Progress),
+) -> Result<Counts, LabError> {
     let mut lab = reopen()?;
     let home = lab.home.clone();
     let mut warm = Warm::default();
-    let mut lister = Lister::new(&home, open_scene);
-    let (points, equal) = list(&mut lister, &mut warm, sweep, options.frames)?;
+    let mut builder = PointBuilder::new(&home, open_scene);
+    let (points, equal) = list(&mut builder, &mut warm, sweep, options.frames)?;
     if equal > 0 {
-        tell(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
+        on_progress(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
     }
     let folder = Folder(options.folder.clone());
     folder.clean();
     folder.write_manifest(&Manifest::new(sweep, options.frames, &points))?;
     let Shard { number, of } = options.shard;
-    let mine: Vec<&Listed> = points.iter().skip(number - 1).step_by(of).collect();
+    let mine: Vec<&SweepPoint> = points.iter().skip(number - 1).step_by(of).collect();
     let mut references = References::new(&sweep.bounces, options.samples);
-    let mut tally = Tally::default();
+    let mut counts = Counts::default();
     let mut todo = Vec::new();
     let mut elsewhere = 0;
     for point in mine {
         let record = folder.read(&point.id);
-        let known = references.get(&lab, &mut warm, point, tell)?;
+        let known = references.get(&lab, &mut warm, point, on_progress)?;
         let samples: BTreeMap<u32, u64> = known.iter().map(|(bounces, r)| (*bounces, r.samples)).collect();
         match record.as_ref().map(|r| (&r.outcome, &r.device)) {
             // A reference that has come or grown since makes other scores.
             Some((Outcome::Done(found), device)) if found.references == samples => {
                 elsewhere += usize::from(device.name != lab.gpu.info.name);
-                tally.done += 1;
+                counts.done += 1;
             }
-            Some((Outcome::Failed(_), _)) if !options.again => tally.failed += 1,
+            Some((Outcome::Failed(_), _)) if !options.again => counts.failed += 1,
             _ => todo.push(point),
         }
     }
     if elsewhere > 0 {
-        tell(Progress::Note(format!(
+        on_progress(Progress::Note(format!(
             "{elsewhere} points were measured on another device; name another folder with -o to measure them here"
         )));
     }
-    tell(Progress::Begins { todo: todo.len(), before: tally.done + tally.failed });
+    on_progress(Progress::Begins { todo: todo.len(), before: counts.done + counts.failed });
     for point in todo {
-        let known = references.get(&lab, &mut warm, point, tell)?;
+        let known = references.get(&lab, &mut warm, point, on_progress)?;
         let attempt =
             |lab: &Lab, warm: &mut Warm| measure(lab, warm, &point.experiment, &point.scene, options.frames, &known);
         let mut result = attempt(&lab, &mut warm);
         if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
             // Often the point before it is to blame; if it is this one, it fails again.
-            tell(Progress::Note(String::from("the device was lost; it is opened again")));
+            on_progress(Progress::Note(String::from("the device was lost; it is opened again")));
             warm.leave_device();
             lab = reopen()?;
             result = attempt(&lab, &mut warm);
@@ -138,21 +138,21 @@ pub fn run(
         let record = record_of(&lab, &mut warm, options, point, outcome)?;
         folder.write(&record, measured.as_ref())?;
         match &record.outcome {
-            Outcome::Done(_) => tally.done += 1,
-            Outcome::Failed(_) => tally.failed += 1,
+            Outcome::Done(_) => counts.done += 1,
+            Outcome::Failed(_) => counts.failed += 1,
         }
-        tell(Progress::Finished(point, &record));
+        on_progress(Progress::Finished(point, &record));
     }
     let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
     write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
-    Ok(tally)
+    Ok(counts)
 }
 
 fn record_of(
     lab: &Lab,
     warm: &mut Warm,
     options: &Options,
-    point: &Listed,
+    point: &SweepPoint,
     outcome: Outcome,
 ) -> Result<Record, LabError> {
     let params = &warm.graph(&lab.home, &point.experiment.graph)?.graph.params;

@@ -23,7 +23,7 @@ pub fn numbers(scores: &Scores) -> BTreeMap<String, f64> {
 /// times and differ from run to run; everything else is the same on one device.
 ///
 /// # Errors
-/// None that a sweep can cause.
+/// Writing to memory gives none, whatever the sweep.
 pub fn csv(collected: &Collected) -> Result<String, LabError> {
     let records: Vec<Option<&Record>> = collected.points.iter().map(|p| p.1.as_ref()).collect();
     let points: Vec<&Point> = records.iter().flatten().filter_map(|r| done(r)).collect();
@@ -48,7 +48,7 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     header.extend(scores.iter().map(|(part, metric)| format!("{part} {metric}")));
     header.extend(stages.iter().map(|s| format!("{s} ms")));
     out.write_record(&header).map_err(failed)?;
-    for ((listed, _), record) in collected.points.iter().zip(&records) {
+    for ((planned, _), record) in collected.points.iter().zip(&records) {
         let point = record.and_then(done);
         let error = record.and_then(|r| match &r.outcome {
             Outcome::Failed(e) => e.lines().next(),
@@ -59,8 +59,8 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
             (None, Some(_)) => "failed",
             (None, None) => "left",
         };
-        let mut row: Vec<String> = vec![listed.id.clone(), outcome.into()];
-        row.extend(collected.names.iter().map(|n| listed.labels.get(n).cloned().unwrap_or_default()));
+        let mut row: Vec<String> = vec![planned.id.clone(), outcome.into()];
+        row.extend(collected.names.iter().map(|n| planned.labels.get(n).cloned().unwrap_or_default()));
         let stats = point.map(|p| &p.stats);
         let text = |f: &dyn Fn(&crate::stats::Stats) -> String| stats.map(f).unwrap_or_default();
         row.push(text(&|s| s.graph.clone()));

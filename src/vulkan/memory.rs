@@ -31,7 +31,7 @@ pub struct ImageDesc {
     pub format: vk::Format,
     /// Further formats it may be viewed as (mutable format).
     pub views: Vec<vk::Format>,
-    /// How it is used.
+    /// Usage of the image.
     pub usage: vk::ImageUsageFlags,
 }
 

@@ -69,7 +69,7 @@ pub type SpecValue = u32;
 /// One stage of a pipeline: SPIR-V whose bindings are those of the pipeline's list.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageDesc {
-    /// Which stage.
+    /// Stage of the shader.
     pub stage: Stage,
     /// The module's words.
     pub spirv: Arc<Vec<u32>>,
@@ -167,9 +167,9 @@ pub struct DrawState {
 pub struct PipelineDesc {
     /// Name for debuggers.
     pub name: String,
-    /// Its stages.
+    /// Shader stages.
     pub stages: Vec<StageDesc>,
-    /// Its bindings.
+    /// Bindings of the shaders.
     pub bindings: Vec<BindingDesc>,
     /// Bytes of push constants (all stages).
     pub push_bytes: u32,

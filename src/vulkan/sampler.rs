@@ -3,7 +3,7 @@
 use super::{Gpu, Result, VulkanError, vk};
 use std::sync::Arc;
 
-/// How a texture is sampled.
+/// Filter and address mode of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SamplerDesc {
     /// Between texels.

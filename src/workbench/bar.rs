@@ -1,7 +1,7 @@
 //! The bar at the top: experiments, scenes, undo, comparisons; and the line at the foot.
 
 use super::engine::Order;
-use super::{Workbench, edit, ron_files, short, slot_of};
+use super::{Workbench, edit, ron_files, short, side_of};
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
 use crate::graph::source::Entries;
@@ -22,21 +22,21 @@ impl Workbench {
                 self.go(false);
             }
             ui.separator();
-            let mut compare = self.wish.slots[1].is_some();
+            let mut compare = self.desired.sides[1].is_some();
             if ui
                 .toggle_value(&mut compare, "A | B")
                 .on_hover_text("Put a second experiment beside the first")
                 .clicked()
             {
-                self.wish.slots[1] = if compare { self.wish.slots[0].clone() } else { None };
-                self.panel_slot = usize::from(compare);
+                self.desired.sides[1] = if compare { self.desired.sides[0].clone() } else { None };
+                self.panel_side = usize::from(compare);
             }
             self.comparisons(ui);
-            if self.wish.slots[1].is_some() {
+            if self.desired.sides[1].is_some() {
                 self.compare_bar(ui);
             }
             ui.separator();
-            ui.toggle_value(&mut self.wish.continuous, "keep rendering").on_hover_text(
+            ui.toggle_value(&mut self.desired.continuous, "keep rendering").on_hover_text(
                 "Frames are rendered when something changes; with this also when nothing does, to measure",
             );
             if ui.button("help").on_hover_text("F1").clicked() {
@@ -47,23 +47,23 @@ impl Workbench {
 
     /// Comparisons that the graph offers: each is one click.
     fn comparisons(&mut self, ui: &mut Ui) {
-        let Some(outline) = self.slots[0].outline.clone() else { return };
-        for compare in &outline.graph.compare {
+        let Some(info) = self.sides[0].info.clone() else { return };
+        for compare in &info.graph.compare {
             let button = ui.button(&compare.value.title).on_hover_text(&compare.value.help);
             if button.clicked() {
-                let base = self.wish.slots[0].clone().unwrap_or_default();
+                let base = self.desired.sides[0].clone().unwrap_or_default();
                 let make = |values: &Entries<RawText>| {
-                    let mut slot = base.clone();
+                    let mut side = base.clone();
                     for (name, text) in &values.0 {
-                        if let Some(param) = outline.graph.params.list.iter().find(|p| p.name == name.value)
+                        if let Some(param) = info.graph.params.list.iter().find(|p| p.name == name.value)
                             && let Ok(value) = param.parse(&text.value.0)
                         {
-                            edit::set(&mut slot, param, &value);
+                            edit::set(&mut side, param, &value);
                         }
                     }
-                    slot
+                    side
                 };
-                self.wish.slots = [Some(make(&compare.value.a)), Some(make(&compare.value.b))];
+                self.desired.sides = [Some(make(&compare.value.a)), Some(make(&compare.value.b))];
             }
         }
     }
@@ -86,17 +86,17 @@ impl Workbench {
             }
         });
         response.response.on_hover_text("Presets: configs/*.ron");
-        let Some((path, slot)) = chosen else { return };
+        let Some((path, side)) = chosen else { return };
         match Experiment::read(&path) {
-            Ok(experiment) if slot == 0 => self.open(&experiment),
-            Ok(experiment) => self.wish.slots[1] = Some(slot_of(&experiment)),
-            Err(errors) => self.slots[slot].errors = errors,
+            Ok(experiment) if side == 0 => self.open(&experiment),
+            Ok(experiment) => self.desired.sides[1] = Some(side_of(&experiment)),
+            Err(errors) => self.sides[side].errors = errors,
         }
     }
 
     fn scenes_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        ui.menu_button(format!("scene: {}", short(&self.wish.scene)), |ui| {
+        ui.menu_button(format!("scene: {}", short(&self.desired.scene)), |ui| {
             for (name, about) in crate::scene::builtin::list() {
                 if ui.button(name).on_hover_text(about).clicked() {
                     chosen = Some(name.to_string());
@@ -128,7 +128,7 @@ impl Workbench {
             if let Some(device) = &self.device {
                 ui.weak(&device.name).on_hover_text(&device.driver);
             }
-            if let Some(p) = &self.slots[0].picture {
+            if let Some(p) = &self.sides[0].picture {
                 ui.weak(format!("{}x{}", p.size[0], p.size[1]));
                 ui.weak(format!("{:.2} ms", p.gpu_ms));
                 if p.preview {

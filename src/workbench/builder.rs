@@ -1,7 +1,8 @@
-//! Builds sessions aside, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits for it.
+//! Builds sessions in the background, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits
+//! for it.
 
 use crate::experiment::Experiment;
-use crate::lab::{Lab, LabError, Loaded, Seed, Session};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::scene::Scene;
 use crossbeam_channel::{Receiver, Sender};
 use std::sync::Arc;
@@ -27,15 +28,15 @@ pub struct Key {
 /// Something to build.
 pub struct Job {
     /// 0 is A, 1 is B.
-    pub slot: usize,
-    /// What from.
+    pub side: usize,
+    /// Key of what is built.
     pub key: Key,
-    /// The same, as an experiment.
+    /// The experiment of the key.
     pub experiment: Experiment,
     /// The scene.
     pub scene: Arc<Scene>,
     /// Parts of the session in use.
-    pub seed: Option<Seed>,
+    pub reuse: Option<ReusableParts>,
     /// The graph, if its files did not change since it was loaded.
     pub loaded: Option<Loaded>,
     /// Whether this is only the preview.
@@ -44,11 +45,11 @@ pub struct Job {
     pub lab: Lab,
 }
 
-/// What became of it.
+/// The result of a build.
 pub struct Done {
     /// 0 is A, 1 is B.
-    pub slot: usize,
-    /// What from.
+    pub side: usize,
+    /// Key of what was built.
     pub key: Key,
     /// Whether this is only the preview.
     pub preview: bool,
@@ -62,9 +63,9 @@ pub struct Done {
 pub fn run(jobs: &Receiver<Job>, done: &Sender<Done>) {
     for job in jobs {
         let start = Instant::now();
-        let (slot, key, preview) = (job.slot, job.key.clone(), job.preview);
+        let (side, key, preview) = (job.side, job.key.clone(), job.preview);
         let result = build(job);
-        if done.send(Done { slot, key, preview, start, result }).is_err() {
+        if done.send(Done { side, key, preview, start, result }).is_err() {
             return;
         }
     }
@@ -85,7 +86,7 @@ fn build(job: Job) -> Result<(Box<Session>, Loaded), LabError> {
     let has = |name: &String| graph.textures.iter().any(|t| t.0 == *name) || graph.buffers.iter().any(|b| b.0 == *name);
     let mut wanted = vec![output.clone()];
     wanted.extend(job.key.wanted.iter().filter(|n| has(n)).cloned());
-    let mut session = job.lab.build(&job.experiment, &loaded, job.scene, wanted, job.seed.as_ref())?;
+    let mut session = job.lab.build(&job.experiment, &loaded, job.scene, wanted, job.reuse.as_ref())?;
     session.show(&output);
     Ok((Box::new(session), loaded))
 }

@@ -1,4 +1,4 @@
-//! A beside B: how the two are shown, and how far they are apart.
+//! A and B side by side: how the two are shown, and how far they are apart.
 
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ pub enum Mode {
     Split,
     /// One of them; a key changes which.
     Flip,
-    /// Beside each other.
+    /// Side by side.
     Side,
     /// Absolute difference of the display values.
     Difference,

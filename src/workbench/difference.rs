@@ -1,7 +1,7 @@
 //! A and B compared, on a thread.
 
 use super::compare::{self, Mode, Shown};
-use super::{ComparisonOf, Slot, Workbench};
+use super::{ComparisonOf, Side, Workbench};
 use std::sync::Arc;
 
 impl Workbench {
@@ -11,8 +11,8 @@ impl Workbench {
         if !matches!(mode, Mode::Difference | Mode::Perceived) || self.comparing {
             return;
         }
-        let shown = |s: &Slot| s.picture.as_ref().map(|p| Shown { size: p.size, bytes: p.bytes.clone() });
-        let (Some(a), Some(b)) = (shown(&self.slots[0]), shown(&self.slots[1])) else { return };
+        let shown = |s: &Side| s.picture.as_ref().map(|p| Shown { size: p.size, bytes: p.bytes.clone() });
+        let (Some(a), Some(b)) = (shown(&self.sides[0]), shown(&self.sides[1])) else { return };
         let of = (mode, self.view.gain, a.bytes.clone(), b.bytes.clone());
         let same =
             |o: &ComparisonOf| (o.0, o.1) == (of.0, of.1) && Arc::ptr_eq(&o.2, &of.2) && Arc::ptr_eq(&o.3, &of.3);

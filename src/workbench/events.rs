@@ -21,18 +21,18 @@ pub struct Events {
     widgets: Value,
     place: Option<egui::Rect>,
     nodes: HashMap<u64, accesskit::Node>,
-    told: Instant,
+    sent: Instant,
 }
 
 impl Events {
     /// Writes to a file, which is made anew.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// The file cannot be made.
     pub fn new(path: &Path) -> std::io::Result<Events> {
         let now = Instant::now();
         let file = File::create(path)?;
-        Ok(Events { file, start: now, widgets: Value::Null, place: None, nodes: HashMap::new(), told: now })
+        Ok(Events { file, start: now, widgets: Value::Null, place: None, nodes: HashMap::new(), sent: now })
     }
 
     /// Writes an event; the time is added, in ms since the start.
@@ -57,7 +57,7 @@ impl Events {
     }
 
     /// Writes where the widgets are, in points, when that changed; at most some times a second. `true` if more is to
-    /// be told later.
+    /// be written later.
     pub fn widgets(&mut self, update: Option<&accesskit::TreeUpdate>, scale: f32) -> bool {
         if let Some(update) = update {
             self.nodes = update.nodes.iter().map(|(id, node)| (id.0, node.clone())).collect();
@@ -75,10 +75,10 @@ impl Events {
         if list == self.widgets {
             return false;
         }
-        if self.told.elapsed().as_millis() < 100 {
+        if self.sent.elapsed().as_millis() < 100 {
             return true;
         }
-        self.told = Instant::now();
+        self.sent = Instant::now();
         self.widgets = list.clone();
         self.write("widgets", list);
         false

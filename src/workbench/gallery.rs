@@ -1,7 +1,7 @@
 //! Saving experiments, captures, and the gallery of captures.
 
 use super::engine::Order;
-use super::{Workbench, keep, short};
+use super::{Workbench, save, short};
 use crate::capture::{self, Summary};
 use crate::experiment::{Experiment, checked_name};
 use crate::lab::LabError;
@@ -87,7 +87,7 @@ impl Workbench {
         }
     }
 
-    /// Saves what slot A (or B, when the panel shows it) says. An existing file is only replaced when asked for.
+    /// Saves what side A (or B, when the panel shows it) says. An existing file is only replaced when asked for.
     pub(super) fn save(&mut self, replace: bool) {
         if self.gallery.name.is_empty() {
             self.gallery.name.clone_from(&self.name);
@@ -115,15 +115,15 @@ impl Workbench {
 
     fn save_as(&self, name: &str, replace: bool) -> Result<PathBuf, LabError> {
         let name = checked_name(name)?;
-        let slot = self.wish.slots[self.panel_slot].as_ref().or(self.wish.slots[0].as_ref());
-        let outline = self.slots[self.panel_slot].outline.as_ref().or(self.slots[0].outline.as_ref());
-        let (Some(slot), Some(outline)) = (slot, outline) else {
+        let side = self.desired.sides[self.panel_side].as_ref().or(self.desired.sides[0].as_ref());
+        let info = self.sides[self.panel_side].info.as_ref().or(self.sides[0].info.as_ref());
+        let (Some(side), Some(info)) = (side, info) else {
             return Err(LabError::Request("there is nothing to save yet: no graph has been built".into()));
         };
-        let time = self.slots[0].picture.as_ref().map_or(self.wish.clock.at, |p| p.time);
-        let experiment = keep::experiment(&self.wish, slot, &name, time, self.scene.as_deref());
+        let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
+        let experiment = save::experiment(&self.desired, side, &name, time, self.scene.as_deref());
         let path = self.experiment_path(&name);
-        crate::experiment::write(&experiment, &outline.graph.params, &path, replace)?;
+        crate::experiment::write(&experiment, &info.graph.params, &path, replace)?;
         Ok(path)
     }
 
@@ -137,10 +137,10 @@ impl Workbench {
                 self.capture();
             }
         });
-        let Some(outline) = self.slots[0].outline.clone() else { return };
+        let Some(info) = self.sides[0].info.clone() else { return };
         egui::CollapsingHeader::new(format!("resources ({})", self.gallery.resources.len())).show(ui, |ui| {
             ui.weak("kept as EXR beside the picture");
-            for (name, _) in &outline.graph.textures {
+            for (name, _) in &info.graph.textures {
                 let mut chosen = self.gallery.resources.contains(name);
                 if ui.checkbox(&mut chosen, name).changed() {
                     self.gallery.resources.retain(|r| r != name);
@@ -152,7 +152,7 @@ impl Workbench {
         });
     }
 
-    /// Captures the slot that the panel shows.
+    /// Captures the side that the panel shows.
     pub(super) fn capture(&mut self) {
         let name = match self.gallery.capture_name.trim() {
             "" => self.name.clone(),
@@ -161,7 +161,7 @@ impl Workbench {
         match checked_name(&name) {
             Ok(name) => {
                 self.status = format!("capturing {name}");
-                self.engine.order(Order::Capture(self.panel_slot, name, self.gallery.resources.clone()));
+                self.engine.order(Order::Capture(self.panel_side, name, self.gallery.resources.clone()));
             }
             Err(e) => self.status = e.to_string(),
         }
@@ -177,7 +177,7 @@ impl Workbench {
             self.event("replayed", serde_json::json!({ "text": text }));
             self.gallery.replayed = text;
         }
-        if ui.small_button("look again").clicked() {
+        if ui.small_button("refresh").clicked() {
             self.gallery.forget();
         }
         let captures = self.gallery.captures.get_or_insert_with(|| capture::list(&folder)).clone();
@@ -265,11 +265,11 @@ impl Workbench {
                 self.open(&experiment);
                 self.status = format!("loaded {}", summary.name);
             }
-            Err(errors) => self.slots[0].errors = errors,
+            Err(errors) => self.sides[0].errors = errors,
         }
     }
 
-    /// Replays by the program's own command, beside the window.
+    /// Replays by the program's own command, in a process of its own.
     fn replay(&mut self, folder: &Path) {
         self.gallery.replayed = "replaying".into();
         let (folder, out, wake) = (folder.to_path_buf(), self.gallery.replays.0.clone(), self.wake.clone());

@@ -31,7 +31,7 @@ const KEYS: [(Action, KeyboardShortcut, &str); 11] = [
     (
         Action::Save,
         KeyboardShortcut::new(Modifiers::COMMAND, Key::S),
-        "save the experiment, under its name on the Keep tab",
+        "save the experiment, under its name on the Save tab",
     ),
     (Action::Capture, KeyboardShortcut::new(Modifiers::NONE, Key::F12), "capture what is shown to captures/"),
     (Action::RenderDoc, KeyboardShortcut::new(Modifiers::NONE, Key::F11), "capture a frame with RenderDoc"),

@@ -1,12 +1,12 @@
 //! Undo: states to go back and forth between.
 
 use super::Workbench;
-use super::wish::Wish;
+use super::request::RenderRequest;
 
-/// What an edit changes, and what opening an experiment changes beside it.
+/// What an edit changes, and what opening an experiment changes besides.
 #[derive(Clone)]
 pub struct State {
-    wish: Wish,
+    desired: RenderRequest,
     name: String,
     fixed_size: Option<(u32, u32)>,
     /// The scene's time, s.
@@ -32,8 +32,8 @@ impl State {
     /// Whether undo has nothing to do between two states: views and measurements do not count, unless an experiment was
     /// opened.
     fn same(&self, other: &State, opened: bool) -> bool {
-        let (a, b) = (&self.wish, &other.wish);
-        let edit = a.slots == b.slots && a.scene == b.scene && a.lights == b.lights;
+        let (a, b) = (&self.desired, &other.desired);
+        let edit = a.sides == b.sides && a.scene == b.scene && a.lights == b.lights;
         let view = a.camera == b.camera && self.fixed_size == other.fixed_size && self.name == other.name;
         edit && (view || !opened)
     }
@@ -83,8 +83,8 @@ impl History {
 
 impl Workbench {
     fn state(&self) -> State {
-        let time = self.slots[0].picture.as_ref().map_or(self.wish.clock.at, |p| p.time);
-        State { wish: self.wish.clone(), name: self.name.clone(), fixed_size: self.fixed_size, time }
+        let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
+        State { desired: self.desired.clone(), name: self.name.clone(), fixed_size: self.fixed_size, time }
     }
 
     /// Remembers what there is now; see [`History::note`].
@@ -96,20 +96,20 @@ impl Workbench {
     /// Goes back, or forth, by one edit.
     pub(super) fn go(&mut self, back: bool) {
         let now = self.state();
-        let Some((State { wish, name, fixed_size, time }, opened)) = self.history.step(now, back) else { return };
-        if self.wish.scene != wish.scene {
-            self.open_scene(&wish.scene);
+        let Some((State { desired, name, fixed_size, time }, opened)) = self.history.step(now, back) else { return };
+        if self.desired.scene != desired.scene {
+            self.open_scene(&desired.scene);
             // It is seen as it was, not as an experiment would have it.
-            self.returning = wish.camera.is_some();
-            self.wish.camera = wish.camera;
+            self.returning = desired.camera.is_some();
+            self.desired.camera = desired.camera;
         }
-        self.wish.slots = wish.slots;
-        self.wish.lights = wish.lights;
+        self.desired.sides = desired.sides;
+        self.desired.lights = desired.lights;
         if opened {
-            self.wish.camera = wish.camera;
-            self.wish.size = wish.size;
-            self.wish.clock.at = time;
-            self.wish.clock.jumps += 1;
+            self.desired.camera = desired.camera;
+            self.desired.size = desired.size;
+            self.desired.clock.at = time;
+            self.desired.clock.jumps += 1;
             (self.name, self.fixed_size, self.resize_since) = (name, fixed_size, None);
             self.experiment = None;
         }

@@ -1,4 +1,4 @@
-//! What a host (a window, a screenshot) asks: pixels to show, and what to tell scripts.
+//! What a host (a window, a screenshot) asks: pixels to show, and the events that scripts read.
 
 use super::{NewPixels, Workbench, events};
 use serde_json::json;
@@ -16,7 +16,7 @@ impl Workbench {
 
     /// The host has shown them.
     pub fn painted(&mut self) {
-        if let Some(picture) = self.slots[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.0 == 0)) {
+        if let Some(picture) = self.sides[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.0 == 0)) {
             self.shown_revision = picture.revision;
         }
         if !self.pixels.is_empty() {
@@ -27,16 +27,16 @@ impl Workbench {
             let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
             let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
-            let wish = self.slots[0].picture.as_ref().map_or(0, |p| p.wish);
+            let request = self.sides[0].picture.as_ref().map_or(0, |p| p.request);
             self.event(
                 "painted",
-                json!({ "pictures": list, "fingerprints": prints, "wish": wish, "since_change_ms": since }),
+                json!({ "pictures": list, "fingerprints": prints, "request": request, "since_change_ms": since }),
             );
         }
         self.pixels.clear();
     }
 
-    /// Tells where the widgets are, for scripts; `true` if there is more to tell.
+    /// Logs where the widgets are, for scripts; `true` if there is more to log.
     pub fn describe(&mut self, update: Option<&egui::accesskit::TreeUpdate>, scale: f32) -> bool {
         self.events.as_mut().is_some_and(|e| {
             e.place(self.view.place, scale);

@@ -7,21 +7,21 @@ use egui::{Color32, RichText, Ui};
 
 impl Workbench {
     pub(super) fn has_messages(&self) -> bool {
-        self.trouble.is_some() || self.slots.iter().any(|s| !s.errors.is_empty() || !s.checks.is_empty())
+        self.trouble.is_some() || self.sides.iter().any(|s| !s.errors.is_empty() || !s.checks.is_empty())
     }
 
     pub(super) fn messages(&mut self, ui: &mut Ui) {
         let height = 160.0_f32.min(0.4 * ui.ctx().content_rect().height());
         egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-            for (slot, name) in self.slots.iter().zip(["A", "B"]) {
-                if !slot.errors.is_empty() {
-                    let count = slot.errors.len();
+            for (side, name) in self.sides.iter().zip(["A", "B"]) {
+                if !side.errors.is_empty() {
+                    let count = side.errors.len();
                     ui.colored_label(RED, format!("{name} shows the last good picture: {count} to mend in the files"));
                 }
-                for error in &slot.errors {
+                for error in &side.errors {
                     diagnostic(ui, error);
                 }
-                for check in &slot.checks {
+                for check in &side.checks {
                     ui.colored_label(AMBER, check);
                 }
             }

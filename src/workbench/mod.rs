@@ -1,4 +1,4 @@
-//! The workbench: an engine that renders aside, and the interface that says what it shall render.
+//! The workbench: an engine that renders in the background, and the interface that says what it renders.
 //!
 //! Nothing here knows a window system: [`crate::window`] and offscreen screenshots are two hosts of the same interface.
 
@@ -9,28 +9,28 @@ pub mod compare;
 mod difference;
 pub mod edit;
 pub mod engine;
+pub mod error_worker;
 pub mod events;
 mod gallery;
 mod help;
 mod history;
 mod host;
 mod inspector;
-pub mod judge;
-mod keep;
 mod messages;
 mod motion;
-mod news;
 mod opening;
 mod panel;
 mod paths;
+mod poll;
 mod renderdoc;
 pub mod report;
+pub mod request;
+mod save;
 mod surroundings;
 mod tables;
 mod times;
 mod view;
 mod watch;
-pub mod wish;
 
 use crate::experiment::Experiment;
 use crate::graph::source::Diagnostic;
@@ -42,12 +42,12 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{TextureId, Ui, Vec2};
 use engine::{Engine, Order};
 use events::Events;
-use opening::slot_of;
-use report::{DeviceReport, Outline, PictureReport};
+use opening::side_of;
+use report::{DeviceReport, GraphInfo, PictureReport};
+use request::RenderRequest;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use wish::Wish;
 
 /// Pictures that hosts keep for the interface: A, B, the comparison, the inspector.
 pub const PICTURES: usize = 4;
@@ -59,16 +59,16 @@ const INSPECTOR: usize = 3;
 /// New pixels of a picture: its number, size and RGBA bytes.
 pub type NewPixels = (usize, [u32; 2], Arc<Vec<u8>>);
 
-/// What is compared: mode, gain, A, B.
+/// The pictures of a comparison: mode, gain, pixels of A, pixels of B.
 type ComparisonOf = (Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>);
 
-/// What came of it.
+/// The result of a comparison: mode and map; no map where the pictures cannot be compared.
 type Compared = (Mode, Option<Map>);
 
-/// What is known of A or B.
+/// Graph, errors and picture of side A or B.
 #[derive(Default)]
-struct Slot {
-    outline: Option<Arc<Outline>>,
+struct Side {
+    info: Option<Arc<GraphInfo>>,
     /// Errors of the last build.
     errors: Vec<Diagnostic>,
     /// Messages of the graph's checks.
@@ -76,7 +76,7 @@ struct Slot {
     picture: Option<PictureReport>,
 }
 
-/// What is shown on the right.
+/// Tabs of the right panel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Tab {
     Surroundings,
@@ -90,7 +90,7 @@ enum Tab {
 
 /// How to open the workbench.
 pub struct Options {
-    /// Its folders.
+    /// The program's folders.
     pub home: Home,
     /// The device that renders.
     pub gpu: GpuOptions,
@@ -98,9 +98,9 @@ pub struct Options {
     pub experiment: PathBuf,
     /// Another scene than the experiment's.
     pub scene: Option<String>,
-    /// Picture size; that of the window's middle when absent.
+    /// Picture size; that of the viewport when absent.
     pub size: Option<(u32, u32)>,
-    /// Where to log what happens.
+    /// File for the log of events.
     pub events: Option<PathBuf>,
 }
 
@@ -108,22 +108,22 @@ pub struct Options {
 pub struct Workbench {
     engine: Engine,
     watch: watch::Watch,
-    wish: Wish,
-    /// The wish that the engine was told last.
-    told: Wish,
+    desired: RenderRequest,
+    /// The request that the engine was sent last.
+    sent: RenderRequest,
     name: String,
-    slots: [Slot; 2],
+    sides: [Side; 2],
     scene: Option<Arc<Scene>>,
-    /// Of the scene's bounds, m; asking for them walks through all vertices.
+    /// Diagonal of the scene's bounds, m; asking for the bounds walks through all vertices.
     diagonal: f32,
     experiment: Option<Experiment>,
     loading: Option<(String, f32)>,
     device: Option<DeviceReport>,
     history: history::History,
-    /// Whether undo goes to the scene that is loaded: its view and light are those of the wish.
+    /// Whether undo goes to the scene that is loaded: its view and light are those of the desired state.
     returning: bool,
     panel: panel::Panel,
-    panel_slot: usize,
+    panel_side: usize,
     view: view::View,
     tab: Tab,
     times: times::Times,
@@ -133,7 +133,7 @@ pub struct Workbench {
     paths: paths::Paths,
     gallery: gallery::Gallery,
     help: bool,
-    /// What was said last, and since when.
+    /// The last message of the status line.
     status: String,
     trouble: Option<String>,
     pixels: Vec<NewPixels>,
@@ -168,23 +168,23 @@ impl Workbench {
         let (home, gpu) = (options.home, options.gpu);
         let engine = Engine::start(home.clone(), gpu.clone(), wake.clone());
         let mut watch = watch::Watch::new(&root, wake.clone());
-        let wish = Wish {
-            slots: [Some(slot_of(&experiment)), None],
+        let desired = RenderRequest {
+            sides: [Some(side_of(&experiment)), None],
             scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
             size: options.size.unwrap_or((0, 0)),
-            clock: wish::Clock { at: experiment.time, jumps: 1, ..wish::Clock::default() },
-            ..Wish::default()
+            clock: request::Clock { at: experiment.time, jumps: 1, ..request::Clock::default() },
+            ..RenderRequest::default()
         };
-        watch.scene(&wish.scene);
+        watch.scene(&desired.scene);
         crate::capture::sweep_partials(&root.join("captures"));
         let trouble = watch.trouble.clone();
         Ok(Workbench {
             engine,
             watch,
-            told: Wish::default(),
-            wish,
+            sent: RenderRequest::default(),
+            desired,
             name: experiment.name.clone(),
-            slots: Default::default(),
+            sides: Default::default(),
             scene: None,
             diagonal: 1.0,
             experiment: Some(experiment),
@@ -193,7 +193,7 @@ impl Workbench {
             history: history::History::default(),
             returning: false,
             panel: panel::Panel::default(),
-            panel_slot: 0,
+            panel_side: 0,
             view: view::View::default(),
             tab: Tab::Surroundings,
             times: times::Times::default(),
@@ -231,7 +231,7 @@ impl Workbench {
 
     /// Whether the picture is older than the last good build or shows what no longer compiles.
     fn stale(&self) -> bool {
-        self.slots.iter().any(|s| !s.errors.is_empty())
+        self.sides.iter().any(|s| !s.errors.is_empty())
     }
 
     fn waiting_text(&self) -> String {
@@ -244,32 +244,32 @@ impl Workbench {
 
     /// Sets the parameter that the graph names for clicks.
     fn point_at(&mut self, at: Option<Vec2>) {
-        let Some(outline) = self.slots[0].outline.clone() else { return };
-        let Some(name) = &outline.graph.pointer else { return };
-        let Some(param) = outline.graph.params.list.iter().find(|p| p.name == *name) else { return };
+        let Some(info) = self.sides[0].info.clone() else { return };
+        let Some(name) = &info.graph.pointer else { return };
+        let Some(param) = info.graph.params.list.iter().find(|p| p.name == *name) else { return };
         let at = at.map_or([-1.0; 2], |p| [f64::from(p.x.floor()), f64::from(p.y.floor())]);
-        for slot in self.wish.slots.iter_mut().flatten() {
-            edit::set(slot, param, &crate::graph::param::Value::Vector(at.to_vec()));
+        for side in self.desired.sides.iter_mut().flatten() {
+            edit::set(side, param, &crate::graph::param::Value::Vector(at.to_vec()));
         }
     }
 
     /// Opens the tables, when what was clicked on fills one.
     fn show_tables(&mut self) {
-        let fills = |o: &Arc<Outline>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
-        if self.slots[0].outline.as_ref().is_some_and(fills) {
+        let fills = |o: &Arc<GraphInfo>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
+        if self.sides[0].info.as_ref().is_some_and(fills) {
             self.tab = Tab::Tables;
         }
     }
 
-    /// Tells the engine, if something is wished for that it does not know.
-    fn tell(&mut self) {
-        let mut wish = self.wish.clone();
-        wish.number = self.told.number;
-        if wish_differs(&wish, &self.told) {
-            wish.number += 1;
-            self.wish.number = wish.number;
-            self.told = wish.clone();
-            self.engine.wish(wish);
+    /// Sends the desired state to the engine, if it changed.
+    fn send_request(&mut self) {
+        let mut desired = self.desired.clone();
+        desired.number = self.sent.number;
+        if differs(&desired, &self.sent) {
+            desired.number += 1;
+            self.desired.number = desired.number;
+            self.sent = desired.clone();
+            self.engine.request(desired);
         }
     }
 
@@ -278,14 +278,14 @@ impl Workbench {
         self.trouble.as_deref()
     }
 
-    /// Whether everything wished for is on screen.
+    /// Whether everything requested is on screen.
     pub fn settled(&self) -> bool {
         let shown = |i: usize| {
-            self.wish.slots[i].is_none()
-                || self.slots[i]
+            self.desired.sides[i].is_none()
+                || self.sides[i]
                     .picture
                     .as_ref()
-                    .is_some_and(|p| !p.preview && p.wish >= self.told.number && self.slots[i].outline.is_some())
+                    .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.sides[i].info.is_some())
         };
         shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits()
     }
@@ -306,7 +306,7 @@ impl Workbench {
             .default_size(320.0)
             .size_range(180.0..=760.0)
             .show(ui, |ui| self.right(ui, textures));
-        let inspecting = self.tab == Tab::Inspector && self.inspector.in_the_middle();
+        let inspecting = self.tab == Tab::Inspector && self.inspector.fills_viewport();
         egui::CentralPanel::no_frame().show(ui, |ui| match inspecting {
             true => self.inspected(ui, textures),
             false => self.picture(ui, textures),
@@ -317,27 +317,27 @@ impl Workbench {
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
         self.remember(held);
-        if self.wish.slots[1].is_none() {
-            self.slots[1] = Slot::default();
+        if self.desired.sides[1].is_none() {
+            self.sides[1] = Side::default();
             self.comparison_of = None;
         }
         self.compare();
-        self.tell();
-        self.ask_judge(ui);
+        self.send_request();
+        self.request_errors(ui);
     }
 
-    /// The picture has the size of the middle, once that has stood still for a moment.
+    /// The picture has the size of the viewport, once that has stood still for a moment.
     fn fit_size(&mut self, ui: &Ui) {
         let size = self.fixed_size.unwrap_or((self.area[0].max(1), self.area[1].max(1)));
-        if size == self.wish.size || size.0 < 2 || size.1 < 2 {
+        if size == self.desired.size || size.0 < 2 || size.1 < 2 {
             self.resize_since = None;
             return;
         }
-        let first = self.wish.size == (0, 0);
+        let first = self.desired.size == (0, 0);
         let since = *self.resize_since.get_or_insert_with(Instant::now);
         let quiet = Duration::from_millis(120);
         if first || since.elapsed() >= quiet {
-            self.wish.size = size;
+            self.desired.size = size;
             self.resize_since = None;
         } else {
             ui.ctx().request_repaint_after(quiet);
@@ -347,32 +347,32 @@ impl Workbench {
     fn parameters(&mut self, ui: &mut Ui) {
         // A panel that shrinks to what is in it stays small.
         ui.take_available_width();
-        if self.wish.slots[1].is_some() {
+        if self.desired.sides[1].is_some() {
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.panel_slot, 0, "A");
-                ui.selectable_value(&mut self.panel_slot, 1, "B");
+                ui.selectable_value(&mut self.panel_side, 0, "A");
+                ui.selectable_value(&mut self.panel_side, 1, "B");
                 if ui.small_button("A to B").clicked() {
-                    self.wish.slots[1] = self.wish.slots[0].clone();
+                    self.desired.sides[1] = self.desired.sides[0].clone();
                 }
                 if ui.small_button("B to A").clicked() {
-                    self.wish.slots[0] = self.wish.slots[1].clone();
+                    self.desired.sides[0] = self.desired.sides[1].clone();
                 }
                 if ui.small_button("swap").clicked() {
-                    self.wish.slots.swap(0, 1);
+                    self.desired.sides.swap(0, 1);
                 }
             });
         } else {
-            self.panel_slot = 0;
+            self.panel_side = 0;
         }
-        let number = self.panel_slot;
-        let outline = self.slots[number].outline.clone().or(self.slots[0].outline.clone());
-        let Some(outline) = outline else {
+        let number = self.panel_side;
+        let info = self.sides[number].info.clone().or(self.sides[0].info.clone());
+        let Some(info) = info else {
             ui.weak(self.waiting_text());
             return;
         };
-        let other = self.wish.slots[1 - number].clone();
-        if let Some(slot) = &mut self.wish.slots[number] {
-            self.panel.show(ui, &outline.graph.params, slot, other.as_ref());
+        let other = self.desired.sides[1 - number].clone();
+        if let Some(side) = &mut self.desired.sides[number] {
+            self.panel.show(ui, &info.graph.params, side, other.as_ref());
         }
     }
 
@@ -385,14 +385,14 @@ impl Workbench {
                 (Tab::Inspector, "Inspect"),
                 (Tab::Tables, "Tables"),
                 (Tab::Paths, "Motion"),
-                (Tab::Gallery, "Keep"),
+                (Tab::Gallery, "Save"),
             ] {
                 ui.selectable_value(&mut self.tab, tab, name);
             }
         });
         ui.separator();
-        // What is not looked at need not be made.
-        (self.wish.look, self.wish.table) = (None, None);
+        // What no tab shows need not be made.
+        (self.desired.inspect, self.desired.table) = (None, None);
         match self.tab {
             Tab::Surroundings => self.surroundings(ui),
             Tab::Times => self.times_tab(ui),
@@ -411,10 +411,10 @@ impl Workbench {
                 help::Action::Help => self.help = !self.help,
                 help::Action::Undo => self.go(true),
                 help::Action::Redo => self.go(false),
-                help::Action::Play => self.wish.clock.playing = !self.wish.clock.playing,
+                help::Action::Play => self.desired.clock.playing = !self.desired.clock.playing,
                 help::Action::Step => {
-                    self.wish.clock.playing = false;
-                    self.wish.clock.steps += 1;
+                    self.desired.clock.playing = false;
+                    self.desired.clock.steps += 1;
                 }
                 help::Action::Flip => self.view.flipped = !self.view.flipped,
                 help::Action::Unpoint => self.point_at(None),
@@ -433,9 +433,9 @@ impl Workbench {
     }
 }
 
-/// Whether two wishes differ in anything but their number.
-fn wish_differs(a: &Wish, b: &Wish) -> bool {
-    a.slots != b.slots
+/// Whether two requests differ in anything but their number.
+fn differs(a: &RenderRequest, b: &RenderRequest) -> bool {
+    a.sides != b.sides
         || a.scene != b.scene
         || a.lights != b.lights
         || a.camera != b.camera
@@ -444,7 +444,7 @@ fn wish_differs(a: &Wish, b: &Wish) -> bool {
         || a.clock != b.clock
         || a.continuous != b.continuous
         || (a.revision, a.scene_revision) != (b.revision, b.scene_revision)
-        || a.look != b.look
+        || a.inspect != b.inspect
         || a.table != b.table
 }
 

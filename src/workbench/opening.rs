@@ -1,7 +1,7 @@
 //! What is opened: experiments, scenes, files that were edited or dropped on the window.
 
-use super::wish::SlotWish;
-use super::{Workbench, keep, watch};
+use super::request::SideRequest;
+use super::{Workbench, save, watch};
 use crate::experiment::Experiment;
 use crate::lab::viewpoint_of;
 use serde_json::json;
@@ -11,17 +11,17 @@ use std::time::Instant;
 impl Workbench {
     pub(super) fn files_changed(&mut self, changed: &watch::Changed) {
         if changed.method {
-            self.wish.revision += 1;
+            self.desired.revision += 1;
             self.changed_at = Some(Instant::now());
-            self.event("changed", json!({ "revision": self.wish.revision }));
+            self.event("changed", json!({ "revision": self.desired.revision }));
         }
         if changed.scene {
-            self.wish.scene_revision += 1;
+            self.desired.scene_revision += 1;
         }
         for path in &changed.experiments {
             self.experiment_changed(path);
         }
-        self.tell();
+        self.send_request();
     }
 
     /// The open experiment's file was edited: its values take the place of those here.
@@ -31,39 +31,39 @@ impl Workbench {
         }
         match Experiment::read(path) {
             Ok(experiment) => {
-                self.slots[0].errors.clear();
-                if slot_of(&experiment) != self.wish.slots[0].clone().unwrap_or_default()
-                    || experiment.scene != self.wish.scene
+                self.sides[0].errors.clear();
+                if side_of(&experiment) != self.desired.sides[0].clone().unwrap_or_default()
+                    || experiment.scene != self.desired.scene
                 {
                     self.open(&experiment);
                     self.status = format!("read {} again", path.display());
                 }
             }
-            Err(errors) => self.slots[0].errors = errors,
+            Err(errors) => self.sides[0].errors = errors,
         }
     }
 
-    /// Shows an experiment in slot A.
+    /// Shows an experiment in side A.
     pub(super) fn open(&mut self, experiment: &Experiment) {
         self.history.opens();
         self.name.clone_from(&experiment.name);
-        self.wish.slots[0] = Some(slot_of(experiment));
-        if self.wish.scene == experiment.scene {
+        self.desired.sides[0] = Some(side_of(experiment));
+        if self.desired.scene == experiment.scene {
             if let Some(scene) = &self.scene {
-                self.wish.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
-                self.wish.lights = keep::lights(experiment, scene).unwrap_or_default();
+                self.desired.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
+                self.desired.lights = save::lights(experiment, scene).unwrap_or_default();
             }
         } else {
             self.open_scene(&experiment.scene);
         }
         self.experiment = Some(experiment.clone());
-        self.wish.clock.at = experiment.time;
-        self.wish.clock.jumps += 1;
+        self.desired.clock.at = experiment.time;
+        self.desired.clock.jumps += 1;
     }
 
     pub(super) fn open_scene(&mut self, spec: &str) {
-        self.wish.scene = spec.to_string();
-        self.wish.lights = None;
+        self.desired.scene = spec.to_string();
+        self.desired.lights = None;
         self.returning = false;
         self.watch.scene(spec);
     }
@@ -79,19 +79,19 @@ impl Workbench {
                 self.open_scene(&spec);
             }
         }
-        self.tell();
+        self.send_request();
     }
 
-    /// The present experiment, as slot A shows it.
+    /// The present experiment, as side A shows it.
     pub(super) fn bare(&self) -> Experiment {
-        let slot = self.wish.slots[0].clone().unwrap_or_default();
-        Experiment { name: self.name.clone(), ..self.wish.experiment(&slot) }
+        let side = self.desired.sides[0].clone().unwrap_or_default();
+        Experiment { name: self.name.clone(), ..self.desired.experiment(&side) }
     }
 }
 
-/// A slot that shows an experiment.
-pub(super) fn slot_of(experiment: &Experiment) -> SlotWish {
-    SlotWish {
+/// A side that shows an experiment.
+pub(super) fn side_of(experiment: &Experiment) -> SideRequest {
+    SideRequest {
         graph: experiment.graph.clone(),
         params: experiment.params.iter().map(|(name, value)| (name.value.clone(), value.clone())).collect(),
     }

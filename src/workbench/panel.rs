@@ -1,7 +1,7 @@
 //! The panel of parameters, made from what the graph declares: nothing here knows any of them.
 
 use super::edit;
-use super::wish::SlotWish;
+use super::request::SideRequest;
 use crate::graph::param::{Kind, Param, Params, Value};
 use egui::{Color32, Response, RichText, Ui};
 
@@ -18,13 +18,13 @@ pub struct Panel {
 const CHANGED: Color32 = Color32::from_rgb(255, 196, 84);
 
 impl Panel {
-    /// Shows the parameters of a slot; edits go into it. `other` is the slot it is compared with.
-    pub fn show(&mut self, ui: &mut Ui, params: &Params, slot: &mut SlotWish, other: Option<&SlotWish>) {
+    /// Shows the parameters of a side; edits go into it. `other` is the side it is compared with.
+    pub fn show(&mut self, ui: &mut Ui, params: &Params, side: &mut SideRequest, other: Option<&SideRequest>) {
         let top = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(top, egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let reset = egui::Button::new(RichText::new("reset all")).small();
-            if ui.add_enabled(!slot.params.is_empty(), reset).clicked() {
-                slot.params.clear();
+            if ui.add_enabled(!side.params.is_empty(), reset).clicked() {
+                side.params.clear();
             }
             ui.checkbox(&mut self.only_changed, "changed").on_hover_text("Only what is not at its default");
             ui.add(egui::TextEdit::singleline(&mut self.search).hint_text("search").desired_width(f32::INFINITY));
@@ -44,12 +44,12 @@ impl Panel {
                     .iter()
                     .filter(|p| p.group == *group)
                     .filter(|p| matches(p, &needle))
-                    .filter(|p| !self.only_changed || is_set(slot, p))
+                    .filter(|p| !self.only_changed || is_set(side, p))
                     .collect();
                 if shown.is_empty() {
                     continue;
                 }
-                let count = params.list.iter().filter(|p| p.group == *group && is_set(slot, p)).count();
+                let count = params.list.iter().filter(|p| p.group == *group && is_set(side, p)).count();
                 let title = if group.is_empty() { "Other" } else { group };
                 let title = if count > 0 {
                     RichText::new(format!("{title} ({count})")).color(CHANGED)
@@ -60,7 +60,7 @@ impl Panel {
                     ui,
                     |ui| {
                         for param in shown {
-                            row(ui, param, slot, other);
+                            row(ui, param, side, other);
                         }
                     },
                 );
@@ -74,14 +74,14 @@ fn matches(param: &Param, needle: &str) -> bool {
         || [&param.name, &param.group, &param.help].iter().any(|text| text.to_lowercase().contains(needle))
 }
 
-fn is_set(slot: &SlotWish, param: &Param) -> bool {
-    slot.params.iter().any(|(name, _)| *name == param.name)
+fn is_set(side: &SideRequest, param: &Param) -> bool {
+    side.params.iter().any(|(name, _)| *name == param.name)
 }
 
-fn row(ui: &mut Ui, param: &Param, slot: &mut SlotWish, other: Option<&SlotWish>) {
-    let before = edit::value(slot, param);
+fn row(ui: &mut Ui, param: &Param, side: &mut SideRequest, other: Option<&SideRequest>) {
+    let before = edit::value(side, param);
     let mut value = before.clone();
-    let changed = is_set(slot, param);
+    let changed = is_set(side, param);
     ui.horizontal(|ui| {
         let reset = ui.add_visible(changed, egui::Button::new("↺").small().frame(false));
         reset
@@ -99,7 +99,7 @@ fn row(ui: &mut Ui, param: &Param, slot: &mut SlotWish, other: Option<&SlotWish>
         }
     });
     if value != before {
-        edit::set(slot, param, &value);
+        edit::set(side, param, &value);
     }
 }
 

@@ -64,7 +64,7 @@ impl Workbench {
                                 self.paths.name = short(&file.to_string_lossy());
                                 self.paths.taken = false;
                             }
-                            Err(errors) => self.slots[0].errors = errors,
+                            Err(errors) => self.sides[0].errors = errors,
                         }
                         ui.close();
                     }
@@ -103,10 +103,10 @@ impl Workbench {
     }
 
     fn path_keys(&mut self, ui: &mut Ui) {
-        let now = self.slots[0].picture.as_ref().map_or(0.0, |p| p.time);
+        let now = self.sides[0].picture.as_ref().map_or(0.0, |p| p.time);
         ui.horizontal(|ui| {
             let add = ui.button("add key").on_hover_text("The camera as it stands now, a second after the last key");
-            if let Some(camera) = self.wish.camera.as_ref().filter(|_| add.clicked()) {
+            if let Some(camera) = self.desired.camera.as_ref().filter(|_| add.clicked()) {
                 let time = self.paths.path.keys.last().map_or(0.0, |k| k.time + 1.0);
                 let key = Key::new(time, &PlacedCamera::from(camera));
                 if let Err(e) = camera_path::insert(&mut self.paths.path, key) {
@@ -151,9 +151,9 @@ impl Workbench {
         }
         if let (Some(key), Some(scene)) = (go, &self.scene) {
             let placed = PlacedCamera { up: key.up, ..PlacedCamera::new(key.eye, key.target, key.fov_y) };
-            self.wish.camera = Some(Viewpoint::placed(&placed, scene).camera);
+            self.desired.camera = Some(Viewpoint::placed(&placed, scene).camera);
         }
-        self.wish.path = (self.paths.follow && !self.paths.path.keys.is_empty()).then(|| self.paths.path.clone());
+        self.desired.path = (self.paths.follow && !self.paths.path.keys.is_empty()).then(|| self.paths.path.clone());
     }
 
     fn sequence(&mut self, ui: &mut Ui) {
@@ -173,20 +173,20 @@ impl Workbench {
         });
     }
 
-    /// Renders the sequence by the program's own command, beside the window, from files of its own.
+    /// Renders the sequence by the program's own command, in a process of its own, from files of its own.
     fn start_sequence(&mut self) -> Result<(), LabError> {
-        let (Some(slot), Some(outline)) = (&self.wish.slots[0], &self.slots[0].outline) else {
+        let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
             return Err(LabError::Request("no graph has been built yet".into()));
         };
         let failed = |e: std::io::Error| LabError::Request(format!("cannot write the sequence's settings: {e}"));
         let folder = tempfile::Builder::new().prefix("conelab-sequence-").tempdir().map_err(failed)?;
-        let mut experiment = super::keep::experiment(&self.wish, slot, "sequence", 0.0, self.scene.as_deref());
+        let mut experiment = super::save::experiment(&self.desired, side, "sequence", 0.0, self.scene.as_deref());
         let scene = PathBuf::from(&experiment.scene);
         if scene.is_file() {
             experiment.scene = scene.canonicalize().map_err(failed)?.to_string_lossy().into_owned();
         }
         let file = folder.path().join("sequence.ron");
-        crate::experiment::write(&experiment, &outline.graph.params, &file, false)?;
+        crate::experiment::write(&experiment, &info.graph.params, &file, false)?;
         let mut command = std::process::Command::new(std::env::current_exe().map_err(failed)?);
         command.current_dir(&self.root).env("CONELAB_HOME", &self.root);
         command.arg("render").arg(&file).arg("--sequence").arg(&self.paths.sequence);

@@ -1,4 +1,4 @@
-//! What the engine tells the window.
+//! Messages from the engine to the window.
 
 use crate::graph::load::Graph;
 use crate::graph::param::Params;
@@ -8,8 +8,8 @@ use crate::graph::successor::Change;
 use crate::graph::table::Table;
 use crate::lab::Texels;
 use crate::scene::Scene;
-use crate::workbench::judge::Judged;
-use crate::workbench::wish::Look;
+use crate::workbench::error_worker::ErrorResult;
+use crate::workbench::request::InspectTarget;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -22,9 +22,9 @@ pub struct DeviceReport {
     pub driver: String,
 }
 
-/// A graph as it runs now.
+/// The graph of a side as it runs now.
 #[derive(Clone)]
-pub struct Outline {
+pub struct GraphInfo {
     /// The graph.
     pub graph: Arc<Graph>,
     /// Its parameters with the values they were built with.
@@ -47,14 +47,14 @@ pub struct Outline {
 #[derive(Clone)]
 pub struct PictureReport {
     /// 0 is A, 1 is B.
-    pub slot: usize,
-    /// Wish that it fulfils.
-    pub wish: u64,
+    pub side: usize,
+    /// The request that it fulfils.
+    pub request: u64,
     /// Revision of the files that it was made from.
     pub revision: u64,
     /// Whether it is the preview, shown until the graph's own picture is there.
     pub preview: bool,
-    /// Counts the slot's frames.
+    /// Counts the side's frames.
     pub frame: u64,
     /// Time of the scene, s.
     pub time: f64,
@@ -70,17 +70,17 @@ pub struct PictureReport {
     pub cpu_ms: f64,
 }
 
-/// News from the engine.
+/// A message from the engine.
 pub enum Report {
     /// A device was opened.
     Device(DeviceReport),
-    /// A slot runs something new. The times are those of the whole build, ms, and of the wait from the change to it.
+    /// A side runs something new. The times are those of the whole build, ms, and of the wait from the change to it.
     Built {
         /// 0 is A, 1 is B.
-        slot: usize,
+        side: usize,
         /// What runs.
-        outline: Arc<Outline>,
-        /// What was kept.
+        info: Arc<GraphInfo>,
+        /// Numbers of objects kept and rebuilt.
         change: Change,
         /// From the start of the build to the swap.
         ms: f64,
@@ -92,16 +92,16 @@ pub enum Report {
     /// A build failed; what ran before runs on.
     Failed {
         /// 0 is A, 1 is B.
-        slot: usize,
-        /// What is wrong.
+        side: usize,
+        /// The errors, with their places.
         diagnostics: Vec<Diagnostic>,
         /// The sources' revision.
         revision: u64,
     },
-    /// A slot's parameters were set without building anything.
+    /// A side's parameters were set without building anything.
     Set {
         /// 0 is A, 1 is B.
-        slot: usize,
+        side: usize,
         /// The values.
         params: Params,
     },
@@ -113,16 +113,16 @@ pub enum Report {
     Loaded(Arc<Scene>),
     /// A scene could not be loaded; the one before stays.
     LoadFailed(String),
-    /// Texels that were looked for.
-    Texels(Look, Box<Texels>),
-    /// Bytes of a table's buffer, of slot A.
+    /// Texels that the inspector asked for.
+    Texels(InspectTarget, Box<Texels>),
+    /// Number of a table, where its columns lie, and the bytes of its buffer, of side A.
     Table(usize, Table, Vec<u8>),
     /// Messages of the graph's checks that failed.
     Checks(usize, Vec<String>),
     /// A capture was made, or why not.
     Captured(Result<PathBuf, String>),
     /// The error of what is shown.
-    Judged(Judged),
+    Error(ErrorResult),
     /// Something the user should know.
     Trouble(String),
 }

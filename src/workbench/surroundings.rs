@@ -45,15 +45,15 @@ impl Workbench {
                 ui.label("views:");
                 for name in &names {
                     if ui.small_button(name).clicked() {
-                        self.wish.camera = scene.cameras.get(name).copied();
+                        self.desired.camera = scene.cameras.get(name).copied();
                     }
                 }
                 if ui.small_button("whole scene").clicked() {
-                    self.wish.camera = Some(Viewpoint::around(&scene).camera);
+                    self.desired.camera = Some(Viewpoint::around(&scene).camera);
                 }
             });
         }
-        if let Some(camera) = &mut self.wish.camera {
+        if let Some(camera) = &mut self.desired.camera {
             metres(ui, "eye, m", &mut camera.eye);
             metres(ui, "target, m", &mut camera.target);
             ui.add(egui::Slider::new(&mut camera.fov_y, 5.0..=150.0).suffix(" deg").text("field of view"));
@@ -61,7 +61,7 @@ impl Workbench {
     }
 
     fn time(&mut self, ui: &mut Ui) {
-        let clock = &mut self.wish.clock;
+        let clock = &mut self.desired.clock;
         ui.horizontal(|ui| {
             let name = if clock.playing { "pause" } else { "play" };
             if ui.button(name).on_hover_text("Space").clicked() {
@@ -75,7 +75,7 @@ impl Workbench {
                 clock.at = 0.0;
                 clock.jumps += 1;
             }
-            ui.label(format!("{:.3} s", self.slots[0].picture.as_ref().map_or(0.0, |p| p.time)));
+            ui.label(format!("{:.3} s", self.sides[0].picture.as_ref().map_or(0.0, |p| p.time)));
         });
         ui.horizontal(|ui| {
             let mut fixed = clock.step.is_some();
@@ -93,7 +93,7 @@ impl Workbench {
 
     fn lights(&mut self, ui: &mut Ui) {
         let Some(scene) = self.scene.clone() else { return };
-        let (mut lights, mut sky) = self.wish.lights.clone().unwrap_or((scene.lights.clone(), scene.sky));
+        let (mut lights, mut sky) = self.desired.lights.clone().unwrap_or((scene.lights.clone(), scene.sky));
         ui.horizontal(|ui| {
             for x in [&mut sky.x, &mut sky.y, &mut sky.z] {
                 ui.add(DragValue::new(x).range(0.0..=1e6).speed(0.01));
@@ -107,9 +107,9 @@ impl Workbench {
         let own = (scene.lights.clone(), scene.sky);
         let differs = (&lights, sky) != (&own.0, own.1);
         if ui.add_enabled(differs, egui::Button::new("reset lights")).clicked() {
-            self.wish.lights = None;
+            self.desired.lights = None;
         } else {
-            self.wish.lights = differs.then_some((lights, sky));
+            self.desired.lights = differs.then_some((lights, sky));
         }
     }
 }

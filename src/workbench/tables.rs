@@ -136,11 +136,11 @@ const ABOUT: [(CellKind, &str); 6] = [
 impl Workbench {
     /// The tab.
     pub(super) fn tables_tab(&mut self, ui: &mut Ui) {
-        let Some(outline) = self.slots[0].outline.clone() else {
+        let Some(info) = self.sides[0].info.clone() else {
             ui.weak(self.waiting_text());
             return;
         };
-        let list = &outline.graph.tables;
+        let list = &info.graph.tables;
         self.tables.chosen = self.tables.chosen.min(list.len().saturating_sub(1));
         let Some(mut table) = list.get(self.tables.chosen).map(|t| &t.value) else {
             ui.weak("The graph has no tables");
@@ -154,13 +154,13 @@ impl Workbench {
                 }
             }
         });
-        self.wish.table = Some(self.tables.chosen);
+        self.desired.table = Some(self.tables.chosen);
         ui.weak(&table.help);
         self.tables.refresh();
         self.table_bar(ui, &table.title);
         let shown = self.tables.rows.as_ref().map_or(0, |r| r.shown.len());
         if shown == 0 {
-            ui.weak(match (&outline.graph.pointer, &self.tables.rows) {
+            ui.weak(match (&info.graph.pointer, &self.tables.rows) {
                 (_, None) => "…",
                 (Some(_), _) => "No rows: click on the picture",
                 (None, _) => "No rows",

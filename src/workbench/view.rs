@@ -1,11 +1,11 @@
-//! The picture in the middle: A, B, or both, and what the mouse does there.
+//! The picture in the viewport: A, B, or both, and what the mouse does there.
 
 use super::compare::{MODES, Mode};
 use super::motion;
 use super::{COMPARISON, Workbench};
 use egui::{Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
-/// State of the middle.
+/// State of the viewport.
 pub struct View {
     /// How A and B are shown.
     pub mode: Mode,
@@ -81,7 +81,7 @@ impl Workbench {
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
         self.area = [(area.width() * scale) as u32, (area.height() * scale) as u32];
-        let Some(a) = self.slots[0].picture.as_ref().map(|p| p.size) else {
+        let Some(a) = self.sides[0].picture.as_ref().map(|p| p.size) else {
             painter.text(
                 area.center(),
                 egui::Align2::CENTER_CENTER,
@@ -91,7 +91,7 @@ impl Workbench {
             );
             return;
         };
-        let both = self.wish.slots[1].is_some() && self.slots[1].picture.is_some();
+        let both = self.desired.sides[1].is_some() && self.sides[1].picture.is_some();
         let mut shown = fit(area, a, scale);
         let draw = |number: usize, rect: Rect, clip: Rect| {
             painter.with_clip_rect(clip.intersect(area)).image(textures[number], rect, WHOLE, Color32::WHITE);
@@ -162,7 +162,7 @@ impl Workbench {
             self.point_at(Some(at));
             self.show_tables();
         }
-        if let Some(camera) = &mut self.wish.camera {
+        if let Some(camera) = &mut self.desired.camera {
             motion::steer(ui, response, camera, self.view.steering, self.diagonal, self.view.speed);
         }
     }

@@ -1,7 +1,7 @@
 //! What several tests share: the program itself, a device with validation, pictures as numbers.
 #![allow(dead_code, reason = "each test uses a part")]
 
-pub mod bodies;
+pub mod closed_meshes;
 
 use conelab::experiment::Experiment;
 use conelab::lab::{Home, Lab, Session};

@@ -11,7 +11,7 @@ const WHITE: u32 = 0;
 const RED: u32 = 1;
 const ACTOR: u32 = 2;
 
-/// A box 6.4 cm thick, 1.4 m high and 1.2 m deep that crosses a room of 4 x 3 x 4 m at .6 m/s, and back.
+/// A box 6.4 cm thick, 1.4 m high and 1.2 m deep that crosses a room of 4 x 3 x 4 m at 0.6 m/s, and back.
 pub(super) fn thin_box() -> Scene {
     let mut mesh = MeshBuilder::new("thin box");
     let half = Vec3::new(0.032, 0.7, 0.6);
@@ -21,7 +21,7 @@ pub(super) fn thin_box() -> Scene {
     room("moving-box", mesh.finish(), Animation { keyframes, repeat: true })
 }
 
-/// A blade of 1.8 x .3 x .064 m that turns before the back wall, once in 4 s.
+/// A blade of 1.8 x 0.3 x 0.064 m that turns before the back wall, once in 4 s.
 pub(super) fn blade() -> Scene {
     let mut mesh = MeshBuilder::new("blade");
     let half = Vec3::new(0.9, 0.15, 0.032);

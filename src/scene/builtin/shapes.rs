@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec2, Vec3};
 use indexmap::IndexMap;
 
-use crate::scene::{Mesh, Part, Vertex};
+use crate::scene::{Mesh, Submesh, Vertex};
 
 /// Collects triangles by material; everything is placed by `transform`.
 pub(super) struct MeshBuilder {
@@ -22,7 +22,7 @@ impl MeshBuilder {
         let mut mesh = Mesh { name: self.name, vertices: self.vertices, ..Mesh::default() };
         for (material, indices) in self.triangles {
             let first_index = mesh.indices.len() as u32;
-            mesh.parts.push(Part { first_index, index_count: indices.len() as u32, material });
+            mesh.submeshes.push(Submesh { first_index, index_count: indices.len() as u32, material });
             mesh.indices.extend(indices);
         }
         mesh
@@ -166,8 +166,8 @@ impl MeshBuilder {
             return self.triangle(material, corners);
         }
         let (ab, bc, ca) = ((a + b).normalize(), (b + c).normalize(), (c + a).normalize());
-        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
-            self.sphere_face(material, centre, radius, part, level - 1);
+        for face in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            self.sphere_face(material, centre, radius, face, level - 1);
         }
     }
 }

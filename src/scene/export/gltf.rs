@@ -163,10 +163,10 @@ impl Writer {
             self.accessors[position as usize]["max"] = json!(high.to_array());
         }
         let indices = self.view(bytemuck::cast_slice(&mesh.indices), json!({ "target": 34963 }));
-        let primitives = mesh.parts.iter().map(|part| {
-            let accessor = self.accessor(json!({ "bufferView": indices, "byteOffset": part.first_index * 4,
-                "componentType": UNSIGNED_INT, "type": "SCALAR", "count": part.index_count }));
-            json!({ "attributes": attributes, "indices": accessor, "material": part.material })
+        let primitives = mesh.submeshes.iter().map(|submesh| {
+            let accessor = self.accessor(json!({ "bufferView": indices, "byteOffset": submesh.first_index * 4,
+                "componentType": UNSIGNED_INT, "type": "SCALAR", "count": submesh.index_count }));
+            json!({ "attributes": attributes, "indices": accessor, "material": submesh.material })
         });
         let primitives: Vec<Value> = primitives.collect();
         json!({ "name": mesh.name, "primitives": primitives })

@@ -55,9 +55,9 @@ fn write_instance(
     }
     // A mirroring transform turns faces inside out; the file has no transform, so its corners turn instead.
     let order = if axes.determinant() < 0.0 { [0, 2, 1] } else { [0, 1, 2] };
-    for part in &mesh.parts {
-        writeln!(out, "usemtl {}", materials[part.material as usize])?;
-        let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
+    for submesh in &mesh.submeshes {
+        writeln!(out, "usemtl {}", materials[submesh.material as usize])?;
+        let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
         for triangle in mesh.indices[range].as_chunks::<3>().0 {
             let [a, b, c] = order.map(|k| triangle[k] as usize + first_vertex);
             writeln!(out, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}")?;

@@ -25,7 +25,7 @@ pub(super) fn add(scene: &mut Scene, model: Scene, entry: &ModelEntry) {
         scene.materials.push(material);
     }
     for mut mesh in model.meshes {
-        mesh.parts.iter_mut().for_each(|part| part.material += first_material);
+        mesh.submeshes.iter_mut().for_each(|submesh| submesh.material += first_material);
         scene.meshes.push(mesh);
     }
     for mut instance in model.instances {

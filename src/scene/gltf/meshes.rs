@@ -1,4 +1,4 @@
-//! Meshes: each primitive is read and repaired by itself, then becomes a part of its mesh.
+//! Meshes: each primitive is read and repaired by itself, then becomes a submesh.
 
 use ::gltf::mesh::{Mode, Primitive};
 use ::gltf::{Document, Semantic};
@@ -8,7 +8,7 @@ use super::accessors;
 use super::materials::UvSource;
 use crate::scene::mesh::{Dropped, RawMesh, prepare_all};
 use crate::scene::progress::Progress;
-use crate::scene::{Material, Mesh, Part, Vertex};
+use crate::scene::{Material, Mesh, Submesh, Vertex};
 
 /// One mesh per mesh of the file, in order.
 pub(super) fn read(
@@ -55,7 +55,9 @@ fn append(mesh: &mut Mesh, primitive: Mesh) -> Result<(), String> {
     let first = mesh.indices.len() as u32;
     mesh.indices.extend(primitive.indices.iter().map(|i| i.saturating_add(base)));
     mesh.vertices.extend(primitive.vertices);
-    mesh.parts.extend(primitive.parts.iter().map(|part| Part { first_index: part.first_index + first, ..*part }));
+    mesh.submeshes.extend(
+        primitive.submeshes.iter().map(|submesh| Submesh { first_index: submesh.first_index + first, ..*submesh }),
+    );
     Ok(())
 }
 
@@ -99,8 +101,8 @@ fn read_primitive(
         None => (0..vertices.len() as u32).collect(),
     };
     let indices = triangles(primitive.mode(), indices);
-    let part = Part { first_index: 0, index_count: indices.len() as u32, material: material as u32 };
-    let mesh = Mesh { name: name.into(), vertices, indices, parts: vec![part] };
+    let submesh = Submesh { first_index: 0, index_count: indices.len() as u32, material: material as u32 };
+    let mesh = Mesh { name: name.into(), vertices, indices, submeshes: vec![submesh] };
     // Tangents without normals cannot have been meant for ours.
     Ok(Some(RawMesh { mesh, has_normals: normals.is_some(), has_tangents: normals.is_some() && tangents.is_some() }))
 }

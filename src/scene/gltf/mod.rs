@@ -51,7 +51,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let (textures, texture_warnings) = requests.load(progress)?;
     scene.warnings.extend(texture_warnings);
     (scene.meshes, scene.materials, scene.textures) = (meshes, materials, textures);
-    scene.instances.retain(|instance| !scene.meshes[instance.mesh as usize].parts.is_empty());
+    scene.instances.retain(|instance| !scene.meshes[instance.mesh as usize].submeshes.is_empty());
     Ok(scene)
 }
 

@@ -68,7 +68,7 @@ fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Dropped), Stri
     } else {
         normals::generate(&mut mesh);
     }
-    let normal_mapped = mesh.parts.iter().any(|p| materials[p.material as usize].normal_texture.is_some());
+    let normal_mapped = mesh.submeshes.iter().any(|p| materials[p.material as usize].normal_texture.is_some());
     if has_tangents {
         tangents::repair(&mut mesh);
     } else if normal_mapped {
@@ -87,24 +87,24 @@ fn check_indices(mesh: &Mesh, materials: usize) -> Result<(), String> {
             mesh.name
         ));
     }
-    for part in &mesh.parts {
-        if part.material as usize >= materials {
+    for submesh in &mesh.submeshes {
+        if submesh.material as usize >= materials {
             return Err(format!(
                 "mesh '{}' uses material {} of {materials}. The file is damaged; export it again",
-                mesh.name, part.material
+                mesh.name, submesh.material
             ));
         }
     }
     Ok(())
 }
 
-/// Rewrites indices and parts without the triangles that have no place or no area.
+/// Rewrites indices and submeshes without the triangles that have no place or no area.
 fn drop_bad_triangles(mesh: &mut Mesh) -> Dropped {
     let mut dropped = Dropped::default();
     let mut kept = Vec::with_capacity(mesh.indices.len());
-    for part in &mut mesh.parts {
+    for submesh in &mut mesh.submeshes {
         let first = kept.len();
-        let range = part.first_index as usize..(part.first_index + part.index_count) as usize;
+        let range = submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize;
         for triangle in mesh.indices[range].as_chunks::<3>().0 {
             let corner = triangle.map(|i| DVec3::from_array(mesh.vertices[i as usize].position.map(f64::from)));
             if corner.iter().any(|p| !p.is_finite()) {
@@ -115,11 +115,11 @@ fn drop_bad_triangles(mesh: &mut Mesh) -> Dropped {
                 kept.extend_from_slice(triangle);
             }
         }
-        part.first_index = first as u32;
-        part.index_count = (kept.len() - first) as u32;
+        submesh.first_index = first as u32;
+        submesh.index_count = (kept.len() - first) as u32;
     }
     mesh.indices = kept;
-    mesh.parts.retain(|part| part.index_count > 0);
+    mesh.submeshes.retain(|submesh| submesh.index_count > 0);
     dropped
 }
 

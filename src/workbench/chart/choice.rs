@@ -1,7 +1,7 @@
 //! What of a sweep is charted.
 
 use super::folder::Folder;
-use crate::report::{Data, Scored, front};
+use crate::report::{Data, Scored, pareto};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ impl Choice {
 #[derive(Default)]
 pub struct Chosen {
     of: Option<(PathBuf, Choice)>,
-    /// Those that have a score.
+    /// Points that have a score.
     pub dots: Vec<Scored>,
     /// Places in `dots` of the Pareto front, by time.
     pub front: Vec<usize>,
@@ -57,7 +57,7 @@ impl Chosen {
         if of != self.of {
             self.of = of;
             self.dots = data.as_ref().map_or(Vec::new(), |d| d.scored(choice.subject, &choice.part, choice.metric));
-            self.front = front(&self.dots.iter().map(|d| (d.ms, d.error)).collect::<Vec<_>>());
+            self.front = pareto(&self.dots.iter().map(|d| (d.ms, d.error)).collect::<Vec<_>>());
             self.on_front = vec![false; self.dots.len()];
             self.front.iter().for_each(|i| self.on_front[*i] = true);
         }

@@ -22,7 +22,7 @@ pub fn name(folder: &Path) -> String {
 
 /// A folder that is read or has been.
 pub struct Folder {
-    /// Where it is.
+    /// Path of the folder.
     pub path: PathBuf,
     /// Its points, or why they cannot be read; nothing while they are read.
     pub data: Option<Result<Arc<Data>, String>>,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What is to be gathered.
+/// A reference that is to be gathered.
 pub struct Job {
     /// Folders.
     pub home: Home,
@@ -31,14 +31,14 @@ pub struct Job {
 pub struct Gather {
     /// How far it is; nothing before the first samples.
     pub state: Option<Gathered>,
-    /// Whether it was told to stop.
+    /// Whether it was asked to stop.
     pub cancelled: bool,
     cancel: Arc<AtomicBool>,
-    news: Receiver<News>,
+    messages: Receiver<Message>,
     thread: Option<std::thread::JoinHandle<Vec<String>>>,
 }
 
-enum News {
+enum Message {
     Progress(Gathered),
     Done(Result<u64, LabError>),
 }
@@ -46,21 +46,21 @@ enum News {
 impl Gather {
     /// Begins.
     pub fn start(job: Job, wake: Arc<dyn Fn() + Send + Sync>) -> Gather {
-        let (out, news) = unbounded();
+        let (out, messages) = unbounded();
         let cancel = Arc::new(AtomicBool::new(false));
         let stop = cancel.clone();
         let thread = std::thread::spawn(move || {
             let progress = |now: Gathered| {
-                let _ = out.send(News::Progress(now));
+                let _ = out.send(Message::Progress(now));
                 wake();
                 if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let (result, messages) = work(job, progress);
-            let _ = out.send(News::Done(result));
+            let _ = out.send(Message::Done(result));
             wake();
             messages
         });
-        Gather { state: None, cancelled: false, cancel, news, thread: Some(thread) }
+        Gather { state: None, cancelled: false, cancel, messages, thread: Some(thread) }
     }
 
     /// Tells it to stop after the block of samples in work; what was gathered is kept.
@@ -69,12 +69,12 @@ impl Gather {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
-    /// Takes in the news; the samples, or what went wrong, once it has ended.
+    /// Takes in the messages; the samples, or what went wrong, once it has ended.
     pub fn take(&mut self) -> Option<Result<u64, LabError>> {
-        for news in self.news.try_iter() {
-            match news {
-                News::Progress(now) => self.state = Some(now),
-                News::Done(result) => return Some(result),
+        for message in self.messages.try_iter() {
+            match message {
+                Message::Progress(now) => self.state = Some(now),
+                Message::Done(result) => return Some(result),
             }
         }
         None

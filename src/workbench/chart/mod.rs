@@ -20,10 +20,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Most dots whose places are told to scripts.
-const MAX_TOLD: usize = 2000;
+/// Most dots whose places are logged for scripts.
+const MAX_LOGGED: usize = 2000;
 /// Least time between two tellings.
-const TOLD_AGE: Duration = Duration::from_millis(100);
+const LOG_AGE: Duration = Duration::from_millis(100);
 
 /// State of this tab.
 #[derive(Default)]
@@ -37,9 +37,9 @@ pub struct Chart {
     chosen: Chosen,
     live: live::State,
     thumbnail: thumbnail::Thumbnail,
-    /// What scripts were told last.
-    told: Value,
-    told_at: Option<Instant>,
+    /// The dots as logged last.
+    logged: Value,
+    logged_at: Option<Instant>,
 }
 
 impl Workbench {
@@ -56,7 +56,7 @@ impl Workbench {
             _ => Vec::new(),
         };
         let title = axis_title(self.chart.choice.metric);
-        let lives = [0, 1].map(|slot| self.chart.live.dot(slot, self.told.number));
+        let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent.number));
         let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
         let shown = plot::Shown {
             chosen: &self.chart.chosen,
@@ -80,7 +80,7 @@ impl Workbench {
                 self.load_point(dot);
             }
         }
-        self.tell_dots(ui, &data, &drawn.places, &differences);
+        self.log_dots(ui, &data, &drawn.places, &differences);
     }
 
     fn folder_row(&mut self, ui: &mut Ui) {
@@ -95,7 +95,7 @@ impl Workbench {
                     }
                 }
             });
-            if ui.small_button("look again").on_hover_text("Reads captures/sweeps and the sweep again").clicked() {
+            if ui.small_button("refresh").on_hover_text("Reads captures/sweeps and the sweep again").clicked() {
                 self.chart.folders = None;
                 chosen = self.chart.folder.as_ref().map(|f| f.path.clone());
             }
@@ -125,7 +125,7 @@ impl Workbench {
     }
 
     fn choice_row(&mut self, ui: &mut Ui, data: Option<&Data>) {
-        // The subject that is looked at, unless another one was asked for.
+        // The subject that is shown, unless another one was asked for.
         if let (Some(data), Some(now), false) = (data, self.chart.live.subject(), self.chart.by_hand) {
             let device = self.device.as_ref().map_or("", |d| d.name.as_str());
             let fits = |key: &_| folder::differences(now, device, key).is_empty();
@@ -156,16 +156,15 @@ impl Workbench {
         });
     }
 
-    /// Shows a point's experiment in slot A, at its size: then its error can be compared.
+    /// Shows a point's experiment in side A, at its size: then its error can be compared.
     fn load_point(&mut self, dot: &Dot) {
         let Some(folder) = &self.chart.folder else { return };
         let short: String = dot.id.chars().take(8).collect();
         let name = format!("{}-{short}", folder::name(&folder.path));
         match Experiment::from_text(&folder.path.join(format!("{name}.ron")), &dot.experiment) {
             Ok(mut experiment) => {
-                if let Some(outline) = self.slots[0].outline.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph))
-                {
-                    without_defaults(&mut experiment, &outline.graph.params);
+                if let Some(info) = self.sides[0].info.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph)) {
+                    without_defaults(&mut experiment, &info.graph.params);
                 }
                 self.fixed_size = Some(experiment.size);
                 self.open(&experiment);
@@ -175,48 +174,48 @@ impl Workbench {
                     json!({ "id": dot.id, "name": name, "params": experiment_params(&experiment) }),
                 );
             }
-            Err(errors) => self.slots[0].errors = errors,
+            Err(errors) => self.sides[0].errors = errors,
         }
     }
 
-    /// Tells scripts where the dots are, in points.
-    fn tell_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[&str]) {
+    /// Logs where the dots are, in points, for scripts.
+    fn log_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[&str]) {
         if self.events.is_none() {
             return;
         }
         let chosen = &self.chart.chosen;
-        let dots = chosen.dots.iter().zip(places).zip(&chosen.on_front).take(MAX_TOLD).map(|((s, at), front)| {
+        let dots = chosen.dots.iter().zip(places).zip(&chosen.on_front).take(MAX_LOGGED).map(|((s, at), front)| {
             json!({ "id": data.dots[s.index].id, "at": [at.x.round(), at.y.round()], "ms": s.ms, "error": s.error,
                 "front": front })
         });
-        let told = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric, "differs": differences,
+        let logged = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric, "differs": differences,
             "dots": dots.collect::<Vec<_>>() });
-        if told == self.chart.told {
+        if logged == self.chart.logged {
             return;
         }
         // The dots move as long as the diamond does.
-        let age = self.chart.told_at.map_or(TOLD_AGE, |t| t.elapsed());
-        if age < TOLD_AGE {
-            ui.ctx().request_repaint_after(TOLD_AGE - age);
+        let age = self.chart.logged_at.map_or(LOG_AGE, |t| t.elapsed());
+        if age < LOG_AGE {
+            ui.ctx().request_repaint_after(LOG_AGE - age);
         } else {
-            self.chart.told_at = Some(Instant::now());
-            self.chart.told = told.clone();
-            self.event("dots", told);
+            self.chart.logged_at = Some(Instant::now());
+            self.chart.logged = logged.clone();
+            self.event("dots", logged);
         }
     }
 
-    /// Takes in what threads of this tab have to say.
-    pub(super) fn chart_news(&mut self) {
+    /// Takes in the messages of the threads of this tab.
+    pub(super) fn poll_chart(&mut self) {
         if self.chart.folder.as_mut().is_some_and(Folder::take) {
             self.chart.chosen.forget();
         }
-        self.gather_news();
+        self.poll_gather();
     }
 
     /// Whether something is about to come.
     pub(super) fn chart_awaits(&self) -> bool {
         let reading = self.chart.folder.as_ref().is_some_and(|f| f.data.is_none());
-        self.tab == super::Tab::Chart && (reading || self.chart.live.awaits() || self.judge_is_due())
+        self.tab == super::Tab::Chart && (reading || self.chart.live.awaits() || self.error_pending())
     }
 }
 

@@ -7,7 +7,7 @@ use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoi
 
 const DOT: Color32 = Color32::from_rgb(120, 160, 215);
 const FRONT: Color32 = Color32::from_rgb(235, 100, 80);
-/// Of A and B.
+/// Colours of A and B.
 pub const LIVE: [Color32; 2] = [Color32::from_rgb(255, 215, 90), Color32::from_rgb(120, 225, 140)];
 /// How near to a dot the pointer must be, points.
 const REACH: f32 = 8.0;
@@ -27,7 +27,7 @@ pub struct Live {
     pub trail: Vec<(f64, f64)>,
 }
 
-/// What is drawn.
+/// Contents of the chart.
 pub struct Shown<'a> {
     /// The dots.
     pub chosen: &'a Chosen,
@@ -35,11 +35,11 @@ pub struct Shown<'a> {
     pub fits: bool,
     /// A and B.
     pub live: [Option<&'a Live>; 2],
-    /// Of the error.
+    /// Title of the error's axis.
     pub title: &'a str,
 }
 
-/// What became of it.
+/// The chart as it was drawn.
 pub struct Drawn {
     /// Where the dots are on the screen, points.
     pub places: Vec<Pos2>,

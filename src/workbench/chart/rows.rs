@@ -9,24 +9,26 @@ impl Workbench {
     /// What is known of A and B, and what can be done about what is not.
     pub(super) fn live_rows(&mut self, ui: &mut Ui, title: &str, lives: &[Option<Live>; 2]) {
         let mut missing = false;
-        for (slot, live) in lives.iter().enumerate().filter(|s| self.wish.slots[s.0].is_some()) {
-            let state = &self.chart.live.slots[slot];
-            let name = ["A", "B"][slot];
-            match state.judged.as_ref().map(|j| (&j.question, &j.result)) {
-                None if self.wish.clock.playing => drop(ui.weak(format!("{name}: judged when time stands still"))),
-                None => drop(ui.weak(format!("{name}: not judged yet"))),
+        for (side, live) in lives.iter().enumerate().filter(|s| self.desired.sides[s.0].is_some()) {
+            let state = &self.chart.live.sides[side];
+            let name = ["A", "B"][side];
+            match state.error.as_ref().map(|j| (&j.query, &j.result)) {
+                None if self.desired.clock.playing => {
+                    drop(ui.weak(format!("{name}: its error is measured when time stands still")))
+                }
+                None => drop(ui.weak(format!("{name}: its error is not measured yet"))),
                 Some((_, Err(why))) => drop(ui.weak(format!("{name}: {why}"))),
-                Some((question, Ok(verdict))) => match (&verdict.error, live) {
+                Some((query, Ok(measured))) => match (&measured.error, live) {
                     (Some(error), Some(live)) => {
                         let old = if live.fresh { "" } else { " (of the picture before)" };
-                        let noisy = question.metric == "relmse" && within_noise(error.error, Some(error.noise));
+                        let noisy = query.metric == "relmse" && within_noise(error.error, Some(error.noise));
                         let noisy = if noisy { ", within the reference's noise" } else { "" };
                         let text = format!("{name}: {:.3} ms, {title} {:.4e}{noisy}{old}", live.ms, error.error);
-                        ui.colored_label(LIVE[slot], text).on_hover_text(format!(
+                        ui.colored_label(LIVE[side], text).on_hover_text(format!(
                             "Median of {} frames since the last change; `keep rendering` measures on. Reference: \
                                  {}, {} samples a pixel; relMSE of its halves {:.2e}.",
                             state.times.len(),
-                            bounces(question.bounces),
+                            bounces(query.bounces),
                             error.samples,
                             error.noise
                         ));
@@ -34,11 +36,11 @@ impl Workbench {
                     (Some(_), None) => drop(ui.weak(format!("{name}: the metric is not defined here"))),
                     (None, _) => {
                         missing = true;
-                        let (w, h) = verdict.subject.size;
+                        let (w, h) = measured.subject.size;
                         ui.label(format!(
                             "{name}: no reference of this picture ({}, {w}x{h}, {})",
-                            verdict.subject.scene,
-                            bounces(question.bounces)
+                            measured.subject.scene,
+                            bounces(query.bounces)
                         ));
                     }
                 },
@@ -82,7 +84,7 @@ impl Workbench {
 
     /// The size of the picture: that of the sweep, that of the panel, or as it is.
     fn size_row(&mut self, ui: &mut Ui) {
-        let (w, h) = self.wish.size;
+        let (w, h) = self.desired.size;
         let sweeps = self.chart.data().and_then(|d| d.keys.get(self.chart.choice.subject)).map(|k| k.0.size);
         ui.horizontal_wrapped(|ui| {
             ui.weak(match self.fixed_size {

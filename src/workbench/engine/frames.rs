@@ -1,4 +1,4 @@
-//! Frames that are due, and what is told of them.
+//! Frames that are left to render, and the reports about them.
 
 use super::super::renderdoc;
 use super::super::report::{PictureReport, Report};
@@ -9,17 +9,17 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 impl Run<'_> {
-    /// Renders what is due, A and B in turns, so that neither always finds the clocks raised by the other.
+    /// Renders the frames that are left, A and B in turns, so that neither always finds the clocks raised by the other.
     pub(super) fn render(&mut self) -> Result<(), LabError> {
         if self.awaits_build() {
             return Ok(());
         }
         let stepping = self.tick();
-        let rest = !(self.wish.continuous || stepping);
+        let rest = !(self.desired.continuous || stepping);
         self.turn += 1;
         for i in 0..2 {
             let number = (i + self.turn) % 2;
-            if self.slots[number].session.is_some() && self.slots[number].due > 0 {
+            if self.sides[number].session.is_some() && self.sides[number].frames_left > 0 {
                 self.frame(number, rest)?;
             }
         }
@@ -28,7 +28,7 @@ impl Run<'_> {
 
     /// Moves time on; whether it goes.
     fn tick(&mut self) -> bool {
-        let clock = self.wish.clock;
+        let clock = self.desired.clock;
         let real = self.clock.last.elapsed().as_secs_f64();
         self.clock.last = Instant::now();
         let mut goes = false;
@@ -39,60 +39,60 @@ impl Run<'_> {
         if clock.steps != self.clock.steps {
             self.clock.now += clock.step.unwrap_or(1.0 / 60.0) * clock.steps.saturating_sub(self.clock.steps) as f64;
             self.clock.steps = clock.steps;
-            self.disturb(1);
+            self.request_frames(1);
         }
         goes
     }
 
     fn frame(&mut self, number: usize, rest: bool) -> Result<(), LabError> {
         let software = self.lab.gpu.info.kind == "cpu";
-        let slot = &mut self.slots[number];
-        let Some(session) = &mut slot.session else { return Ok(()) };
-        if let Some(camera) = &self.wish.camera {
+        let side = &mut self.sides[number];
+        let Some(session) = &mut side.session else { return Ok(()) };
+        if let Some(camera) = &self.desired.camera {
             session.set_camera(camera);
         }
-        if let Some(path) = &self.wish.path {
-            session.look(&path.at(self.clock.now));
+        if let Some(path) = &self.desired.path {
+            session.place_camera(&path.at(self.clock.now));
         }
-        if std::mem::take(&mut slot.lights) {
+        if std::mem::take(&mut side.lights) {
             let own = session.scene.clone();
-            let (lights, sky) = self.wish.lights.as_ref().map_or((&own.lights, own.sky), |(l, s)| (l, *s));
+            let (lights, sky) = self.desired.lights.as_ref().map_or((&own.lights, own.sky), |(l, s)| (l, *s));
             session.set_lights(lights, sky);
         }
         session.set_time(self.clock.now);
-        slot.frame += 1;
-        slot.submitted.push_back(Submitted { wish: slot.answered, time: self.clock.now, frame: slot.frame });
+        side.frame += 1;
+        side.submitted.push_back(Submitted { request: side.answered, time: self.clock.now, frame: side.frame });
         let captured = std::mem::take(&mut self.renderdoc).then(renderdoc::begin);
-        let delta = if self.wish.clock.playing { self.wish.clock.step.unwrap_or(0.0) } else { 0.0 };
+        let delta = if self.desired.clock.playing { self.desired.clock.step.unwrap_or(0.0) } else { 0.0 };
         let mut finished: Vec<FrameTimes> = session.frame(delta)?.into_iter().collect();
-        slot.due -= 1;
+        side.frames_left -= 1;
         if !rest {
-            slot.due = slot.due.max(1);
+            side.frames_left = side.frames_left.max(1);
         }
         // Long frames gain nothing from another one ahead, and an edit would wait for it; a still picture must not wait
         // for the next change.
-        let ahead = u64::from(!(software || slot.last_ms > LONG || slot.due == 0 || captured.is_some()));
+        let ahead = u64::from(!(software || side.last_ms > LONG || side.frames_left == 0 || captured.is_some()));
         finished.extend(session.program.finish_to(ahead)?);
         if let Some(begun) = captured {
             self.out.send(Report::Trouble(renderdoc::end(begun)));
         }
-        self.tell(number, finished);
-        self.look(number)?;
+        self.report_frames(number, finished);
+        self.read_back(number)?;
         self.check(number)
     }
 
-    pub(super) fn tell(&mut self, number: usize, finished: Vec<FrameTimes>) {
-        let slot = &mut self.slots[number];
+    pub(super) fn report_frames(&mut self, number: usize, finished: Vec<FrameTimes>) {
+        let side = &mut self.sides[number];
         for times in finished {
-            let Some(submitted) = slot.submitted.pop_front() else { continue };
-            slot.last_ms = times.gpu_ms;
+            let Some(submitted) = side.submitted.pop_front() else { continue };
+            side.last_ms = times.gpu_ms;
             let Some(bytes) = times.picture else { continue };
-            let size = slot.session.as_ref().map_or(self.wish.size, |s| s.size());
+            let size = side.session.as_ref().map_or(self.desired.size, |s| s.size());
             self.out.send(Report::Picture(PictureReport {
-                slot: number,
-                wish: submitted.wish,
-                revision: slot.key.as_ref().map_or(0, |k| k.revision),
-                preview: slot.preview,
+                side: number,
+                request: submitted.request,
+                revision: side.key.as_ref().map_or(0, |k| k.revision),
+                preview: side.preview,
                 frame: submitted.frame,
                 time: submitted.time,
                 size: [size.0, size.1],
@@ -105,20 +105,20 @@ impl Run<'_> {
     }
 
     /// Reads what the inspector and the table show: at once when still, else some times a second.
-    fn look(&mut self, number: usize) -> Result<(), LabError> {
-        let slot = &mut self.slots[number];
-        let Some(session) = slot.session.as_mut().filter(|_| !slot.preview) else { return Ok(()) };
-        let now = slot.due == 0 || self.last_look.elapsed() > Duration::from_millis(150);
-        let look = self.wish.look.as_ref().filter(|l| l.slot == number);
-        if !now || (look.is_none() && self.wish.table.is_none()) {
+    fn read_back(&mut self, number: usize) -> Result<(), LabError> {
+        let side = &mut self.sides[number];
+        let Some(session) = side.session.as_mut().filter(|_| !side.preview) else { return Ok(()) };
+        let now = side.frames_left == 0 || self.last_read_back.elapsed() > Duration::from_millis(150);
+        let target = self.desired.inspect.as_ref().filter(|l| l.side == number);
+        if !now || (target.is_none() && self.desired.table.is_none()) {
             return Ok(());
         }
-        self.last_look = Instant::now();
-        if let Some(look) = look {
-            match session.slice(&look.texture, look.mip, look.layer, look.axis, look.slice) {
+        self.last_read_back = Instant::now();
+        if let Some(target) = target {
+            match session.slice(&target.texture, target.mip, target.layer, target.axis, target.slice) {
                 Ok(texels) => {
-                    slot.looked = Some(look.clone());
-                    self.out.send(Report::Texels(look.clone(), Box::new(texels)));
+                    side.inspected = Some(target.clone());
+                    self.out.send(Report::Texels(target.clone(), Box::new(texels)));
                 }
                 Err(LabError::Vulkan(e)) => return Err(e.into()),
                 // Not made with these parameters: a build that makes it is on its way, or the window says so.
@@ -126,7 +126,7 @@ impl Run<'_> {
             }
         }
         if number == 0
-            && let Some(number) = self.wish.table
+            && let Some(number) = self.desired.table
             && let Some(name) = session.graph.tables.get(number).map(|t| t.value.buffer().to_string())
             && let Some(table) = session.table(number)
         {
@@ -138,12 +138,12 @@ impl Run<'_> {
 
     /// Asks the graph's checks once for each build.
     fn check(&mut self, number: usize) -> Result<(), LabError> {
-        let slot = &mut self.slots[number];
-        if slot.due > 0 || slot.preview || slot.checked == slot.key {
+        let side = &mut self.sides[number];
+        if side.frames_left > 0 || side.preview || side.checked == side.key {
             return Ok(());
         }
-        slot.checked.clone_from(&slot.key);
-        if let Some(session) = &mut slot.session {
+        side.checked.clone_from(&side.key);
+        if let Some(session) = &mut side.session {
             let failed = session.failed_checks()?;
             self.out.send(Report::Checks(number, failed));
         }

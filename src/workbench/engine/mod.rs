@@ -1,18 +1,18 @@
-//! The engine: a thread with a device of its own, which renders what the window wishes for.
+//! The engine: a thread with a device of its own, which renders what the window requests.
 //!
 //! The window has a second device. That costs a copy of each picture through main memory (8 MB at 1080p, about a
 //! millisecond each way) and buys that the window answers while a frame takes seconds, and that a shader which hangs
 //! or kills its device takes nothing else with it.
 
-mod approach;
-mod aside;
+mod background;
 mod frames;
+mod reconcile;
 mod scenes;
 
 use super::builder::{self, Done, Job, Key};
-use super::judge::{self, Case, Question};
+use super::error_worker::{self, ErrorQuery, ErrorRequest};
 use super::report::{DeviceReport, Report};
-use super::wish::{Look, Wish};
+use super::request::{InspectTarget, RenderRequest};
 use crate::lab::{Home, Lab, LabError, Loaded, Session};
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
@@ -22,14 +22,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// What the window asks of the engine, beside its wish.
+/// What the window asks of the engine, besides the desired state.
 pub enum Order {
-    /// The wish changed.
-    Look,
-    /// Save what slot A or B shows, under a name; with these resources.
+    /// The desired state changed.
+    Reconcile,
+    /// Save what side A or B shows, under a name; with these resources.
     Capture(usize, String, Vec<String>),
-    /// Say how far what slot A or B shows is from its reference.
-    Judge(usize, Question),
+    /// Measure the error of what side A or B shows against its reference.
+    MeasureError(usize, ErrorQuery),
     /// Render so many more frames of what is shown, to measure.
     Frames(u32),
     /// Stop the loading of a scene.
@@ -44,9 +44,9 @@ pub enum Order {
 
 /// The window's end of an engine.
 pub struct Engine {
-    wish: Arc<Mutex<Wish>>,
+    desired: Arc<Mutex<RenderRequest>>,
     orders: Sender<Order>,
-    /// News.
+    /// Messages from the engine.
     pub reports: Receiver<Report>,
     thread: Option<std::thread::JoinHandle<Vec<String>>>,
 }
@@ -54,19 +54,19 @@ pub struct Engine {
 impl Engine {
     /// Starts the engine; `wake` is called after each report.
     pub fn start(home: Home, options: GpuOptions, wake: Arc<dyn Fn() + Send + Sync>) -> Engine {
-        let wish = Arc::new(Mutex::new(Wish::default()));
+        let desired = Arc::new(Mutex::new(RenderRequest::default()));
         let (orders, inbox) = unbounded();
         let (outbox, reports) = unbounded();
         let out = Out { reports: outbox, wake };
-        let shared = wish.clone();
+        let shared = desired.clone();
         let thread = std::thread::spawn(move || run(home, options, &shared, &inbox, &out));
-        Engine { wish, orders, reports, thread: Some(thread) }
+        Engine { desired, orders, reports, thread: Some(thread) }
     }
 
     /// Works towards this from now on.
-    pub fn wish(&self, wish: Wish) {
-        *self.wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = wish;
-        self.order(Order::Look);
+    pub fn request(&self, request: RenderRequest) {
+        *self.desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = request;
+        self.order(Order::Reconcile);
     }
 
     /// Gives an order.
@@ -104,13 +104,13 @@ impl Out {
 
 /// A frame that was submitted.
 struct Submitted {
-    wish: u64,
+    request: u64,
     time: f64,
     frame: u64,
 }
 
 #[derive(Default)]
-struct Slot {
+struct Side {
     session: Option<Box<Session>>,
     loaded: Option<Loaded>,
     /// What the session was built from.
@@ -124,22 +124,22 @@ struct Slot {
     frame: u64,
     /// GPU time of the last frame known, ms.
     last_ms: f64,
-    /// The last wish that the session, or the failure to build one, answers.
+    /// The last request that the session, or the failure to build one, answers.
     answered: u64,
-    /// Frames still to render before the slot rests.
-    due: u32,
+    /// Frames still to render before the side rests.
+    frames_left: u32,
     lights: bool,
     checked: Option<Key>,
-    looked: Option<Look>,
+    inspected: Option<InspectTarget>,
 }
 
 struct Run<'a> {
     lab: Lab,
     out: &'a Out,
-    wish: Wish,
-    slots: [Slot; 2],
+    desired: RenderRequest,
+    sides: [Side; 2],
     jobs: Sender<Job>,
-    cases: Sender<Case>,
+    error_requests: Sender<ErrorRequest>,
     scene: Option<Arc<Scene>>,
     /// What was loaded: name, revision; and how many scenes were.
     scene_key: Option<(String, u64)>,
@@ -149,7 +149,7 @@ struct Run<'a> {
     clock: Clocked,
     turn: usize,
     renderdoc: bool,
-    last_look: Instant,
+    last_read_back: Instant,
 }
 
 /// Time as it goes.
@@ -160,19 +160,25 @@ struct Clocked {
     jumps: u64,
 }
 
-fn run(home: Home, options: GpuOptions, wish: &Mutex<Wish>, inbox: &Receiver<Order>, out: &Out) -> Vec<String> {
+fn run(
+    home: Home,
+    options: GpuOptions,
+    desired: &Mutex<RenderRequest>,
+    inbox: &Receiver<Order>,
+    out: &Out,
+) -> Vec<String> {
     let mut messages = Vec::new();
     loop {
-        match session(home.clone(), &options, wish, inbox, out, &mut messages) {
+        match session(home.clone(), &options, desired, inbox, out, &mut messages) {
             Ok(End::Quit) => return messages,
             Ok(End::Restart) => {}
             Err(e) => {
                 out.send(Report::Trouble(format!("{e}. Change a shader or a value, or press Restart device")));
-                // What was wished for must not be tried again unchanged: it may kill the device each time.
+                // What was requested must not be tried again unchanged: it may kill the device each time.
                 for order in inbox {
                     match order {
                         Order::Quit => return messages,
-                        Order::Restart | Order::Look => break,
+                        Order::Restart | Order::Reconcile => break,
                         _ => {}
                     }
                 }
@@ -191,7 +197,7 @@ enum End {
 fn session(
     home: Home,
     options: &GpuOptions,
-    wish: &Mutex<Wish>,
+    desired: &Mutex<RenderRequest>,
     inbox: &Receiver<Order>,
     out: &Out,
     messages: &mut Vec<String>,
@@ -203,16 +209,16 @@ fn session(
     let (done_out, done) = unbounded();
     let (loaded_out, loaded) = unbounded();
     let builder = std::thread::spawn(move || builder::run(&job_box, &done_out));
-    let (cases, case_box) = unbounded();
-    let told = out.clone();
-    let judge = std::thread::spawn(move || judge::run(&case_box, &|report| told.send(report)));
+    let (error_requests, error_inbox) = unbounded();
+    let results = out.clone();
+    let worker = std::thread::spawn(move || error_worker::run(&error_inbox, &|report| results.send(report)));
     let mut run = Run {
         lab,
         out,
-        wish: Wish::default(),
-        slots: Default::default(),
+        desired: RenderRequest::default(),
+        sides: Default::default(),
         jobs,
-        cases,
+        error_requests,
         scene: None,
         scene_key: None,
         scene_number: 0,
@@ -221,9 +227,9 @@ fn session(
         clock: Clocked { now: 0.0, last: Instant::now(), steps: 0, jumps: 0 },
         turn: 0,
         renderdoc: false,
-        last_look: Instant::now(),
+        last_read_back: Instant::now(),
     };
-    run.change(wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
+    run.change(desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
     let result = loop {
         let (idle, awaits) = (!run.busy(), run.awaits_build());
         let mut orders: Vec<Order> = Vec::new();
@@ -251,7 +257,7 @@ fn session(
         if orders.iter().any(|o| matches!(o, Order::Restart)) {
             break Ok(End::Restart);
         }
-        let step = run.handle(orders, builds, scenes, wish).and_then(|()| run.render());
+        let step = run.handle(orders, builds, scenes, desired).and_then(|()| run.render());
         if let Err(e) = step {
             break Err(e);
         }
@@ -261,7 +267,7 @@ fn session(
     }
     drop(run);
     // Builds in work hold the device; what they send goes nowhere.
-    while !(builder.is_finished() && judge.is_finished()) {
+    while !(builder.is_finished() && worker.is_finished()) {
         let _ = done.recv_timeout(Duration::from_millis(10));
     }
     messages.extend(gpu.messages());
@@ -270,13 +276,13 @@ fn session(
 
 impl Run<'_> {
     fn busy(&self) -> bool {
-        self.slots.iter().any(|s| s.session.is_some() && s.due > 0)
+        self.sides.iter().any(|s| s.session.is_some() && s.frames_left > 0)
     }
 
     /// Whether a build is about to be done, so that beginning a long frame of what it replaces would only delay it.
     fn awaits_build(&self) -> bool {
         let soon = |since: Instant| since.elapsed() < PATIENCE;
-        self.slots.iter().any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
+        self.sides.iter().any(|s| s.last_ms > LONG && s.building.is_some_and(soon))
     }
 
     fn handle(
@@ -284,7 +290,7 @@ impl Run<'_> {
         orders: Vec<Order>,
         builds: Vec<Done>,
         scenes: Vec<Result<Arc<Scene>, SceneError>>,
-        wish: &Mutex<Wish>,
+        desired: &Mutex<RenderRequest>,
     ) -> Result<(), LabError> {
         for scene in scenes {
             self.scene_came(scene)?;
@@ -299,60 +305,60 @@ impl Run<'_> {
                         cancel.store(true, Ordering::Relaxed);
                     }
                 }
-                Order::Capture(slot, name, resources) => self.capture(slot, name, resources),
-                Order::Judge(slot, question) => self.judge(slot, question),
-                Order::Frames(count) => self.disturb(count),
+                Order::Capture(side, name, resources) => self.capture(side, name, resources),
+                Order::MeasureError(side, query) => self.measure_error(side, query),
+                Order::Frames(count) => self.request_frames(count),
                 Order::RenderDoc => {
                     self.renderdoc = true;
-                    self.disturb(1);
+                    self.request_frames(1);
                 }
-                Order::Look | Order::Quit | Order::Restart => {}
+                Order::Reconcile | Order::Quit | Order::Restart => {}
             }
         }
-        let latest = wish.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
-        if latest.number != self.wish.number {
+        let latest = desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
+        if latest.number != self.desired.number {
             self.change(latest)?;
         }
         Ok(())
     }
 
-    /// Works through a new wish.
-    fn change(&mut self, wish: Wish) -> Result<(), LabError> {
-        let old = std::mem::replace(&mut self.wish, wish);
-        if self.wish.clock.jumps != self.clock.jumps {
-            self.clock.jumps = self.wish.clock.jumps;
-            self.clock.now = self.wish.clock.at;
+    /// Takes in a new request.
+    fn change(&mut self, desired: RenderRequest) -> Result<(), LabError> {
+        let old = std::mem::replace(&mut self.desired, desired);
+        if self.desired.clock.jumps != self.clock.jumps {
+            self.clock.jumps = self.desired.clock.jumps;
+            self.clock.now = self.desired.clock.at;
         }
-        if self.wish.clock.playing && !old.clock.playing {
+        if self.desired.clock.playing && !old.clock.playing {
             self.clock.last = Instant::now();
         }
-        if self.wish.lights != old.lights {
-            for slot in &mut self.slots {
-                slot.lights = true;
+        if self.desired.lights != old.lights {
+            for side in &mut self.sides {
+                side.lights = true;
             }
         }
-        // Files, parameters and sizes disturb a slot when what they lead to has been built.
-        let seen = |w: &Wish| (w.camera, w.clock, w.continuous, w.look.clone(), w.table);
-        if seen(&self.wish) != seen(&old) || self.wish.lights != old.lights || self.wish.path != old.path {
-            self.disturb(1);
+        // Files, parameters and sizes ask for frames when what they lead to has been built.
+        let view = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.inspect.clone(), w.table);
+        if view(&self.desired) != view(&old) || self.desired.lights != old.lights || self.desired.path != old.path {
+            self.request_frames(1);
         }
         for i in 0..2 {
-            if self.wish.slots[i].is_none() {
-                self.slots[i] = Slot { building: self.slots[i].building, ..Slot::default() };
+            if self.desired.sides[i].is_none() {
+                self.sides[i] = Side { building: self.sides[i].building, ..Side::default() };
             }
         }
         self.load_scene();
         for i in 0..2 {
-            self.approach(i)?;
+            self.reconcile(i)?;
         }
         Ok(())
     }
 
-    /// Frames are due: as many as it takes until those with a memory have settled.
-    fn disturb(&mut self, least: u32) {
-        for slot in &mut self.slots {
-            let settle = if slot.session.as_ref().is_some_and(|s| remembers(s)) { SETTLE } else { 1 };
-            slot.due = slot.due.max(least.max(settle));
+    /// Asks for frames: as many as it takes until graphs with history have settled.
+    fn request_frames(&mut self, least: u32) {
+        for side in &mut self.sides {
+            let settle = if side.session.as_ref().is_some_and(|s| has_history(s)) { SETTLE } else { 1 };
+            side.frames_left = side.frames_left.max(least.max(settle));
         }
     }
 }
@@ -367,6 +373,6 @@ const PATIENCE: Duration = Duration::from_millis(300);
 const SETTLE: u32 = 16;
 
 /// Whether a frame uses what the frame before left.
-fn remembers(session: &Session) -> bool {
+fn has_history(session: &Session) -> bool {
     session.program.plan.textures.iter().any(|t| t.history && !t.usage.is_empty())
 }

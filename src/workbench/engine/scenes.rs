@@ -1,4 +1,4 @@
-//! The scene that is wished for, loaded on a thread of its own.
+//! The scene that is desired, loaded on a thread of its own.
 
 use super::super::report::Report;
 use super::Run;
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 impl Run<'_> {
     pub(super) fn load_scene(&mut self) {
-        let key = (self.wish.scene.clone(), self.wish.scene_revision);
+        let key = (self.desired.scene.clone(), self.desired.scene_revision);
         if key.0.is_empty() || self.scene_key.as_ref() == Some(&key) {
             return;
         }
@@ -38,7 +38,7 @@ impl Run<'_> {
                 }
                 ControlFlow::Continue(())
             });
-            // A load that was replaced by another has nobody to tell.
+            // A load that was replaced by another has nobody to report to.
             if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
                 let _ = loaded.send(scene.map(Arc::new));
             }
@@ -53,7 +53,7 @@ impl Run<'_> {
                 self.scene_number += 1;
                 self.out.send(Report::Loaded(scene));
                 for i in 0..2 {
-                    self.approach(i)?;
+                    self.reconcile(i)?;
                 }
             }
             Err(SceneError::Cancelled) => {

@@ -1,10 +1,10 @@
-//! Texels as a picture that can be looked at, and the values behind it.
+//! Texels as a picture, and the values behind it.
 
 use crate::lab::Texels;
 use crate::picture;
 use crate::vulkan::Format;
 use crate::vulkan::format::Channels;
-use crate::workbench::wish::Look;
+use crate::workbench::request::InspectTarget;
 use rayon::prelude::*;
 
 /// What of a texel is shown.
@@ -22,7 +22,7 @@ pub enum Channel {
 /// How values become grey levels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tone {
-    /// What is shown.
+    /// Channels that are shown.
     pub channel: Channel,
     /// Value that is black.
     pub low: f32,
@@ -42,8 +42,8 @@ impl Default for Tone {
 
 /// Texels that were read.
 pub struct Decoded {
-    /// Where they are from.
-    pub look: Look,
+    /// The texture, mip, layer and slice that the texels are from.
+    pub target: InspectTarget,
     /// Width and height.
     pub size: [u32; 2],
     /// Format.
@@ -61,10 +61,10 @@ const INFINITE: [u8; 4] = [0, 255, 255, 255];
 
 impl Decoded {
     /// Decodes.
-    pub fn new(look: Look, texels: Texels) -> Decoded {
+    pub fn new(target: InspectTarget, texels: Texels) -> Decoded {
         let floats = picture::to_floats(&texels);
         let [width, height, depth] = texels.extent;
-        Decoded { look, size: [width, height * depth], format: texels.format, floats, bytes: texels.bytes }
+        Decoded { target, size: [width, height * depth], format: texels.format, floats, bytes: texels.bytes }
     }
 
     /// RGBA, 8 bits each; what is not a number is magenta, what is infinite cyan.
@@ -109,12 +109,12 @@ impl Decoded {
 }
 
 /// Position in the texture of a texel of the picture: two numbers, three for a volume.
-pub fn texel(look: &Look, volume: bool, x: u32, y: u32) -> Vec<u32> {
-    match (volume, look.axis) {
+pub fn texel(target: &InspectTarget, volume: bool, x: u32, y: u32) -> Vec<u32> {
+    match (volume, target.axis) {
         (false, _) => vec![x, y],
-        (true, 0) => vec![look.slice, x, y],
-        (true, 1) => vec![x, look.slice, y],
-        (true, _) => vec![x, y, look.slice],
+        (true, 0) => vec![target.slice, x, y],
+        (true, 1) => vec![x, target.slice, y],
+        (true, _) => vec![x, y, target.slice],
     }
 }
 
@@ -157,9 +157,9 @@ pub(super) mod tests {
     use super::*;
 
     pub fn decoded(name: &str, size: [u32; 2], bytes: Vec<u8>) -> Decoded {
-        let look = Look { slot: 0, texture: "t".into(), mip: 0, layer: 0, axis: 2, slice: 0 };
+        let target = InspectTarget { side: 0, texture: "t".into(), mip: 0, layer: 0, axis: 2, slice: 0 };
         let format = Format::named(name).unwrap();
-        Decoded::new(look, Texels { extent: [size[0], size[1], 1], format, bytes })
+        Decoded::new(target, Texels { extent: [size[0], size[1], 1], format, bytes })
     }
 
     pub fn floats(list: &[[f32; 4]]) -> Decoded {
@@ -210,10 +210,10 @@ pub(super) mod tests {
 
     #[test]
     fn a_slice_knows_where_it_lies() {
-        let look = |axis| Look { slot: 0, texture: "t".into(), mip: 0, layer: 0, axis, slice: 9 };
-        assert_eq!(texel(&look(0), true, 1, 2), [9, 1, 2]);
-        assert_eq!(texel(&look(1), true, 1, 2), [1, 9, 2]);
-        assert_eq!(texel(&look(2), true, 1, 2), [1, 2, 9]);
-        assert_eq!(texel(&look(0), false, 1, 2), [1, 2]);
+        let target = |axis| InspectTarget { side: 0, texture: "t".into(), mip: 0, layer: 0, axis, slice: 9 };
+        assert_eq!(texel(&target(0), true, 1, 2), [9, 1, 2]);
+        assert_eq!(texel(&target(1), true, 1, 2), [1, 9, 2]);
+        assert_eq!(texel(&target(2), true, 1, 2), [1, 2, 9]);
+        assert_eq!(texel(&target(0), false, 1, 2), [1, 2]);
     }
 }

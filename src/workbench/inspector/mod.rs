@@ -2,13 +2,13 @@
 
 mod histogram;
 mod image;
-mod middle;
 mod statistics;
+mod viewport;
 mod views;
 mod work;
 
-use super::report::Outline;
-use super::wish::Look;
+use super::report::GraphInfo;
+use super::request::InspectTarget;
 use super::{INSPECTOR, Workbench};
 use crate::graph::plan::TexturePlan;
 use crate::lab::Texels;
@@ -20,28 +20,28 @@ use work::{Done, Source, Work};
 
 /// State of this tab.
 pub struct Inspector {
-    look: Look,
+    target: InspectTarget,
     /// Whether the picture takes the render's place.
-    middle: bool,
+    in_viewport: bool,
     tone: Tone,
     /// Whether the next texels decide the range.
     fit: bool,
     work: Work,
     shown: Option<Done>,
-    sight: middle::Sight,
+    pan_zoom: viewport::PanZoom,
     before: views::Before,
 }
 
 impl Default for Inspector {
     fn default() -> Self {
         Inspector {
-            look: Look { slot: 0, texture: String::new(), mip: 0, layer: 0, axis: 2, slice: 0 },
-            middle: true,
+            target: InspectTarget { side: 0, texture: String::new(), mip: 0, layer: 0, axis: 2, slice: 0 },
+            in_viewport: true,
             tone: Tone::default(),
             fit: true,
             work: Work::default(),
             shown: None,
-            sight: middle::Sight::default(),
+            pan_zoom: viewport::PanZoom::default(),
             before: views::Before::default(),
         }
     }
@@ -49,26 +49,26 @@ impl Default for Inspector {
 
 impl Inspector {
     /// Chooses a texture.
-    pub fn open(&mut self, slot: usize, texture: String) {
-        if self.look.texture != texture {
+    pub fn open(&mut self, side: usize, texture: String) {
+        if self.target.texture != texture {
             self.fit = true;
-            self.sight = middle::Sight::default();
+            self.pan_zoom = viewport::PanZoom::default();
         }
-        // A slice that no volume has becomes the one in the middle.
-        self.look = Look { slot, texture, mip: 0, layer: 0, axis: self.look.axis, slice: u32::MAX };
+        // A slice that no volume has becomes the middle one.
+        self.target = InspectTarget { side, texture, mip: 0, layer: 0, axis: self.target.axis, slice: u32::MAX };
     }
 
     /// Takes in the texels that were asked for.
-    pub fn note(&mut self, look: Look, texels: Texels, wake: &Arc<dyn Fn() + Send + Sync>) {
+    pub fn note(&mut self, target: InspectTarget, texels: Texels, wake: &Arc<dyn Fn() + Send + Sync>) {
         // What was asked for before the user chose anew would only hold up what is to come.
-        if look.texture != self.look.texture || look.slot != self.look.slot {
+        if target.texture != self.target.texture || target.side != self.target.side {
             return;
         }
         let fit = std::mem::take(&mut self.fit);
         if fit {
             self.tone = first_tone(&texels, self.tone);
         }
-        self.work.start(Source::New(look, texels), self.tone, fit, wake);
+        self.work.start(Source::New(target, texels), self.tone, fit, wake);
     }
 
     /// New pixels to show, if there are.
@@ -82,9 +82,9 @@ impl Inspector {
         Some(pixels)
     }
 
-    /// Whether the middle shows what is looked into.
-    pub fn in_the_middle(&self) -> bool {
-        self.middle && self.shown.is_some() && self.before.is_empty()
+    /// Whether the viewport shows the inspected texture.
+    pub fn fills_viewport(&self) -> bool {
+        self.in_viewport && self.shown.is_some() && self.before.is_empty()
     }
 
     /// Shows the texels there are otherwise, when the tone was changed.
@@ -112,29 +112,29 @@ impl Workbench {
     /// The tab.
     pub(super) fn inspector_tab(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         self.view_buttons(ui);
-        if self.wish.slots[1].is_none() {
-            self.inspector.look.slot = 0;
+        if self.desired.sides[1].is_none() {
+            self.inspector.target.side = 0;
         } else {
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.inspector.look.slot, 0, "A");
-                ui.selectable_value(&mut self.inspector.look.slot, 1, "B");
+                ui.selectable_value(&mut self.inspector.target.side, 0, "A");
+                ui.selectable_value(&mut self.inspector.target.side, 1, "B");
             });
         }
-        let Some(outline) = self.slots[self.inspector.look.slot].outline.clone() else {
+        let Some(info) = self.sides[self.inspector.target.side].info.clone() else {
             ui.weak(self.waiting_text());
             return;
         };
-        let plan = self.choose(ui, &outline);
+        let plan = self.choose(ui, &info);
         let Some(plan) = plan else {
             ui.weak("The graph has no textures");
             return;
         };
-        self.wish.look = Some(self.inspector.look.clone());
+        self.desired.inspect = Some(self.inspector.target.clone());
         ui.separator();
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             self.tones(ui, &plan);
             self.numbers(ui);
-            if !self.inspector.middle && self.inspector.shown.is_some() {
+            if !self.inspector.in_viewport && self.inspector.shown.is_some() {
                 let size = Vec2::new(ui.available_width(), ui.available_width().max(ui.available_height()));
                 ui.allocate_ui(size, |ui| self.inspected(ui, textures));
             }
@@ -142,57 +142,59 @@ impl Workbench {
     }
 
     /// Texture, mip, layer or slice.
-    fn choose(&mut self, ui: &mut Ui, outline: &Outline) -> Option<TexturePlan> {
-        let names: Vec<&str> = outline.graph.textures.iter().map(|t| t.0.as_str()).collect();
-        if !names.contains(&self.inspector.look.texture.as_str()) {
-            let preferred = outline.graph.hdr.as_deref().or(outline.graph.output.as_deref());
+    fn choose(&mut self, ui: &mut Ui, info: &GraphInfo) -> Option<TexturePlan> {
+        let names: Vec<&str> = info.graph.textures.iter().map(|t| t.0.as_str()).collect();
+        if !names.contains(&self.inspector.target.texture.as_str()) {
+            let preferred = info.graph.hdr.as_deref().or(info.graph.output.as_deref());
             let name = preferred.or(names.first().copied())?.to_string();
-            self.inspector.open(self.inspector.look.slot, name);
+            self.inspector.open(self.inspector.target.side, name);
         }
         let mut chosen = None;
         let box_ = egui::ComboBox::from_id_salt("texture").width(ui.available_width() - 8.0);
-        let label = describe(outline, &self.inspector.look.texture);
+        let label = describe(info, &self.inspector.target.texture);
         box_.height(500.0).selected_text(label).show_ui(ui, |ui| {
             for name in &names {
-                if ui.selectable_label(*name == self.inspector.look.texture, describe(outline, name)).clicked() {
+                if ui.selectable_label(*name == self.inspector.target.texture, describe(info, name)).clicked() {
                     chosen = Some((*name).to_string());
                 }
             }
         });
         if let Some(name) = chosen {
-            self.inspector.open(self.inspector.look.slot, name);
+            self.inspector.open(self.inspector.target.side, name);
         }
-        let look = &mut self.inspector.look;
-        let index = outline.graph.textures.iter().position(|t| t.0 == look.texture)?;
-        let plan = outline.textures.get(index)?.clone();
+        let target = &mut self.inspector.target;
+        let index = info.graph.textures.iter().position(|t| t.0 == target.texture)?;
+        let plan = info.textures.get(index)?.clone();
         let last = |n: u32| n.saturating_sub(1);
-        look.mip = look.mip.min(last(plan.mips));
-        look.layer = look.layer.min(last(plan.layers));
+        target.mip = target.mip.min(last(plan.mips));
+        target.layer = target.layer.min(last(plan.layers));
         if plan.mips > 1 {
-            let old = look.mip;
-            ui.add(Slider::new(&mut look.mip, 0..=last(plan.mips)).text("mip"));
+            let old = target.mip;
+            ui.add(Slider::new(&mut target.mip, 0..=last(plan.mips)).text("mip"));
             // The same place of the volume.
-            look.slice = if look.mip > old { look.slice >> (look.mip - old) } else { look.slice << (old - look.mip) };
+            target.slice =
+                if target.mip > old { target.slice >> (target.mip - old) } else { target.slice << (old - target.mip) };
         }
         if plan.layers > 1 {
-            ui.add(Slider::new(&mut look.layer, 0..=last(plan.layers)).text("layer"));
+            ui.add(Slider::new(&mut target.layer, 0..=last(plan.layers)).text("layer"));
         }
         if plan.volume {
             ui.horizontal(|ui| {
                 ui.label("cut across");
                 for (axis, name) in ["x", "y", "z"].iter().enumerate() {
-                    ui.selectable_value(&mut look.axis, axis, *name);
+                    ui.selectable_value(&mut target.axis, axis, *name);
                 }
             });
-            let size = (plan.extent[look.axis.min(2)] >> look.mip.min(31)).max(1);
-            if look.slice >= size {
-                look.slice = size / 2;
+            let size = (plan.extent[target.axis.min(2)] >> target.mip.min(31)).max(1);
+            if target.slice >= size {
+                target.slice = size / 2;
             }
-            ui.add(Slider::new(&mut look.slice, 0..=size - 1).text("slice"));
+            ui.add(Slider::new(&mut target.slice, 0..=size - 1).text("slice"));
         }
-        let waits = self.inspector.shown.as_ref().is_none_or(|s| s.decoded.look != self.inspector.look);
+        let waits = self.inspector.shown.as_ref().is_none_or(|s| s.decoded.target != self.inspector.target);
         ui.horizontal(|ui| {
-            ui.checkbox(&mut self.inspector.middle, "in the middle").on_hover_text("Where the render is; else below");
+            ui.checkbox(&mut self.inspector.in_viewport, "in the viewport")
+                .on_hover_text("Where the render is; else below");
             if waits && plan.usage.is_empty() {
                 ui.weak("not made yet: no pass that runs uses it");
             } else if waits {
@@ -279,9 +281,9 @@ fn short_number(x: f64) -> String {
 }
 
 /// Name, size and format of a texture.
-fn describe(outline: &Outline, name: &str) -> String {
-    let index = outline.graph.textures.iter().position(|t| t.0 == name);
-    let Some(p) = index.and_then(|i| outline.textures.get(i)) else { return name.to_string() };
+fn describe(info: &GraphInfo, name: &str) -> String {
+    let index = info.graph.textures.iter().position(|t| t.0 == name);
+    let Some(p) = index.and_then(|i| info.textures.get(i)) else { return name.to_string() };
     let [x, y, z] = p.extent;
     let size = if p.volume { format!("{x}×{y}×{z}") } else { format!("{x}×{y}") };
     let layers = if p.layers > 1 { format!(", {} layers", p.layers) } else { String::new() };

@@ -56,7 +56,7 @@ impl Values {
     }
 }
 
-/// Of every channel that the format has.
+/// Statistics of every channel that the format has.
 pub fn values(d: &Decoded) -> Vec<Values> {
     let count = (d.format.count as usize).min(4);
     let parts: Vec<[Values; 4]> = d

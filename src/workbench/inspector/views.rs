@@ -4,7 +4,7 @@ use super::Workbench;
 use crate::workbench::edit;
 use egui::Ui;
 
-/// What the parameters of a view were before: slot, name, value as RON.
+/// What the parameters of a view were before: side, name, value as RON.
 #[derive(Default)]
 pub struct Before(Vec<(usize, String, Option<String>)>);
 
@@ -18,15 +18,15 @@ impl Before {
 impl Workbench {
     /// A button for each view of the graph.
     pub(super) fn view_buttons(&mut self, ui: &mut Ui) {
-        let slot = self.inspector.look.slot;
-        let Some(outline) = self.slots[slot].outline.clone() else { return };
-        if outline.graph.views.is_empty() {
+        let side = self.inspector.target.side;
+        let Some(info) = self.sides[side].info.clone() else { return };
+        if info.graph.views.is_empty() {
             return;
         }
         let mut chosen = None;
         let mut back = false;
         ui.horizontal_wrapped(|ui| {
-            for (i, view) in outline.graph.views.iter().enumerate() {
+            for (i, view) in info.graph.views.iter().enumerate() {
                 if ui.button(&view.value.title).on_hover_text(&view.value.help).clicked() {
                     chosen = Some(i);
                 }
@@ -39,29 +39,29 @@ impl Workbench {
         if back {
             self.leave_view();
         }
-        let Some(view) = chosen.and_then(|i| outline.graph.views.get(i)) else { return };
-        let Some(wish) = self.wish.slots[slot].as_mut() else { return };
+        let Some(view) = chosen.and_then(|i| info.graph.views.get(i)) else { return };
+        let Some(desired) = self.desired.sides[side].as_mut() else { return };
         for (name, text) in &view.value.set.0 {
-            let Some(param) = outline.graph.params.list.iter().find(|p| p.name == name.value) else { continue };
+            let Some(param) = info.graph.params.list.iter().find(|p| p.name == name.value) else { continue };
             let Ok(value) = param.parse(&text.value.0) else { continue };
             let before = &mut self.inspector.before.0;
-            if !before.iter().any(|b| b.0 == slot && b.1 == name.value) {
-                let old = wish.params.iter().find(|p| p.0 == name.value).map(|p| p.1.clone());
-                before.push((slot, name.value.clone(), old));
+            if !before.iter().any(|b| b.0 == side && b.1 == name.value) {
+                let old = desired.params.iter().find(|p| p.0 == name.value).map(|p| p.1.clone());
+                before.push((side, name.value.clone(), old));
             }
-            edit::set(wish, param, &value);
+            edit::set(desired, param, &value);
         }
     }
 
     /// Puts the parameters back.
     fn leave_view(&mut self) {
-        for (slot, name, old) in std::mem::take(&mut self.inspector.before.0) {
-            let Some(wish) = self.wish.slots[slot].as_mut() else { continue };
-            let place = wish.params.iter().position(|p| p.0 == name);
+        for (side, name, old) in std::mem::take(&mut self.inspector.before.0) {
+            let Some(desired) = self.desired.sides[side].as_mut() else { continue };
+            let place = desired.params.iter().position(|p| p.0 == name);
             match (place, old) {
-                (Some(i), Some(old)) => wish.params[i].1 = old,
-                (Some(i), None) => drop(wish.params.remove(i)),
-                (None, Some(old)) => wish.params.push((name, old)),
+                (Some(i), Some(old)) => desired.params[i].1 = old,
+                (Some(i), None) => drop(desired.params.remove(i)),
+                (None, Some(old)) => desired.params.push((name, old)),
                 (None, None) => {}
             }
         }

@@ -3,27 +3,27 @@
 use super::image::{Decoded, Tone};
 use super::statistics::{self, BINS, Values};
 use crate::lab::Texels;
-use crate::workbench::wish::Look;
+use crate::workbench::request::InspectTarget;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use std::sync::Arc;
 
 /// What to work on.
 pub enum Source {
     /// Texels that came.
-    New(Look, Texels),
-    /// Those there are, shown otherwise.
+    New(InspectTarget, Texels),
+    /// The decoded texels of before, with another tone.
     Again(Arc<Decoded>, Arc<Vec<Values>>),
 }
 
-/// What came out.
+/// Picture, values and histogram of the texels.
 pub struct Done {
     /// The texels.
     pub decoded: Arc<Decoded>,
-    /// Of each channel.
+    /// Statistics of each channel.
     pub values: Arc<Vec<Values>>,
-    /// Of each channel, over the range.
+    /// Histogram of each channel, over the tone's range.
     pub histogram: Vec<[u32; BINS]>,
-    /// How they are shown.
+    /// The tone of the picture.
     pub tone: Tone,
     /// Whether the range was made to fit.
     pub fitted: bool,
@@ -81,8 +81,8 @@ impl Work {
 
 fn run(source: Source, tone: Tone, fit: bool) -> Done {
     let (decoded, values) = match source {
-        Source::New(look, texels) => {
-            let decoded = Decoded::new(look, texels);
+        Source::New(target, texels) => {
+            let decoded = Decoded::new(target, texels);
             let values = statistics::values(&decoded);
             (Arc::new(decoded), Arc::new(values))
         }

@@ -21,7 +21,7 @@ struct Key {
     hovered: Option<String>,
 }
 
-/// The colour of a pass: the same for the same name, in every graph and slot.
+/// The colour of a pass: the same for the same name, in every graph and side.
 pub fn color(name: &str) -> Color32 {
     // FNV-1a, 32 bits.
     let hash = name.bytes().fold(0x811c_9dc5_u32, |h, b| (h ^ u32::from(b)).wrapping_mul(0x0100_0193));
@@ -38,14 +38,14 @@ impl Chart {
     pub fn show(
         &mut self,
         ui: &mut Ui,
-        slot: usize,
+        side: usize,
         history: &History,
         top: f64,
         hovered: Option<&str>,
     ) -> Option<(String, Response)> {
         let size = Vec2::new(ui.available_width(), super::CHART);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-        let name = ["A, frames", "B, frames"][slot.min(1)];
+        let name = ["A, frames", "B, frames"][side.min(1)];
         response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Other, true, name));
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 0.0, ui.visuals().extreme_bg_color);
@@ -64,7 +64,7 @@ impl Chart {
         let weak = ui.visuals().weak_text_color();
         let line = rect.bottom() - rect.height() / 1.15;
         painter.hline(rect.x_range(), line, (0.5, weak));
-        let label = format!("{}  {:.2} ms", ["A", "B"][slot.min(1)], top / 1.15);
+        let label = format!("{}  {:.2} ms", ["A", "B"][side.min(1)], top / 1.15);
         painter.text(
             Pos2::new(rect.left() + 3.0, line + 1.0),
             Align2::LEFT_TOP,

@@ -3,24 +3,24 @@
 use super::history::{Frame, History};
 use serde_json::{Value, json};
 
-/// A table: a row a frame of A, then of B; the columns after the fixed ones are passes by name, ms, empty where a slot
+/// A table: a row a frame of A, then of B; the columns after the fixed ones are passes by name, ms, empty where a side
 /// does not have the pass.
 ///
 /// # Errors
-/// None that memory does not make.
-pub fn csv(slots: &[History; 2]) -> std::io::Result<Vec<u8>> {
+/// Writing to memory gives none.
+pub fn csv(sides: &[History; 2]) -> std::io::Result<Vec<u8>> {
     let mut names: Vec<&str> = Vec::new();
-    for (_, name) in slots.iter().flat_map(|s| &s.passes) {
+    for (_, name) in sides.iter().flat_map(|s| &s.passes) {
         if !names.contains(&name.as_str()) {
             names.push(name);
         }
     }
     let mut out = csv::Writer::from_writer(Vec::new());
-    let fixed = ["slot", "frame", "time", "cpu_ms", "gpu_ms"];
+    let fixed = ["side", "frame", "time", "cpu_ms", "gpu_ms"];
     out.write_record(fixed.iter().chain(&names))?;
-    for (slot, history) in ["A", "B"].iter().zip(slots) {
+    for (side, history) in ["A", "B"].iter().zip(sides) {
         for f in &history.frames {
-            let mut row = vec![(*slot).to_string(), f.frame.to_string()];
+            let mut row = vec![(*side).to_string(), f.frame.to_string()];
             row.extend([f.time, f.cpu_ms, f.gpu_ms].map(|v| v.to_string()));
             row.extend(names.iter().map(|name| {
                 let pass = history.passes.iter().find(|p| p.1 == *name);
@@ -37,16 +37,16 @@ const NOTE: &str = "Frames and passes are laid end to end by their GPU time, eac
     track holds recording and submitting, each begun no sooner than its frame on the GPU track.";
 
 /// A trace in Chrome's format, which Perfetto reads: a track for A, one for B, one for the CPU. Times in µs.
-pub fn trace(slots: &[History; 2]) -> Vec<u8> {
+pub fn trace(sides: &[History; 2]) -> Vec<u8> {
     let mut events = vec![json!({ "ph": "M", "name": "process_name", "pid": 1, "args": { "name": "conelab" } })];
     for (track, name) in [(1, "A, GPU"), (2, "B, GPU"), (3, "CPU")] {
         events.push(json!({ "ph": "M", "name": "thread_name", "pid": 1, "tid": track, "args": { "name": name } }));
     }
     let mut cpu: Vec<(f64, f64, String)> = Vec::new();
-    for (i, (slot, history)) in ["A", "B"].iter().zip(slots).enumerate() {
+    for (i, (side, history)) in ["A", "B"].iter().zip(sides).enumerate() {
         let mut start = 0.0;
         for frame in &history.frames {
-            cpu.push((start, frame.cpu_ms * 1e3, format!("{slot} {}", frame.frame)));
+            cpu.push((start, frame.cpu_ms * 1e3, format!("{side} {}", frame.frame)));
             start = frame_events(&mut events, i + 1, start, history, frame);
         }
     }
@@ -80,7 +80,7 @@ fn complete(name: &str, track: usize, start: f64, duration: f64, args: Value) ->
 mod tests {
     use super::*;
 
-    fn slots() -> [History; 2] {
+    fn sides() -> [History; 2] {
         let mut a = History::new(vec![(0, "draw, all".into()), (2, "tone".into())]);
         let mut b = History::new(vec![(1, "tone".into()), (3, "only \"B\"".into())]);
         for i in 0..5_u32 {
@@ -94,14 +94,14 @@ mod tests {
 
     #[test]
     fn a_table_reads_back_with_the_same_sums() {
-        let bytes = csv(&slots()).unwrap();
+        let bytes = csv(&sides()).unwrap();
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
         let heads: Vec<String> = reader.headers().unwrap().iter().map(str::to_string).collect();
-        assert_eq!(heads, ["slot", "frame", "time", "cpu_ms", "gpu_ms", "draw, all", "tone", "only \"B\""]);
+        assert_eq!(heads, ["side", "frame", "time", "cpu_ms", "gpu_ms", "draw, all", "tone", "only \"B\""]);
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         assert_eq!(rows.len(), 10);
-        let sum = |slot: &str, column: usize| -> f64 {
-            let cells = rows.iter().filter(|r| &r[0] == slot).map(|r| r[column].to_string());
+        let sum = |side: &str, column: usize| -> f64 {
+            let cells = rows.iter().filter(|r| &r[0] == side).map(|r| r[column].to_string());
             cells.filter(|c| !c.is_empty()).map(|c| c.parse::<f64>().unwrap()).sum()
         };
         assert_eq!((sum("A", 4), sum("A", 5) + sum("A", 6)), (20.0, 20.0));
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn events_of_a_track_do_not_overlap() {
-        let trace: Value = serde_json::from_slice(&trace(&slots())).unwrap();
+        let trace: Value = serde_json::from_slice(&trace(&sides())).unwrap();
         assert!(trace["otherData"]["note"].as_str().unwrap().contains("end to end"));
         for track in 1..=3 {
             let events = trace["traceEvents"].as_array().unwrap().iter();

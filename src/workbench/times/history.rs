@@ -10,7 +10,7 @@ pub const KEPT: usize = 240;
 /// The times of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
-    /// Counts the slot's frames.
+    /// Counts the side's frames.
     pub frame: u64,
     /// Time of the scene, s.
     pub time: f64,
@@ -23,7 +23,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Those of a picture.
+    /// The times of a picture's frame.
     pub fn of(p: &PictureReport) -> Frame {
         Frame { frame: p.frame, time: p.time, cpu_ms: p.cpu_ms, gpu_ms: p.gpu_ms, passes: p.passes.clone() }
     }
@@ -34,7 +34,7 @@ impl Frame {
     }
 }
 
-/// The last frames of a slot.
+/// The last frames of a side.
 #[derive(Default)]
 pub struct History {
     /// (number, name) of the passes, in the order they run.
@@ -46,7 +46,7 @@ pub struct History {
 }
 
 impl History {
-    /// Of these passes, without frames.
+    /// A history of these passes, without frames yet.
     pub fn new(passes: Vec<(usize, String)>) -> History {
         History { passes, ..History::default() }
     }
@@ -90,7 +90,7 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     }
     let both = b.is_some();
     let none = History::default();
-    let slots = [a, b.unwrap_or(&none)];
+    let sides = [a, b.unwrap_or(&none)];
     let values = |h: &History, f: &dyn Fn(&Frame) -> f64| -> Option<Vec<f64>> {
         (!h.frames.is_empty()).then(|| h.frames.iter().map(f).collect())
     };
@@ -117,10 +117,10 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let number = |h: &History, name: &str| h.passes.iter().find(|p| p.1 == name).map(|p| p.0);
     let mut list: Vec<Row> = Vec::with_capacity(names.len() + 2);
     for name in names {
-        list.push(row(name, true, slots.map(|h| number(h, name).and_then(|n| values(h, &|f| f.pass(n))))));
+        list.push(row(name, true, sides.map(|h| number(h, name).and_then(|n| values(h, &|f| f.pass(n))))));
     }
-    list.push(row("GPU, first to last", false, slots.map(|h| values(h, &|f| f.gpu_ms))));
-    list.push(row(CPU, false, slots.map(|h| values(h, &|f| f.cpu_ms))));
+    list.push(row("GPU, first to last", false, sides.map(|h| values(h, &|f| f.gpu_ms))));
+    list.push(row(CPU, false, sides.map(|h| values(h, &|f| f.cpu_ms))));
     list
 }
 

@@ -4,7 +4,7 @@ mod chart;
 mod export;
 mod history;
 
-use super::report::{Outline, PictureReport};
+use super::report::{GraphInfo, PictureReport};
 use super::{Tab, Workbench};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
 use history::{Frame, History, Row};
@@ -23,7 +23,7 @@ const CHART: f32 = 90.0;
 /// State of this tab.
 #[derive(Default)]
 pub struct Times {
-    slots: [History; 2],
+    sides: [History; 2],
     charts: [chart::Chart; 2],
     rows: Vec<Row>,
     made: Option<Instant>,
@@ -38,31 +38,31 @@ impl Times {
     /// Takes in the times of a frame.
     pub fn note(&mut self, picture: &PictureReport) {
         // The passes of a preview are those of another graph.
-        if let Some(slot) = self.slots.get_mut(picture.slot).filter(|_| !picture.preview) {
-            slot.push(Frame::of(picture));
+        if let Some(side) = self.sides.get_mut(picture.side).filter(|_| !picture.preview) {
+            side.push(Frame::of(picture));
         }
     }
 
-    /// A slot runs something new: its times so far are of something else.
-    pub fn built(&mut self, slot: usize, outline: &Outline) {
-        let pass = |i: &usize| outline.graph.passes.get(*i).map(|p| (*i, p.value.name.value.clone()));
-        self.slots[slot] = History::new(outline.passes.iter().filter_map(pass).collect());
+    /// A side runs something new: its times so far are of something else.
+    pub fn built(&mut self, side: usize, info: &GraphInfo) {
+        let pass = |i: &usize| info.graph.passes.get(*i).map(|p| (*i, p.value.name.value.clone()));
+        self.sides[side] = History::new(info.passes.iter().filter_map(pass).collect());
         self.made = None;
-        if slot == 0 {
-            self.memory.clone_from(&outline.memory);
+        if side == 0 {
+            self.memory.clone_from(&info.memory);
             self.memory.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-            self.scene_bytes = outline.scene_bytes;
+            self.scene_bytes = info.scene_bytes;
         }
     }
 
     fn refresh(&mut self, both: bool) {
-        if !both && !self.slots[1].frames.is_empty() {
-            self.slots[1] = History::default();
+        if !both && !self.sides[1].frames.is_empty() {
+            self.sides[1] = History::default();
             self.made = None;
         }
         if self.made.is_none_or(|t| t.elapsed() > TABLE_AGE) {
             self.made = Some(Instant::now());
-            self.rows = history::rows(&self.slots[0], both.then_some(&self.slots[1]));
+            self.rows = history::rows(&self.sides[0], both.then_some(&self.sides[1]));
         }
     }
 }
@@ -70,7 +70,7 @@ impl Times {
 impl Workbench {
     /// The tab.
     pub(super) fn times_tab(&mut self, ui: &mut Ui) {
-        let both = self.wish.slots[1].is_some();
+        let both = self.desired.sides[1].is_some();
         self.times.refresh(both);
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             // The scroll bar must not cover the last column.
@@ -78,9 +78,9 @@ impl Workbench {
             self.exports(ui);
             let mut hovered = None;
             let mut clicked = None;
-            let top = (0..=usize::from(both)).map(|i| self.times.slots[i].top()).fold(0.0, f64::max);
+            let top = (0..=usize::from(both)).map(|i| self.times.sides[i].top()).fold(0.0, f64::max);
             for i in 0..=usize::from(both) {
-                let shown = self.times.charts[i].show(ui, i, &self.times.slots[i], top, self.times.hovered.as_deref());
+                let shown = self.times.charts[i].show(ui, i, &self.times.sides[i], top, self.times.hovered.as_deref());
                 let Some((name, response)) = shown else { continue };
                 if response.clicked() {
                     clicked = Some((i, name.clone()));
@@ -96,16 +96,16 @@ impl Workbench {
                 if !row.is_pass || !response.hovered() {
                     continue;
                 }
-                let (slot, name) = (usize::from(row.spread[0].is_none()), row.name.clone());
+                let (side, name) = (usize::from(row.spread[0].is_none()), row.name.clone());
                 if response.clicked() {
-                    clicked = Some((slot, name.clone()));
+                    clicked = Some((side, name.clone()));
                 }
-                response.on_hover_text_at_pointer(self.pass_text(slot, &name));
+                response.on_hover_text_at_pointer(self.pass_text(side, &name));
                 hovered = Some(name);
             }
             self.times.hovered = hovered;
-            if let Some((slot, name)) = clicked {
-                self.inspect_pass(slot, &name);
+            if let Some((side, name)) = clicked {
+                self.inspect_pass(side, &name);
             }
             ui.separator();
             memory(ui, &self.times.memory, self.times.scene_bytes);
@@ -115,20 +115,20 @@ impl Workbench {
     fn exports(&mut self, ui: &mut Ui) {
         let mut file = None;
         ui.horizontal(|ui| {
-            let some = self.times.slots.iter().any(|s| !s.frames.is_empty());
+            let some = self.times.sides.iter().any(|s| !s.frames.is_empty());
             let button = |text: &str| egui::Button::new(text).small();
             if ui
                 .add_enabled(some, button("CSV"))
                 .on_hover_text("A row a frame, a column a pass, into captures/")
                 .clicked()
             {
-                file = Some(("csv", export::csv(&self.times.slots)));
+                file = Some(("csv", export::csv(&self.times.sides)));
             }
             let about = "For Perfetto or chrome://tracing, into captures/";
             if ui.add_enabled(some, button("trace")).on_hover_text(about).clicked() {
-                file = Some(("json", Ok(export::trace(&self.times.slots))));
+                file = Some(("json", Ok(export::trace(&self.times.sides))));
             }
-            ui.weak(format!("the last {} frames", self.times.slots[0].frames.len()));
+            ui.weak(format!("the last {} frames", self.times.sides[0].frames.len()));
         });
         if let Some((ending, bytes)) = file {
             self.export(&format!("times-{}", self.name), ending, bytes);
@@ -148,30 +148,29 @@ impl Workbench {
     }
 
     /// What a pass writes, for people.
-    fn pass_text(&self, slot: usize, name: &str) -> String {
-        let list = self.pass_writes(slot, name).join(", ");
+    fn pass_text(&self, side: usize, name: &str) -> String {
+        let list = self.pass_writes(side, name).join(", ");
         match list.is_empty() {
             true => name.to_string(),
-            false => format!("{name}\nwrites {list}\nclick to look into it"),
+            false => format!("{name}\nwrites {list}\nclick to inspect it"),
         }
     }
 
-    fn pass_writes(&self, slot: usize, name: &str) -> &[String] {
-        let Some(outline) = &self.slots[slot].outline else { return &[] };
-        let named =
-            |w: &&(usize, Vec<String>)| outline.graph.passes.get(w.0).is_some_and(|p| p.value.name.value == name);
-        outline.writes.iter().find(named).map_or(&[], |w| &w.1)
+    fn pass_writes(&self, side: usize, name: &str) -> &[String] {
+        let Some(info) = &self.sides[side].info else { return &[] };
+        let named = |w: &&(usize, Vec<String>)| info.graph.passes.get(w.0).is_some_and(|p| p.value.name.value == name);
+        info.writes.iter().find(named).map_or(&[], |w| &w.1)
     }
 
     /// Opens the first texture that a pass writes in the inspector.
-    fn inspect_pass(&mut self, slot: usize, name: &str) {
-        let Some(outline) = self.slots[slot].outline.clone() else { return };
-        let texture = |n: &&String| outline.graph.textures.iter().any(|t| t.0 == **n);
-        let Some(texture) = self.pass_writes(slot, name).iter().find(texture).cloned() else {
+    fn inspect_pass(&mut self, side: usize, name: &str) {
+        let Some(info) = self.sides[side].info.clone() else { return };
+        let texture = |n: &&String| info.graph.textures.iter().any(|t| t.0 == **n);
+        let Some(texture) = self.pass_writes(side, name).iter().find(texture).cloned() else {
             self.status = format!("{name} writes no texture");
             return;
         };
-        self.inspector.open(slot, texture);
+        self.inspector.open(side, texture);
         self.tab = Tab::Inspector;
     }
 }

@@ -1,4 +1,4 @@
-//! What the window wants to see; the engine always works towards the latest wish.
+//! The desired state: what the window wants to see. The engine always works towards the latest request.
 
 use crate::camera_path::CameraPath;
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
@@ -8,14 +8,14 @@ use glam::Vec3;
 
 /// A graph with the parameters that are not at their defaults.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SlotWish {
+pub struct SideRequest {
     /// Graph file in the passes folder.
     pub graph: String,
     /// (name, value as RON).
     pub params: Vec<(String, String)>,
 }
 
-/// How time goes.
+/// The course of the scene's time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Clock {
     /// Whether time goes on.
@@ -30,11 +30,11 @@ pub struct Clock {
     pub jumps: u64,
 }
 
-/// A part of a texture to look into.
+/// The mip, layer or slice of a texture that the inspector reads back.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Look {
+pub struct InspectTarget {
     /// 0 or 1.
-    pub slot: usize,
+    pub side: usize,
     /// Name of the texture.
     pub texture: String,
     /// Mip level.
@@ -49,9 +49,9 @@ pub struct Look {
 
 /// Everything that decides what is rendered.
 #[derive(Clone, Debug, Default)]
-pub struct Wish {
+pub struct RenderRequest {
     /// A and, when compared, B.
-    pub slots: [Option<SlotWish>; 2],
+    pub sides: [Option<SideRequest>; 2],
     /// Built-in name or path of the scene.
     pub scene: String,
     /// Lights and sky that differ from the scene's own.
@@ -70,29 +70,29 @@ pub struct Wish {
     pub revision: u64,
     /// The scene's files changed so often.
     pub scene_revision: u64,
-    /// What the inspector looks into.
-    pub look: Option<Look>,
-    /// The table shown, by the number that the graph gives it, of slot A.
+    /// What the inspector shows.
+    pub inspect: Option<InspectTarget>,
+    /// The table shown, by the number that the graph gives it, of side A.
     pub table: Option<usize>,
-    /// Counts wishes.
+    /// Counts requests.
     pub number: u64,
 }
 
-impl Wish {
-    /// The experiment of a slot, as a session is made from it.
-    pub fn experiment(&self, slot: &SlotWish) -> Experiment {
+impl RenderRequest {
+    /// The experiment of a side, as a session is made from it.
+    pub fn experiment(&self, side: &SideRequest) -> Experiment {
         let mut sources = Sources::default();
-        let text = slot.params.iter().map(|(n, v)| format!("{n}: {v}")).collect::<Vec<_>>().join("\n");
+        let text = side.params.iter().map(|(n, v)| format!("{n}: {v}")).collect::<Vec<_>>().join("\n");
         let file = sources.add("the panel".as_ref(), text);
         let mut offset = 0;
         let mut params = Vec::new();
-        for (name, value) in &slot.params {
+        for (name, value) in &side.params {
             params.push((Loc { value: name.clone(), at: At { file, offset } }, value.clone()));
             offset += u32::try_from(name.len() + value.len() + 3).unwrap_or(0);
         }
         Experiment {
             name: "workbench".into(),
-            graph: slot.graph.clone(),
+            graph: side.graph.clone(),
             scene: self.scene.clone(),
             camera: self
                 .camera

@@ -1,4 +1,4 @@
-//! A desk: a virtual screen with the program on it, a hand for mouse and keys, and an eye on pixels and events.
+//! A driver: a virtual screen with the program on it, a hand for mouse and keys, and an eye on pixels and events.
 #![allow(dead_code, reason = "each test uses a part")]
 
 use crate::common::{conelab, root};
@@ -34,12 +34,12 @@ pub const F1: u32 = 0xffbe;
 
 /// What is on the screen where the picture is, one RGBA a texel of the picture.
 #[derive(Clone, PartialEq)]
-pub struct Seen {
+pub struct Screenshot {
     pub size: (usize, usize),
     pub rgba: Vec<u8>,
 }
 
-impl Seen {
+impl Screenshot {
     /// Some columns, without `rim` rows and columns at the edges.
     pub fn part(&self, columns: std::ops::Range<usize>, rim: usize) -> Vec<u8> {
         let rows = self.rgba.chunks_exact(4 * self.size.0).skip(rim).take(self.size.1 - 2 * rim);
@@ -63,7 +63,7 @@ impl Drop for Screen {
     }
 }
 
-pub struct Desk {
+pub struct WindowDriver {
     pub home: TempDir,
     program: Child,
     x: RustConnection,
@@ -72,12 +72,12 @@ pub struct Desk {
     log: BufReader<File>,
     line: String,
     pub events: Vec<Value>,
-    known: HashMap<String, Seen>,
+    known: HashMap<String, Screenshot>,
     _screen: Screen,
     _one: MutexGuard<'static, ()>,
 }
 
-impl Drop for Desk {
+impl Drop for WindowDriver {
     fn drop(&mut self) {
         let _ = self.program.kill();
         let _ = self.program.wait();
@@ -99,22 +99,22 @@ fn screen() -> (Screen, String) {
     (Screen(server), format!(":{}", number.trim()))
 }
 
-impl Desk {
+impl WindowDriver {
     /// The program on a copy of passes, shaders and configs, with an experiment (RON) that is opened, and arguments.
     #[track_caller]
-    pub fn open(experiment: &str, args: &[&str]) -> Desk {
+    pub fn open(experiment: &str, args: &[&str]) -> WindowDriver {
         let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         let home = tempfile::tempdir().unwrap();
         for folder in ["passes", "shaders", "configs"] {
             copy(&root().join(folder), &home.path().join(folder));
         }
-        std::fs::write(home.path().join("configs/desk.ron"), experiment).unwrap();
+        std::fs::write(home.path().join("configs/driver.ron"), experiment).unwrap();
         let (server, display) = screen();
         let log = home.path().join("events.jsonl");
         File::create(&log).unwrap();
         let window = format!("{}x{}", WINDOW.0, WINDOW.1);
         let program = conelab(home.path())
-            .args(["view", "configs/desk.ron", "--events", "events.jsonl", "--window", &window])
+            .args(["view", "configs/driver.ron", "--events", "events.jsonl", "--window", &window])
             .args(args)
             .env("DISPLAY", &display)
             .env("CONELAB_CACHE", home.path().join("cache"))
@@ -128,7 +128,7 @@ impl Desk {
         let (x, number) = x11rb::connect(Some(&display)).unwrap();
         let root = x.setup().roots[number].root;
         let log = BufReader::new(File::open(log).unwrap());
-        let mut desk = Desk {
+        let mut driver = WindowDriver {
             home,
             program,
             x,
@@ -142,16 +142,16 @@ impl Desk {
             _one: one,
         };
         let until = Instant::now() + Duration::from_secs(20);
-        desk.window = loop {
-            if let Some(window) = desk.windows() {
+        driver.window = loop {
+            if let Some(window) = driver.windows() {
                 break window;
             }
-            assert!(Instant::now() < until, "no window\n{}", desk.stderr());
+            assert!(Instant::now() < until, "no window\n{}", driver.stderr());
             std::thread::sleep(Duration::from_millis(20));
         };
         // There is no window manager to do it.
-        desk.focus();
-        desk
+        driver.focus();
+        driver
     }
 
     fn windows(&self) -> Option<Window> {
@@ -196,13 +196,13 @@ impl Desk {
     #[track_caller]
     pub fn wait_at_most(&mut self, time: Duration, since: usize, what: &str, is: impl Fn(&Value) -> bool) -> Value {
         let until = Instant::now() + time;
-        let mut seen = since;
+        let mut next = since;
         loop {
             self.now();
-            if let Some(event) = self.events[seen..].iter().find(|e| is(e)) {
+            if let Some(event) = self.events[next..].iter().find(|e| is(e)) {
                 return event.clone();
             }
-            seen = self.events.len();
+            next = self.events.len();
             if Instant::now() > until || self.program.try_wait().unwrap().is_some() {
                 let mut last: Vec<String> =
                     self.events[since..].iter().filter(|e| e["event"] != "widgets").map(Value::to_string).collect();
@@ -229,39 +229,39 @@ impl Desk {
 
     /// The fingerprint of A's or B's picture once none follows for a while and it is on the screen.
     #[track_caller]
-    pub fn resting(&mut self, slot: usize) -> String {
-        let mut count = self.pictures(slot).len();
+    pub fn resting(&mut self, side: usize) -> String {
+        let mut count = self.pictures(side).len();
         let mut since = Instant::now();
         while since.elapsed() < Duration::from_millis(350) {
             std::thread::sleep(Duration::from_millis(10));
-            let now = self.pictures(slot).len();
+            let now = self.pictures(side).len();
             if now != count {
                 (count, since) = (now, Instant::now());
             }
         }
-        self.pictures(slot).pop().expect("a picture")
+        self.pictures(side).pop().expect("a picture")
     }
 
     /// Fingerprints of the pictures so far.
-    pub fn pictures(&mut self, slot: usize) -> Vec<String> {
+    pub fn pictures(&mut self, side: usize) -> Vec<String> {
         self.now();
-        let list = self.events.iter().filter(|e| e["event"] == "picture" && e["slot"] == slot && e["preview"] == false);
+        let list = self.events.iter().filter(|e| e["event"] == "picture" && e["side"] == side && e["preview"] == false);
         list.map(|e| e["fingerprint"].as_str().unwrap().to_string()).collect()
     }
 
     /// Waits for a picture with this fingerprint.
     #[track_caller]
-    pub fn picture(&mut self, since: usize, slot: usize, print: &str) {
+    pub fn picture(&mut self, since: usize, side: usize, print: &str) {
         self.wait(since, &format!("picture {print}"), |e| {
-            e["event"] == "picture" && e["slot"] == slot && e["fingerprint"] == print
+            e["event"] == "picture" && e["side"] == side && e["fingerprint"] == print
         });
     }
 
     /// Waits for a picture with another fingerprint, which it returns.
     #[track_caller]
-    pub fn other_picture(&mut self, since: usize, slot: usize, print: &str) -> String {
+    pub fn other_picture(&mut self, since: usize, side: usize, print: &str) -> String {
         let event = self.wait(since, &format!("picture other than {print}"), |e| {
-            e["event"] == "picture" && e["slot"] == slot && e["preview"] == false && e["fingerprint"] != print
+            e["event"] == "picture" && e["side"] == side && e["preview"] == false && e["fingerprint"] != print
         });
         event["fingerprint"].as_str().unwrap().to_string()
     }
@@ -429,14 +429,14 @@ impl Desk {
     }
 
     /// The picture on the screen, at one point a texel.
-    pub fn look(&mut self) -> Seen {
+    pub fn screenshot(&mut self) -> Screenshot {
         let [left, top, right, bottom] = self.place().map(|v| v as i16);
         let last = self.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
         let size = [0, 1].map(|i| usize::try_from(last["size"][i].as_u64().unwrap()).unwrap());
         let (width, height) = ((right - left).max(1) as u16, (bottom - top).max(1) as u16);
         let image = self.x.get_image(ImageFormat::Z_PIXMAP, self.window, left, top, width, height, !0);
         // While the window is smaller than the picture was, there is nothing to see.
-        let Ok(image) = image.unwrap().reply() else { return Seen { size: (0, 0), rgba: Vec::new() } };
+        let Ok(image) = image.unwrap().reply() else { return Screenshot { size: (0, 0), rgba: Vec::new() } };
         let bytes = image.data;
         let mut rgba = Vec::new();
         for y in 0..size[1] {
@@ -446,17 +446,17 @@ impl Desk {
                 rgba.extend([bytes[i + 2], bytes[i + 1], bytes[i], 255]);
             }
         }
-        Seen { size: (size[0], size[1]), rgba }
+        Screenshot { size: (size[0], size[1]), rgba }
     }
 
     /// Waits until `holds` of what is on the screen.
     #[track_caller]
-    pub fn look_until(&mut self, what: &str, holds: impl Fn(&Seen) -> bool) -> Seen {
+    pub fn screenshot_until(&mut self, what: &str, holds: impl Fn(&Screenshot) -> bool) -> Screenshot {
         let until = Instant::now() + Duration::from_secs(5);
         loop {
-            let seen = self.look();
-            if holds(&seen) {
-                return seen;
+            let shot = self.screenshot();
+            if holds(&shot) {
+                return shot;
             }
             if Instant::now() > until {
                 self.keep_screen();
@@ -468,28 +468,28 @@ impl Desk {
 
     /// Waits until this picture is on the screen: as it was when it was seen first.
     #[track_caller]
-    pub fn shows(&mut self, print: &str) -> Seen {
+    pub fn shows(&mut self, print: &str) -> Screenshot {
         if let Some(known) = self.known.get(print).cloned() {
-            return self.look_until(&format!("picture {print}"), |seen| *seen == known);
+            return self.screenshot_until(&format!("picture {print}"), |shot| *shot == known);
         }
         self.wait(0, &format!("painting of {print}"), |e| {
             e["event"] == "painted" && e["fingerprints"].as_array().unwrap().iter().any(|f| f == print)
         });
-        let seen = self.look_still();
-        self.known.insert(print.to_string(), seen.clone());
-        seen
+        let shot = self.still_screenshot();
+        self.known.insert(print.to_string(), shot.clone());
+        shot
     }
 
     /// What is on the screen once it stands still.
-    pub fn look_still(&mut self) -> Seen {
-        let mut seen = self.look();
+    pub fn still_screenshot(&mut self) -> Screenshot {
+        let mut shot = self.screenshot();
         loop {
             std::thread::sleep(Duration::from_millis(150));
-            let next = self.look();
-            if next == seen {
-                return seen;
+            let next = self.screenshot();
+            if next == shot {
+                return shot;
             }
-            seen = next;
+            shot = next;
         }
     }
 

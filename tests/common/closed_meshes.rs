@@ -1,13 +1,13 @@
-//! Closed bodies and their poses.
+//! Closed meshes and their poses.
 
-use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Part, Scene, Vertex};
+use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Vertex};
 use glam::{Mat4, Quat, Vec3};
 
-/// A scene of one body.
+/// A scene of one mesh.
 pub fn placed(mesh: Mesh, materials: Vec<Material>, keyframes: Vec<Keyframe>) -> Scene {
     let animation = (!keyframes.is_empty()).then_some(Animation { keyframes, repeat: false });
-    let instance = Instance { name: "body".into(), mesh: 0, transform: Mat4::IDENTITY, animation };
-    Scene { name: "body".into(), meshes: vec![mesh], materials, instances: vec![instance], ..Scene::default() }
+    let instance = Instance { name: "mesh".into(), mesh: 0, transform: Mat4::IDENTITY, animation };
+    Scene { name: "mesh".into(), meshes: vec![mesh], materials, instances: vec![instance], ..Scene::default() }
 }
 
 /// A closed surface over a torus of u and v: `point` has the period 1 in both.
@@ -59,7 +59,7 @@ fn push(mesh: &mut Mesh, position: Vec3, normal: Vec3) {
 }
 
 fn whole(mut mesh: Mesh) -> Mesh {
-    mesh.parts = vec![Part { first_index: 0, index_count: mesh.indices.len() as u32, material: 0 }];
+    mesh.submeshes = vec![Submesh { first_index: 0, index_count: mesh.indices.len() as u32, material: 0 }];
     mesh
 }
 

@@ -1,8 +1,8 @@
-//! What other threads have to say: the engine, the watch over files, what is worked out aside.
+//! Messages from other threads: the engine, the watch over files, comparisons, the inspector.
 
 use super::compare::MODES;
 use super::report::{PictureReport, Report};
-use super::{COMPARISON, INSPECTOR, Workbench, events, keep};
+use super::{COMPARISON, INSPECTOR, Workbench, events, save};
 use crate::experiment::{CameraChoice, Experiment};
 use crate::graph::successor::Change;
 use crate::lab::{Viewpoint, viewpoint_of};
@@ -12,8 +12,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 impl Workbench {
-    /// Takes in what other threads have to say. Returns how soon to ask again, if something is about to come.
-    pub fn pump(&mut self) -> Option<Duration> {
+    /// Takes in the messages of other threads. Returns how soon to poll again, if a message is about to come.
+    pub fn poll_events(&mut self) -> Option<Duration> {
         while let Ok(report) = self.engine.reports.try_recv() {
             self.report(report);
         }
@@ -32,7 +32,7 @@ impl Workbench {
             self.pixels.retain(|p| p.0 != INSPECTOR);
             self.pixels.push(pixels);
         }
-        self.chart_news();
+        self.poll_chart();
         match self.watch.take() {
             Ok(changed) => {
                 self.files_changed(&changed);
@@ -50,25 +50,25 @@ impl Workbench {
                 self.chart.restarted();
                 self.trouble = None;
             }
-            Report::Built { slot, outline, change, ms, revision, objects } => {
+            Report::Built { side, info, change, ms, revision, objects } => {
                 let Change { kept, built, resized } = change;
                 self.status = format!("kept {kept}, rebuilt {built}, resized {resized}, {ms:.0} ms");
                 self.event(
                     "built",
-                    json!({ "slot": slot, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
+                    json!({ "side": side, "kept": kept, "rebuilt": built, "resized": resized, "build_ms": ms,
                         "revision": revision, "objects": objects }),
                 );
-                self.times.built(slot, &outline);
-                self.mended(slot);
-                self.slots[slot].outline = Some(outline);
+                self.times.built(side, &info);
+                self.mended(side);
+                self.sides[side].info = Some(info);
             }
-            Report::Failed { slot, diagnostics, revision } => {
+            Report::Failed { side, diagnostics, revision } => {
                 let texts: Vec<String> = diagnostics.iter().map(ToString::to_string).collect();
-                self.event("failed", json!({ "slot": slot, "errors": texts, "revision": revision }));
-                self.slots[slot].errors = diagnostics;
+                self.event("failed", json!({ "side": side, "errors": texts, "revision": revision }));
+                self.sides[side].errors = diagnostics;
             }
-            Report::Set { slot, .. } => {
-                self.mended(slot);
+            Report::Set { side, .. } => {
+                self.mended(side);
             }
             Report::Picture(picture) => self.picture_came(picture),
             Report::Loading(what, part) => self.loading = Some((what, part)),
@@ -78,9 +78,9 @@ impl Workbench {
                 self.event("load failed", json!({ "why": why }));
                 self.trouble = Some(why);
             }
-            Report::Texels(look, texels) => self.inspector.note(look, *texels, &self.wake),
+            Report::Texels(target, texels) => self.inspector.note(target, *texels, &self.wake),
             Report::Table(number, table, bytes) => self.tables.note(number, table, bytes),
-            Report::Checks(slot, failed) => self.slots[slot].checks = failed,
+            Report::Checks(side, failed) => self.sides[side].checks = failed,
             Report::Captured(result) => {
                 let ok = result.is_ok();
                 let text = match result {
@@ -93,7 +93,7 @@ impl Workbench {
                 self.event("captured", json!({ "ok": ok, "text": text }));
                 self.status = text;
             }
-            Report::Judged(judged) => self.judged(judged),
+            Report::Error(result) => self.error_came(result),
             Report::Trouble(text) => {
                 self.event("trouble", json!({ "text": text }));
                 self.trouble = Some(text);
@@ -101,56 +101,56 @@ impl Workbench {
         }
     }
 
-    fn mended(&mut self, slot: usize) {
-        if !self.slots[slot].errors.is_empty() {
-            self.slots[slot].errors.clear();
-            self.event("mended", json!({ "slot": slot }));
+    fn mended(&mut self, side: usize) {
+        if !self.sides[side].errors.is_empty() {
+            self.sides[side].errors.clear();
+            self.event("mended", json!({ "side": side }));
         }
     }
 
     fn picture_came(&mut self, picture: PictureReport) {
-        if self.wish.slots[picture.slot].is_none() {
+        if self.desired.sides[picture.side].is_none() {
             return;
         }
         self.times.note(&picture);
         self.chart.note(&picture);
-        let number = picture.slot;
+        let number = picture.side;
         self.pixels.retain(|p| p.0 != number);
         self.pixels.push((number, picture.size, picture.bytes.clone()));
         if self.events.is_some() {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
-            let fields = json!({ "slot": number, "preview": picture.preview, "frame": picture.frame,
-                "wish": picture.wish, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
+            let fields = json!({ "side": number, "preview": picture.preview, "frame": picture.frame,
+                "request": picture.request, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
                 "since_change_ms": since,
                 "fingerprint": events::fingerprint(&picture.bytes) });
             self.event("picture", fields);
         }
-        self.slots[number].picture = Some(picture);
+        self.sides[number].picture = Some(picture);
     }
 
     fn loaded(&mut self, scene: Arc<Scene>) {
         self.loading = None;
         self.trouble = None;
         self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
-        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.wish.camera.is_some();
+        let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.desired.camera.is_some();
         if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
             let fallback = Experiment { camera: CameraChoice::Named("default".into()), ..self.bare() };
             let experiment = self.experiment.take().unwrap_or(fallback);
-            match keep::lights(&experiment, &scene) {
-                Ok(lights) => self.wish.lights = lights,
+            match save::lights(&experiment, &scene) {
+                Ok(lights) => self.desired.lights = lights,
                 Err(e) => self.trouble = Some(e.to_string()),
             }
             match viewpoint_of(&experiment, &scene) {
-                Ok(v) => self.wish.camera = Some(v.camera),
+                Ok(v) => self.desired.camera = Some(v.camera),
                 Err(e) => {
                     self.trouble = Some(e.to_string());
-                    self.wish.camera = Some(Viewpoint::around(&scene).camera);
+                    self.desired.camera = Some(Viewpoint::around(&scene).camera);
                 }
             }
         }
         let (low, high) = scene.bounds();
         self.diagonal = (high - low).length().max(1e-3);
         self.scene = Some(scene);
-        self.tell();
+        self.send_request();
     }
 }

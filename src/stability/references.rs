@@ -1,6 +1,6 @@
 //! References of frames.
 
-use super::motion::Moment;
+use super::motion::FrameState;
 use super::plan::Job;
 use crate::experiment::{CameraChoice, Experiment};
 use crate::lab::{Lab, LabError};
@@ -16,22 +16,22 @@ use std::sync::Arc;
 const MAX_BYTES: usize = 512 << 20;
 
 /// A part of a reference.
-pub(super) struct TruthPart {
+pub(super) struct ReferencePart {
     pub mean: Linear,
-    /// Of the even and of the odd samples.
+    /// Means of the even and of the odd samples.
     pub halves: [Linear; 2],
     /// relMSE between the halves.
     pub noise: f64,
 }
 
 /// A reference of one frame.
-pub(super) struct Truth {
-    pub parts: BTreeMap<String, TruthPart>,
+pub(super) struct FrameReference {
+    pub parts: BTreeMap<String, ReferencePart>,
     pub samples: u64,
     bytes: usize,
 }
 
-/// How references are made.
+/// Samples, bounces and seed of the references.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tracing {
     pub samples: u64,
@@ -40,74 +40,74 @@ pub(super) struct Tracing {
 }
 
 /// The references of one device.
-pub(super) struct Truths {
+pub(super) struct References {
     tracing: Tracing,
     tracer: Tracer,
-    found: HashMap<String, Arc<Truth>>,
+    found: HashMap<String, Arc<FrameReference>>,
 }
 
-impl Truths {
-    pub fn new(tracing: Tracing) -> Truths {
-        Truths { tracing, tracer: Tracer::default(), found: HashMap::new() }
+impl References {
+    pub fn new(tracing: Tracing) -> References {
+        References { tracing, tracer: Tracer::default(), found: HashMap::new() }
     }
 
-    /// The reference of a moment of a job, from memory, from the disk, or traced now.
+    /// The reference of a frame state of a job, from memory, from the disk, or traced now.
     pub fn get(
         &mut self,
         lab: &Lab,
         warm: &mut Warm,
         job: &Job,
-        moment: &Moment,
-        tell: &mut dyn FnMut(Gathered),
-    ) -> Result<Arc<Truth>, LabError> {
-        let key = key(lab, warm, job, moment)?;
+        state: &FrameState,
+        on_progress: &mut dyn FnMut(Gathered),
+    ) -> Result<Arc<FrameReference>, LabError> {
+        let key = key(lab, warm, job, state)?;
         if let Some(found) = self.found.get(&key) {
             return Ok(found.clone());
         }
         let mut experiment: Experiment = job.experiment.clone();
-        experiment.camera = CameraChoice::Placed(moment.camera);
-        experiment.time = moment.time;
-        if let Some((name, value)) = &moment.setting {
+        experiment.camera = CameraChoice::Placed(state.camera);
+        experiment.time = state.time;
+        if let Some((name, value)) = &state.setting {
             experiment.set(name, &value.to_string());
         }
         // One seed for all frames: what noise they have is much the same, and goes out of their differences.
         experiment.set("seed", &self.tracing.seed.to_string());
-        let scene = match moment.lights == job.scene.lights {
+        let scene = match state.lights == job.scene.lights {
             true => job.scene.clone(),
-            false => Arc::new(Scene { lights: moment.lights.clone(), ..Scene::clone(&job.scene) }),
+            false => Arc::new(Scene { lights: state.lights.clone(), ..Scene::clone(&job.scene) }),
         };
         let goal = Goal::Samples(self.tracing.samples);
         let (reference, mut halves) =
             self.tracer.gather(lab, &experiment, &scene, self.tracing.bounces, goal, &mut |now| {
-                tell(now);
+                on_progress(now);
                 ControlFlow::Continue(())
             })?;
         let samples = reference.samples;
-        let parts: BTreeMap<String, TruthPart> = reference
+        let parts: BTreeMap<String, ReferencePart> = reference
             .parts
             .into_iter()
             .filter_map(|(name, part)| {
                 let halves = halves.remove(&name)?;
-                Some((name, TruthPart { mean: part.mean, halves, noise: part.noise }))
+                Some((name, ReferencePart { mean: part.mean, halves, noise: part.noise }))
             })
             .collect();
         let bytes = parts.values().map(|p| 3 * 12 * p.mean.rgb.len()).sum();
-        let truth = Arc::new(Truth { parts, samples, bytes });
+        let reference = Arc::new(FrameReference { parts, samples, bytes });
         if self.found.values().map(|t| t.bytes).sum::<usize>() + bytes > MAX_BYTES {
             self.found.clear();
         }
-        self.found.insert(key, truth.clone());
-        Ok(truth)
+        self.found.insert(key, reference.clone());
+        Ok(reference)
     }
 }
 
-/// What the reference of a moment depends on: what is looked at, and the parameters that its graph shares with that of
-/// references.
-fn key(lab: &Lab, warm: &mut Warm, job: &Job, moment: &Moment) -> Result<String, LabError> {
+/// What the reference of a frame state depends on: what is looked at, and the parameters that its graph shares with
+/// that of references.
+fn key(lab: &Lab, warm: &mut Warm, job: &Job, state: &FrameState) -> Result<String, LabError> {
     let shared = warm.graph(&lab.home, GRAPH)?.graph.params.clone();
     let own = &warm.graph(&lab.home, &job.experiment.graph)?.graph.params;
     let params = job.experiment.params_over(own)?;
     let values = params.list.iter().zip(&params.values).filter(|(p, _)| shared.index(&p.name).is_some());
     let values: Vec<String> = values.map(|(p, v)| format!("{}={v}", p.name)).collect();
-    Ok(format!("{} {:?} {moment:?} {}", job.scene_hash, job.experiment.size, values.join(" ")))
+    Ok(format!("{} {:?} {state:?} {}", job.scene_hash, job.experiment.size, values.join(" ")))
 }

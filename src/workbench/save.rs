@@ -1,6 +1,6 @@
 //! Saving: experiments and captures, as the window's state says.
 
-use super::wish::{SlotWish, Wish};
+use super::request::{RenderRequest, SideRequest};
 use crate::capture::{self, Resource, What};
 use crate::experiment::{CameraChoice, Experiment, LightChange};
 use crate::graph::source::{At, Loc};
@@ -10,10 +10,16 @@ use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A slot as an experiment of its own, with what differs from the scene's light.
-pub fn experiment(wish: &Wish, slot: &SlotWish, name: &str, time: f64, scene: Option<&Scene>) -> Experiment {
-    let mut experiment = Experiment { name: name.into(), time, ..wish.experiment(slot) };
-    if let (Some((lights, sky)), Some(scene)) = (&wish.lights, scene) {
+/// A side as an experiment of its own, with what differs from the scene's light.
+pub fn experiment(
+    desired: &RenderRequest,
+    side: &SideRequest,
+    name: &str,
+    time: f64,
+    scene: Option<&Scene>,
+) -> Experiment {
+    let mut experiment = Experiment { name: name.into(), time, ..desired.experiment(side) };
+    if let (Some((lights, sky)), Some(scene)) = (&desired.lights, scene) {
         experiment.sky = (*sky != scene.sky).then(|| (*sky).into());
         experiment.lights = lights
             .iter()
@@ -26,9 +32,9 @@ pub fn experiment(wish: &Wish, slot: &SlotWish, name: &str, time: f64, scene: Op
 }
 
 /// Like [`experiment`], seen from where the camera's path is at that time.
-pub fn still(wish: &Wish, slot: &SlotWish, name: &str, time: f64, scene: &Scene) -> Experiment {
-    let mut still = experiment(wish, slot, name, time, Some(scene));
-    if let Some(path) = &wish.path {
+pub fn still(desired: &RenderRequest, side: &SideRequest, name: &str, time: f64, scene: &Scene) -> Experiment {
+    let mut still = experiment(desired, side, name, time, Some(scene));
+    if let Some(path) = &desired.path {
         still.camera = CameraChoice::Placed(path.at(time));
     }
     still
@@ -64,7 +70,7 @@ pub fn lights(experiment: &Experiment, scene: &Arc<Scene>) -> Result<Option<(Vec
 /// Captures an experiment into `folder/NAME`, or the next name that is free.
 ///
 /// # Errors
-/// Those of rendering and writing.
+/// The errors of rendering and writing.
 pub fn take(
     lab: &Lab,
     experiment: &Experiment,

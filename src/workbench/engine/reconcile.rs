@@ -1,8 +1,8 @@
-//! From what a slot shows to what is wished for: values set, or a build that takes its place.
+//! Reconciling what a side shows with the desired state: values are set, or a build is swapped in.
 
 use super::super::builder::{Done, Job, Key};
-use super::super::report::{Outline, Report};
-use super::super::wish::SlotWish;
+use super::super::report::{GraphInfo, Report};
+use super::super::request::SideRequest;
 use super::Run;
 use crate::graph::source::{Diagnostic, Place};
 use crate::graph::usage::Res;
@@ -12,50 +12,50 @@ use std::sync::Arc;
 use std::time::Instant;
 
 impl Run<'_> {
-    pub(super) fn key(&self, slot: &SlotWish, number: usize) -> Key {
+    pub(super) fn key(&self, side: &SideRequest, number: usize) -> Key {
         let mut wanted = Vec::new();
-        if let Some(look) = self.wish.look.as_ref().filter(|l| l.slot == number) {
-            wanted.push(look.texture.clone());
+        if let Some(target) = self.desired.inspect.as_ref().filter(|l| l.side == number) {
+            wanted.push(target.texture.clone());
         }
         if number == 0
-            && let (Some(table), Some(loaded)) = (self.wish.table, &self.slots[0].loaded)
+            && let (Some(table), Some(loaded)) = (self.desired.table, &self.sides[0].loaded)
             && let Some(table) = loaded.graph.tables.get(table)
         {
             wanted.push(table.value.buffer().to_string());
         }
         Key {
-            graph: slot.graph.clone(),
-            params: slot.params.clone(),
-            size: self.wish.size,
-            revision: self.wish.revision,
+            graph: side.graph.clone(),
+            params: side.params.clone(),
+            size: self.desired.size,
+            revision: self.desired.revision,
             scene: self.scene_number,
             wanted,
         }
     }
 
-    /// Brings a slot nearer to what is wished for: sets values, or starts a build.
-    pub(super) fn approach(&mut self, number: usize) -> Result<(), LabError> {
-        let Some(wish) = self.wish.slots[number].clone() else { return Ok(()) };
+    /// Reconciles a side with the desired state: sets values, or starts a build.
+    pub(super) fn reconcile(&mut self, number: usize) -> Result<(), LabError> {
+        let Some(desired) = self.desired.sides[number].clone() else { return Ok(()) };
         let Some(scene) = self.scene.clone() else { return Ok(()) };
-        if self.wish.size.0 == 0 || self.wish.size.1 == 0 {
+        if self.desired.size.0 == 0 || self.desired.size.1 == 0 {
             return Ok(());
         }
-        let key = self.key(&wish, number);
-        let experiment = self.wish.experiment(&wish);
-        let slot = &mut self.slots[number];
-        if slot.key.as_ref() == Some(&key) {
+        let key = self.key(&desired, number);
+        let experiment = self.desired.experiment(&desired);
+        let side = &mut self.sides[number];
+        if side.key.as_ref() == Some(&key) {
             // What failed meanwhile is taken back.
-            slot.failed = None;
-            slot.answered = self.wish.number;
+            side.failed = None;
+            side.answered = self.desired.number;
             return Ok(());
         }
-        if slot.failed.as_ref() == Some(&key) {
-            slot.answered = self.wish.number;
+        if side.failed.as_ref() == Some(&key) {
+            side.answered = self.desired.number;
             return Ok(());
         }
         let same_files = |k: &Key| k.graph == key.graph && k.revision == key.revision;
-        if let (Some(session), Some(old), Some(loaded)) = (&mut slot.session, &slot.key, &slot.loaded)
-            && !slot.preview
+        if let (Some(session), Some(old), Some(loaded)) = (&mut side.session, &side.key, &side.loaded)
+            && !side.preview
             && same_files(old)
             && (old.size, old.scene, &old.wanted) == (key.size, key.scene, &key.wanted)
         {
@@ -63,11 +63,11 @@ impl Run<'_> {
                 .and_then(|params| Ok(session.set_params(&self.lab, &params)?.then_some(params)));
             match set {
                 Ok(Some(params)) => {
-                    slot.key = Some(key);
-                    slot.failed = None;
-                    slot.answered = self.wish.number;
-                    self.out.send(Report::Set { slot: number, params });
-                    self.disturb(1);
+                    side.key = Some(key);
+                    side.failed = None;
+                    side.answered = self.desired.number;
+                    self.out.send(Report::Set { side: number, params });
+                    self.request_frames(1);
                     return Ok(());
                 }
                 Ok(None) => {}
@@ -78,80 +78,81 @@ impl Run<'_> {
             }
         }
         // B starts with what it can share with A, and the other way round.
-        let beside = self.slots[1 - number].session.as_ref().filter(|_| self.slots[number].session.is_none());
-        let lent = beside.map(|s| s.lend());
+        let other = self.sides[1 - number].session.as_ref().filter(|_| self.sides[number].session.is_none());
+        let shared = other.map(|s| s.share());
         let preview_exists = self.lab.home.folders().passes.join("preview.ron").is_file();
-        let slot = &mut self.slots[number];
-        if slot.building.is_some() {
+        let side = &mut self.sides[number];
+        if side.building.is_some() {
             return Ok(());
         }
         // The first picture of all comes from a graph of two small shaders.
-        let preview = slot.session.is_none() && number == 0 && preview_exists;
+        let preview = side.session.is_none() && number == 0 && preview_exists;
         let mut experiment = experiment;
         if preview {
             experiment.graph = "preview.ron".into();
             experiment.params.clear();
         }
-        let loaded = slot.loaded.clone().filter(|_| !slot.preview && slot.key.as_ref().is_some_and(same_files));
-        let seed = slot.session.as_ref().map(|s| s.seed()).or(lent);
-        slot.building = Some(Instant::now());
+        let loaded = side.loaded.clone().filter(|_| !side.preview && side.key.as_ref().is_some_and(same_files));
+        let reuse = side.session.as_ref().map(|s| s.reusable_parts()).or(shared);
+        side.building = Some(Instant::now());
         let lab = self.lab.clone();
-        let _ = self.jobs.send(Job { slot: number, key, experiment, scene, seed, loaded, preview, lab });
+        let _ = self.jobs.send(Job { side: number, key, experiment, scene, reuse, loaded, preview, lab });
         Ok(())
     }
 
     pub(super) fn built(&mut self, done: Done) -> Result<(), LabError> {
-        let number = done.slot;
-        self.slots[number].building = None;
-        if self.wish.slots[number].is_none() {
+        let number = done.side;
+        self.sides[number].building = None;
+        if self.desired.sides[number].is_none() {
             return Ok(());
         }
         match done.result {
             Ok((mut session, loaded)) => {
-                let slot = &mut self.slots[number];
-                if let Some(mut old) = slot.session.take() {
+                let side = &mut self.sides[number];
+                if let Some(mut old) = side.session.take() {
                     let finished = old.finish()?;
-                    self.tell(number, finished);
-                    session.succeed(&mut old)?;
+                    self.report_frames(number, finished);
+                    session.swap_in(&mut old)?;
                 }
-                let slot = &mut self.slots[number];
-                slot.preview = done.preview;
-                slot.lights = true;
-                slot.looked = None;
-                slot.failed = None;
-                let outline = outline(&session, &loaded);
+                let side = &mut self.sides[number];
+                side.preview = done.preview;
+                side.lights = true;
+                side.inspected = None;
+                side.failed = None;
+                let info = info(&session, &loaded);
                 let change = session.program.change;
-                slot.session = Some(session);
-                slot.loaded = Some(loaded);
+                side.session = Some(session);
+                side.loaded = Some(loaded);
                 if done.preview {
-                    slot.key = None;
+                    side.key = None;
                 } else {
-                    slot.key = Some(done.key.clone());
+                    side.key = Some(done.key.clone());
                     let ms = done.start.elapsed().as_secs_f64() * 1e3;
                     let revision = done.key.revision;
                     let objects = Arc::strong_count(&self.lab.gpu);
-                    let outline = Arc::new(outline);
-                    self.out.send(Report::Built { slot: number, outline, change, ms, revision, objects });
+                    let info = Arc::new(info);
+                    self.out.send(Report::Built { side: number, info, change, ms, revision, objects });
                 }
-                self.disturb(1);
+                self.request_frames(1);
             }
             Err(error) if done.preview => {
                 // Whatever is wrong will be said by the graph itself; here is none to fall back to.
                 self.out.send(Report::Trouble(format!("no preview: {error}")));
-                let key = self.wish.slots[number].clone().map(|w| self.key(&w, number));
-                self.slots[number].failed = None;
-                if let (Some(key), Some(scene), Some(wish)) = (key, self.scene.clone(), &self.wish.slots[number]) {
-                    let experiment = self.wish.experiment(wish);
-                    self.slots[number].building = Some(Instant::now());
-                    let (seed, loaded, lab) = (None, None, self.lab.clone());
-                    let job = Job { slot: number, key, experiment, scene, seed, loaded, preview: false, lab };
+                let key = self.desired.sides[number].clone().map(|w| self.key(&w, number));
+                self.sides[number].failed = None;
+                if let (Some(key), Some(scene), Some(desired)) = (key, self.scene.clone(), &self.desired.sides[number])
+                {
+                    let experiment = self.desired.experiment(desired);
+                    self.sides[number].building = Some(Instant::now());
+                    let (reuse, loaded, lab) = (None, None, self.lab.clone());
+                    let job = Job { side: number, key, experiment, scene, reuse, loaded, preview: false, lab };
                     let _ = self.jobs.send(job);
                 }
                 return Ok(());
             }
             Err(error) => self.fail(number, done.key, error)?,
         }
-        self.approach(number)
+        self.reconcile(number)
     }
 
     /// Says what is wrong; what ran runs on. Only a lost device is an error of the engine.
@@ -160,17 +161,17 @@ impl Run<'_> {
             return Err(error);
         }
         let revision = key.revision;
-        self.slots[number].failed = Some(key);
+        self.sides[number].failed = Some(key);
         let diagnostics = match error {
             LabError::Input(list) => list,
             other => vec![Diagnostic::error(Place::default(), other.to_string())],
         };
-        self.out.send(Report::Failed { slot: number, diagnostics, revision });
+        self.out.send(Report::Failed { side: number, diagnostics, revision });
         Ok(())
     }
 }
 
-fn outline(session: &Session, loaded: &Loaded) -> Outline {
+fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
     let plan = &session.program.plan;
     let mut passes: Vec<usize> = Vec::new();
     let mut writes: Vec<(usize, Vec<String>)> = Vec::new();
@@ -191,7 +192,7 @@ fn outline(session: &Session, loaded: &Loaded) -> Outline {
             }
         }
     }
-    Outline {
+    GraphInfo {
         graph: loaded.graph.clone(),
         params: session.params.clone(),
         textures: plan.textures.clone(),

@@ -3,30 +3,30 @@
 use super::motion::Motion;
 use crate::graph::param::{Param, Params, Value};
 
-/// A motion's parameter with its values.
+/// The values of a moving parameter, frame by frame.
 #[derive(Clone, Debug)]
-pub struct Moved {
-    /// Its name.
+pub struct ParamTrack {
+    /// Name of the parameter.
     pub name: String,
     start: Value,
-    way: Way,
+    steps: Steps,
 }
 
 #[derive(Clone, Debug)]
-enum Way {
-    /// Added to the start, a frame.
+enum Steps {
+    /// Step from frame to frame, added to the start.
     Step(Vec<f64>),
-    /// Of the measured frames.
+    /// Values of the measured frames.
     Values(Vec<Value>),
 }
 
-impl Moved {
-    /// The parameter of a motion among those of an experiment, with values for `frames` frames after `warmup` others; none
-    /// of another motion.
+impl ParamTrack {
+    /// The values of a motion's parameter over `warmup` frames and `frames` measured ones. `None` for a motion that
+    /// moves no parameter.
     ///
     /// # Errors
     /// No such parameter, one that is not only read by shaders, values that it cannot have: the text for the user.
-    pub fn of(motion: &Motion, params: &Params, warmup: usize, frames: usize) -> Result<Option<Moved>, String> {
+    pub fn of(motion: &Motion, params: &Params, warmup: usize, frames: usize) -> Result<Option<ParamTrack>, String> {
         let Motion::Parameter { name, step, values } = motion else { return Ok(None) };
         let mut own = params.clone();
         // The graph's own message, with the nearest name.
@@ -36,33 +36,33 @@ impl Moved {
         if param.constant {
             return Err(format!("'{name}' is compiled into the shaders and cannot move"));
         }
-        let way = match step {
-            Some(step) if values.is_empty() => Way::Step(numbers(param, &step.0)?),
+        let steps = match step {
+            Some(step) if values.is_empty() => Steps::Step(numbers(param, &step.0)?),
             None if !values.is_empty() => {
-                Way::Values(values.iter().map(|v| param.parse(&v.0)).collect::<Result<_, String>>()?)
+                Steps::Values(values.iter().map(|v| param.parse(&v.0)).collect::<Result<_, String>>()?)
             }
             _ => return Err(format!("a motion of '{name}' needs either a `step` or `values`")),
         };
-        let moved = Moved { name: name.clone(), start: start.clone(), way };
+        let track = ParamTrack { name: name.clone(), start: start.clone(), steps };
         for number in [-(warmup as i64), frames as i64 - 1] {
-            param.check(&moved.at(number)).map_err(|e| format!("at frame {number}: {e}"))?;
+            param.check(&track.at(number)).map_err(|e| format!("at frame {number}: {e}"))?;
         }
-        Ok(Some(moved))
+        Ok(Some(track))
     }
 
-    /// The value at a frame; see [`Motion::moment`].
+    /// The value at a frame; see [`Motion::frame_state`].
     pub fn at(&self, number: i64) -> Value {
-        match (&self.way, &self.start) {
-            (Way::Values(list), _) => {
+        match (&self.steps, &self.start) {
+            (Steps::Values(list), _) => {
                 let last = list.len().saturating_sub(1);
                 let index = usize::try_from(number).unwrap_or(0).min(last);
                 list.get(index).unwrap_or(&self.start).clone()
             }
-            (Way::Step(step), Value::Float(v)) => Value::Float(v + number as f64 * step.first().unwrap_or(&0.0)),
-            (Way::Step(step), Value::Vector(v)) => {
+            (Steps::Step(step), Value::Float(v)) => Value::Float(v + number as f64 * step.first().unwrap_or(&0.0)),
+            (Steps::Step(step), Value::Vector(v)) => {
                 Value::Vector(v.iter().zip(step).map(|(v, s)| v + number as f64 * s).collect())
             }
-            (Way::Step(_), other) => other.clone(),
+            (Steps::Step(_), other) => other.clone(),
         }
     }
 }

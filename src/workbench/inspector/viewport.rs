@@ -1,15 +1,15 @@
-//! The picture of what is looked into: nearest texels, whole steps of size, values under the pointer.
+//! The inspected texture in the viewport: nearest texels, whole steps of size, values under the pointer.
 
 use super::super::view;
 use super::{INSPECTOR, Workbench, image};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
-/// Where the user looks.
+/// Pan and zoom over the texture.
 #[derive(Default)]
-pub struct Sight {
-    /// Pixels of the screen a texel; what fits when absent.
+pub struct PanZoom {
+    /// Pixels of the screen a texel; as large as fits when absent.
     zoom: Option<f32>,
-    /// Texel in the middle of the area, from the picture's middle.
+    /// Texel at the centre of the viewport, from the texture's centre.
     centre: Vec2,
 }
 
@@ -28,49 +28,54 @@ impl Workbench {
         let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
         let scale = ui.ctx().pixels_per_point();
-        if self.inspector.middle {
+        if self.inspector.in_viewport {
             self.area = [(area.width() * scale) as u32, (area.height() * scale) as u32];
         }
         painter.rect_filled(area, 0.0, Color32::from_gray(12));
         let Some(done) = &self.inspector.shown else { return };
         let size = Vec2::new(done.decoded.size[0].max(1) as f32, done.decoded.size[1].max(1) as f32);
-        let sight = &mut self.inspector.sight;
+        let pan_zoom = &mut self.inspector.pan_zoom;
         let fitting = view::fit(area, done.decoded.size, scale).width() * scale / size.x;
-        let rect = |sight: &Sight| {
-            let texel = sight.zoom.unwrap_or(fitting) / scale;
-            let min = area.center() - (size / 2.0 + sight.centre) * texel;
+        let rect = |pan_zoom: &PanZoom| {
+            let texel = pan_zoom.zoom.unwrap_or(fitting) / scale;
+            let min = area.center() - (size / 2.0 + pan_zoom.centre) * texel;
             let min = Pos2::new((min.x * scale).round() / scale, (min.y * scale).round() / scale);
             Rect::from_min_size(min, size * texel)
         };
         if response.double_clicked() {
-            *sight = Sight::default();
+            *pan_zoom = PanZoom::default();
         }
         let pointer = response.hover_pos();
         let wheel = if pointer.is_some() { ui.input(|i| i.smooth_scroll_delta().y) } else { 0.0 };
         let notch = notch(ui, wheel);
         if let Some(at) = pointer.filter(|_| notch != 0) {
-            let old = rect(sight);
+            let old = rect(pan_zoom);
             let under = (at - old.min) / old.size() * size;
-            let zoom = step(sight.zoom.unwrap_or(fitting), notch > 0);
-            sight.zoom = Some(zoom);
+            let zoom = step(pan_zoom.zoom.unwrap_or(fitting), notch > 0);
+            pan_zoom.zoom = Some(zoom);
             // The texel under the pointer stays there.
-            sight.centre = under - size / 2.0 - (at - area.center()) * scale / zoom;
+            pan_zoom.centre = under - size / 2.0 - (at - area.center()) * scale / zoom;
         }
         if response.dragged() {
-            let zoom = *sight.zoom.get_or_insert(fitting);
-            sight.centre -= response.drag_delta() * scale / zoom;
+            let zoom = *pan_zoom.zoom.get_or_insert(fitting);
+            pan_zoom.centre -= response.drag_delta() * scale / zoom;
         }
-        sight.centre = sight.centre.clamp(-size / 2.0, size / 2.0);
-        let shown = rect(sight);
+        pan_zoom.centre = pan_zoom.centre.clamp(-size / 2.0, size / 2.0);
+        let shown = rect(pan_zoom);
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         if let Some(texture) = textures.get(INSPECTOR) {
             painter.image(*texture, shown, whole, Color32::WHITE);
         }
         let texel = shown.width() / size.x;
         self.under_pointer(&painter, pointer, shown, texel);
-        let look = &self.inspector.look;
-        let name =
-            format!("{} {}  mip {}  × {:.3}", ["A", "B"][look.slot.min(1)], look.texture, look.mip, texel * scale);
+        let target = &self.inspector.target;
+        let name = format!(
+            "{} {}  mip {}  × {:.3}",
+            ["A", "B"][target.side.min(1)],
+            target.texture,
+            target.mip,
+            texel * scale
+        );
         note(&painter, area, area.left_top() + Vec2::new(6.0, 6.0), &name);
     }
 
@@ -88,11 +93,11 @@ impl Workbench {
             let cell = Rect::from_min_size(shown.min + place * texel, Vec2::splat(texel));
             painter.rect_stroke(cell, 0.0, Stroke::new(1.0, Color32::YELLOW), egui::StrokeKind::Outside);
         }
-        let look = &done.decoded.look;
-        let outline = self.slots[look.slot.min(1)].outline.as_ref();
-        let index = outline.and_then(|o| o.graph.textures.iter().position(|t| t.0 == look.texture));
-        let volume = outline.zip(index).is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
-        let place: Vec<String> = image::texel(look, volume, x, y).iter().map(ToString::to_string).collect();
+        let target = &done.decoded.target;
+        let info = self.sides[target.side.min(1)].info.as_ref();
+        let index = info.and_then(|o| o.graph.textures.iter().position(|t| t.0 == target.texture));
+        let volume = info.zip(index).is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
+        let place: Vec<String> = image::texel(target, volume, x, y).iter().map(ToString::to_string).collect();
         let channels: Vec<String> = ["R", "G", "B", "A"].iter().zip(values).map(|(n, v)| format!("{n} {v}")).collect();
         let text = format!("({})\n{}", place.join(", "), channels.join("\n"));
         note(painter, painter.clip_rect(), at + Vec2::new(14.0, 14.0), &text);

@@ -1,4 +1,4 @@
-//! What a suite wants charted: a dot for each method, static error against stability, with what it costs.
+//! The chart that a suite asks for: a dot for each method, static error against stability, with what it costs.
 
 use super::file::{Case, Method};
 use crate::graph::file::RawText;
@@ -71,7 +71,7 @@ impl ChartFile {
     ///
     /// # Errors
     /// The text for the user.
-    pub fn wish(&self, methods: &[Method], cases: &[Case]) -> Result<CostChart, String> {
+    pub fn spec(&self, methods: &[Method], cases: &[Case]) -> Result<CostChart, String> {
         if self.error.is_empty() || self.motions.is_empty() {
             return Err("a chart needs at least one case for `error` and one for `motions`".into());
         }

@@ -1,8 +1,8 @@
-//! The Pareto front.
+//! The Pareto front of time and error.
 
-/// The points that no other point beats in both numbers, by the first: (time, error), less is better. Of equal points
-/// the first counts.
-pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+/// Indices of the points on the Pareto front, by time: those that no other (time, error) beats in both numbers, where
+/// less is better. Of equal points the first counts.
+pub fn pareto(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> =
         (0..points.len()).filter(|i| points[*i].0.is_finite() && points[*i].1.is_finite()).collect();
     order.sort_by(|a, b| points[*a].0.total_cmp(&points[*b].0).then(points[*a].1.total_cmp(&points[*b].1)));
@@ -17,7 +17,7 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use super::front;
+    use super::pareto;
     use proptest::prelude::*;
 
     proptest! {
@@ -28,7 +28,7 @@ mod tests {
         ) {
             let points: Vec<(f64, f64)> = points.iter().map(|p| (f64::from(p.0), f64::from(p.1))).collect();
             let beats = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
-            let front = front(&points);
+            let front = pareto(&points);
             for (i, p) in points.iter().enumerate() {
                 let beaten = points.iter().any(|q| beats(*q, *p));
                 let first = points.iter().position(|q| q == p) == Some(i);

@@ -1,0 +1,48 @@
+//! Work on the shown picture in the background, while frames go on: its error, a capture.
+
+use super::super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
+use super::super::report::Report;
+use super::super::save;
+use super::{Run, SETTLE, has_history};
+
+impl Run<'_> {
+    /// Sends what a side shows to the error worker. A picture that is not there yet is asked for again.
+    pub(super) fn measure_error(&mut self, number: usize, query: ErrorQuery) {
+        let (Some(desired), Some(scene)) = (&self.desired.sides[number], &self.scene) else { return };
+        let side = &self.sides[number];
+        let shown = side.session.as_ref().filter(|_| side.key.as_ref() == Some(&self.key(desired, number)));
+        let (Some(session), Some(loaded)) = (shown, &side.loaded) else {
+            let result = Err("what is asked for is not shown".into());
+            self.out.send(Report::Error(ErrorResult { side: number, request: self.desired.number, query, result }));
+            return;
+        };
+        let request = ErrorRequest {
+            side: number,
+            request: side.answered,
+            revision: self.desired.revision,
+            query,
+            lab: self.lab.clone(),
+            loaded: loaded.clone(),
+            reuse: session.share(),
+            experiment: save::still(&self.desired, desired, "error", self.clock.now, scene),
+            scene: scene.clone(),
+            lights: self.desired.lights.clone(),
+            frames: if has_history(session) { SETTLE } else { 1 },
+        };
+        let _ = self.error_requests.send(request);
+    }
+
+    /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
+    pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
+        let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone()) else { return };
+        let experiment = save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
+        let settle = self.sides[number].session.as_ref().is_some_and(|s| has_history(s));
+        let frames = if settle { SETTLE as usize } else { 1 };
+        let (lab, out) = (self.lab.clone(), self.out.clone());
+        let folder = lab.home.root.join("captures");
+        std::thread::spawn(move || {
+            let result = save::take(&lab, &experiment, scene, &folder, resources, frames);
+            out.send(Report::Captured(result.map_err(|e| e.to_string())));
+        });
+    }
+}
