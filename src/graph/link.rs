@@ -8,11 +8,7 @@ use super::param::Kind;
 use super::runs::Runs;
 use super::source::{Diagnostic, Place, Severity};
 use super::unused::{Texts, unused};
-<<<<<<< HEAD
-use crate::shader::{Compiled, Generated, Layout, Resource, ShaderCompiler, Shape, Source};
-=======
-use crate::shader::{Binding, Compiled, Layout, Resource, ShaderCompiler, Shape, Source};
->>>>>>> h2
+use crate::shader::{Binding, Compiled, Generated, Layout, Resource, ShaderCompiler, Shape, Source};
 use crate::vulkan::Stage;
 use crate::vulkan::format::{Channels, Format};
 use rayon::prelude::*;
