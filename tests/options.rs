@@ -45,7 +45,7 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
 /// Parameters that are for speed, not for the picture.
 const SAME_PICTURE: [&str; 1] = ["volume_scroll"];
 
-/// A scene in which a choice matters: a box with a ball, or metal that is not as rough as can be.
+/// A scene in which a choice matters: a box with a ball, or surfaces that are not as rough as can be.
 fn scene_of(name: &str) -> PathBuf {
     root().join(if name == "ggx_alpha" {
         "configs/stability/scenes/metal-rough.ron"
