@@ -471,9 +471,10 @@ fn cones_go_by_the_cells_around_them() {
     let mut session = prepare(&lab, &experiment("cornell", (64, 48), &settings), &["coneSamples"]);
     session.frame(0.0).unwrap();
     session.finish().unwrap();
-    let table = session.graph.tables.iter().find(|t| t.title == "Cone samples").unwrap().clone();
+    let number = session.graph.tables.iter().position(|t| t.value.title == "Cone samples").unwrap();
+    let table = session.table(number).unwrap();
     let rows = decode(&table, &session.buffer("coneSamples").unwrap());
-    let column = |name: &str| table.columns.0.iter().position(|c| c.value.name == name).unwrap();
+    let column = |name: &str| table.columns.iter().position(|c| c.name == name).unwrap();
     let number = |row: &[Cell], name: &str| match row[column(name)] {
         Cell::Uint(v) => f64::from(v),
         Cell::Float(v) => f64::from(v),
