@@ -1524,11 +1524,11 @@ fn members_that_are_not_there() {
         = help: did you mean 'four[3]'?
     "#);
     assert_snapshot!(dispatch("\"work.place\""), @r#"
-    passes/graph.ron:20:67: error: 'work.place' is a vec2; a dispatch takes its groups from a uvec3 or 3 uints
+    passes/graph.ron:20:67: error: 'work.place' is of type vec2; a dispatch takes its groups from a uvec3 or 3 uints
         |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.place")),
     "#);
     assert_snapshot!(dispatch("\"work.count\""), @r#"
-    passes/graph.ron:20:67: error: 'work.count' is a uint; a dispatch takes its groups from a uvec3 or 3 uints
+    passes/graph.ron:20:67: error: 'work.count' is of type uint; a dispatch takes its groups from a uvec3 or 3 uints
         |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work.count")),
     "#);
     // A draw needs four.
@@ -1537,7 +1537,7 @@ fn members_that_are_not_there() {
     };
     assert_eq!(draw("\"work.four\""), "");
     assert_snapshot!(draw("\"work.groups\""), @r#"
-    passes/graph.ron:23:82: error: 'work.groups' is a uvec3; a draw takes its counts from a uvec4 or 4 uints
+    passes/graph.ron:23:82: error: 'work.groups' is of type uvec3; a draw takes its counts from a uvec4 or 4 uints
         |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Indirect("work.groups"),
     "#);
     // Checks.
@@ -1546,7 +1546,7 @@ fn members_that_are_not_there() {
     };
     assert_eq!(check("field: \"work.four[3]\""), "");
     assert_snapshot!(check("field: \"work.place.x\""), @r#"
-    passes/graph.ron:29:22: error: 'work.place.x' is a float; a check needs a uint or an int
+    passes/graph.ron:29:22: error: 'work.place.x' is of type float; a check needs a uint or an int
         |     checks: [(field: "work.place.x", message: "m")],
     "#);
     assert_snapshot!(check("field: \"work\""), @r#"
@@ -1644,7 +1644,7 @@ layout(std430) writeonly buffer Work { uint count; Row list[8]; Row one; uint wo
         = help: did you mean 'list'?
     "#);
     assert_snapshot!(table("\"work.list\"", "\"work.one\""), @r#"
-    passes/graph.ron:29:41: error: 'work.one' is a struct { place, number, pair }; the rows of a table are an array's
+    passes/graph.ron:29:41: error: 'work.one' is of type struct { place, number, pair }; the rows of a table are an array's
         |     tables: [(rows: "work.count", list: "work.one", title: "Work", help: "Rows.",
     "#);
     assert_snapshot!(table("\"work.list\"", "\"work\""), @r#"
@@ -1652,7 +1652,7 @@ layout(std430) writeonly buffer Work { uint count; Row list[8]; Row one; uint wo
         |     tables: [(rows: "work.count", list: "work", title: "Work", help: "Rows.",
     "#);
     assert_snapshot!(table("\"work.count\"", "\"work.one.place\""), @r#"
-    passes/graph.ron:29:21: error: 'work.one.place' is a vec3; rows are counted by a uint
+    passes/graph.ron:29:21: error: 'work.one.place' is of type vec3; rows are counted by a uint
         |     tables: [(rows: "work.one.place", list: "work.list", title: "Work", help: "Rows.",
     "#);
     assert_snapshot!(table("\"work.count\"", "\"wrok.count\""), @r#"
@@ -1665,7 +1665,7 @@ layout(std430) writeonly buffer Work { uint count; Row list[8]; Row one; uint wo
         = help: did you mean 'place'?
     "#);
     assert_snapshot!(table("\"place\"", "\"pair\""), @r#"
-    passes/graph.ron:32:17: error: column 'where': 'pair' is a uvec2, which no table shows
+    passes/graph.ron:32:17: error: column 'where': 'pair' is of type uvec2, which no table shows
         |                 (name: "where", of: "pair", unit: "m"),
         = help: tables show uint, int, float, vec2, vec3 and vec4
     "#);
@@ -1824,4 +1824,43 @@ fn sizes_by_a_word() {
     passes/graph.ron:27:72: error: attachments differ in size: 64x48 and 64x64
         |             color: [(to: "picture", clear: (0, 0, 0, 1))], depth: (to: "depth", clear: 1.0)),
     "#);
+}
+
+#[test]
+fn structs_of_the_scene_that_the_program_fills_otherwise() {
+    let declares = |block: &str, used: &str| {
+        bench()
+            .edit(
+                "shaders/fill.comp",
+                "uniform writeonly image3D grid;",
+                &format!("uniform writeonly image3D grid;\n{block}"),
+            )
+            .edit("shaders/fill.comp", "{ imageStore", &format!("{{ if ({used} == 7u) return; imageStore"))
+            .findings()
+    };
+    let light = |members: &str, used: &str| {
+        let lights = "layout(std430) readonly buffer Lights { Light lights[]; } lights;";
+        declares(&format!("struct Light {{\n{members}\n}};\n{lights}"), &format!("lights.lights[0].{used}"))
+    };
+    // A prefix is enough, and names are free where they are not the program's.
+    assert_eq!(declares("uniform Camera { mat4 view; mat4 lens; } camera;", "uint(camera.view[0].x)"), "");
+    assert_eq!(declares("readonly buffer Draws { uint words[]; } draws;", "draws.words[3]"), "");
+    let right = "vec3 place;\nuint kind;\nvec4 rest[3];";
+    assert_eq!(light(right, "kind"), "");
+    assert_snapshot!(light("uint kind;\nvec3 position;\nvec4 rest[2];", "kind"), @r"
+    shaders/fill.comp:7: error: 'kind' of 'lights' lies at byte 12, and the shader declares it at 0
+        | uint kind;
+    ");
+    assert_snapshot!(light("vec3 position;\nuint kind;", "kind"), @r"
+    shaders/fill.comp:10: error: an element of 'lights' has 64 bytes, and the shader declares 16
+        | layout(std430) readonly buffer Lights { Light lights[]; } lights;
+    ");
+    assert_snapshot!(light(&right.replace("uint kind", "int kind"), "kind"), @r"
+    shaders/fill.comp:8: error: 'kind' of 'lights' is of type uint, and the shader declares int
+        | int kind;
+    ");
+    assert_snapshot!(declares("uniform Camera { mat4 view[6]; vec4 more; } camera;", "uint(camera.more.x)"), @r"
+    shaders/fill.comp:6: error: 'view' of 'camera' is of type mat4, and the shader declares mat4[6]
+        | uniform Camera { mat4 view[6]; vec4 more; } camera;
+    ");
 }

@@ -6,10 +6,11 @@ mod common;
 use common::{assert_clean, lab, prepare, root};
 use conelab::experiment::Experiment;
 use conelab::graph::load::load;
-use conelab::graph::param::{Kind, Param, Value};
+use conelab::graph::param::{Kind, Param};
 use conelab::graph::source::{At, Loc};
 use conelab::lab::{Home, Lab, LabError};
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// What a group of the panel is about: one of these textures differs where a parameter of it does.
 fn textures(group: &str) -> &'static [&'static str] {
@@ -29,11 +30,11 @@ fn textures(group: &str) -> &'static [&'static str] {
 /// What a choice needs beside it to matter at all.
 fn context(name: &str) -> &'static [(&'static str, &'static str)] {
     match name {
-        "volume_snap" => &[("volume", "camera"), ("volume_size", "(9, 9, 9)")],
+        "volume_snap" => &[("volume", "camera"), ("volume_size", "(24, 24, 24)")],
         "warp_viewport" => &[("warp", "spline"), ("conservative", "off"), ("warp_alpha", "0.05")],
         "fallback" => &[("warp", "perspective"), ("warp_near", "1.0"), ("warp_far", "6.0")],
         "warp" => &[("warp_near", "1.0"), ("warp_far", "6.0")],
-        "voxel_view" => &[("view", "voxels")],
+        "voxel_view" | "density" => &[("view", "voxels")],
         "cone_rotate" => &[("cone_count", "5")],
         "trace" => &[("exact_rays", "8")],
         "tess_levels" => &[("voxelizer", "tessellated")],
@@ -41,18 +42,28 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-/// Parameters that are for speed, not for the picture; and options that need what this device lacks.
+/// Parameters that are for speed, not for the picture.
 const SAME_PICTURE: [&str; 1] = ["volume_scroll"];
+
+/// A scene in which a choice matters: a box with a ball, or metal that is not as rough as can be.
+fn scene_of(name: &str) -> PathBuf {
+    root().join(if name == "ggx_alpha" {
+        "configs/stability/scenes/metal-rough.ron"
+    } else {
+        "configs/scenes/workshop.ron"
+    })
+}
 
 fn run(
     lab: &Lab,
     graph: &str,
+    scene: &Path,
     settings: &[(&str, &str)],
     wanted: &[&str],
 ) -> Result<BTreeMap<String, Vec<u8>>, LabError> {
     let mut e = Experiment::read(&root().join("configs/default.ron")).unwrap();
     e.graph = graph.into();
-    e.scene = root().join("configs/scenes/workshop.ron").to_string_lossy().into_owned();
+    e.scene = scene.to_string_lossy().into_owned();
     e.size = (32, 24);
     for (name, value) in [("voxel_dim", "32"), ("shadow_dim", "256")].iter().chain(settings) {
         e.params.push((Loc { value: (*name).to_string(), at: At::default() }, (*value).to_string()));
@@ -80,10 +91,6 @@ fn options(param: &Param) -> Vec<String> {
     }
 }
 
-fn text(value: &Value) -> String {
-    value.to_string()
-}
-
 #[test]
 fn every_option_builds_renders_and_changes_what_its_group_says() {
     let lab = lab(root());
@@ -100,11 +107,17 @@ fn every_option_builds_renders_and_changes_what_its_group_says() {
                 continue;
             }
             let (context, wanted) = (context(&param.name), textures(&param.group));
-            let unset = run(&lab, graph, context, wanted).unwrap();
+            let unset = run(&lab, graph, &scene_of(&param.name), context, wanted).unwrap();
             assert!(!unset.is_empty(), "{graph}: nothing of {wanted:?} is made for '{}'", param.name);
             for option in options(&param) {
                 let what = format!("{graph}, {}={option}", param.name);
-                let found = match run(&lab, graph, &[context, &[(&param.name, &option)]].concat(), wanted) {
+                let found = match run(
+                    &lab,
+                    graph,
+                    &scene_of(&param.name),
+                    &[context, &[(&param.name, &option)]].concat(),
+                    wanted,
+                ) {
                     Ok(found) => found,
                     Err(LabError::Input(errors)) if errors.iter().all(|e| e.message.contains("does not have")) => {
                         println!("{what}: skipped, {}", errors[0].message);
@@ -113,7 +126,7 @@ fn every_option_builds_renders_and_changes_what_its_group_says() {
                     Err(e) => panic!("{what}: {e}"),
                 };
                 options_run += 1;
-                let default = text(&param.default) == option;
+                let default = param.default.to_string() == option;
                 if default != (found == unset) && !SAME_PICTURE.contains(&param.name.as_str()) {
                     wrong.push(format!(
                         "{what}: {}",

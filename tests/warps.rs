@@ -471,8 +471,7 @@ fn cones_go_by_the_cells_around_them() {
     let mut session = prepare(&lab, &experiment("cornell", (64, 48), &settings), &["coneSamples"]);
     session.frame(0.0).unwrap();
     session.finish().unwrap();
-    let number = session.graph.tables.iter().position(|t| t.value.title == "Cone samples").unwrap();
-    let table = session.table(number).unwrap();
+    let table = session.table(0).unwrap();
     let rows = decode(&table, &session.buffer("coneSamples").unwrap());
     let column = |name: &str| table.columns.iter().position(|c| c.name == name).unwrap();
     let number = |row: &[Cell], name: &str| match row[column(name)] {

@@ -86,7 +86,8 @@ impl<'l> Layouts<'l> {
             return Ok(Some(u64::from(found.0)));
         }
         let what = if words == DISPATCH_WORDS { "a dispatch takes its groups" } else { "a draw takes its counts" };
-        let message = format!("'{}' is a {}; {what} from a uvec{words} or {words} uints", command.path.value, found.1);
+        let message =
+            format!("'{}' is of type {}; {what} from a uvec{words} or {words} uints", command.path.value, found.1);
         Err(self.graph.sources.error(command.path.at, message))
     }
 
@@ -100,7 +101,7 @@ impl<'l> Layouts<'l> {
         match layout {
             Layout::Scalar(Scalar::Uint | Scalar::Int) => Ok(Some(offset / 4)),
             other => {
-                let message = format!("'{}' is a {other}; a check needs a uint or an int", field.value);
+                let message = format!("'{}' is of type {other}; a check needs a uint or an int", field.value);
                 Err(self.graph.sources.error(field.at, message))
             }
         }

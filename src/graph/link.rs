@@ -8,7 +8,11 @@ use super::param::Kind;
 use super::runs::Runs;
 use super::source::{Diagnostic, Place, Severity};
 use super::unused::{Texts, unused};
+<<<<<<< HEAD
 use crate::shader::{Compiled, Generated, Layout, Resource, ShaderCompiler, Shape, Source};
+=======
+use crate::shader::{Binding, Compiled, Layout, Resource, ShaderCompiler, Shape, Source};
+>>>>>>> h2
 use crate::vulkan::Stage;
 use crate::vulkan::format::{Channels, Format};
 use rayon::prelude::*;
@@ -175,6 +179,7 @@ impl Linker<'_> {
                     })
                     .collect();
                 if let Some(cases) = cases.into_iter().collect::<Option<Vec<_>>>() {
+                    self.host(shader, binding, &cases);
                     bound.push(Bound {
                         stage: shader.stage,
                         binding: binding.binding,
@@ -276,6 +281,40 @@ impl Linker<'_> {
                 );
                 self.findings.push(self.graph.sources.error(target.at, message));
             }
+        }
+    }
+
+    /// What a shader declares of the scene's structs against what the program fills.
+    fn host(&mut self, shader: &Compiled, binding: &Binding, cases: &[BoundCase]) {
+        for case in cases {
+            let (Target::External(i), Some(layout)) = (&case.target, &binding.layout) else { continue };
+            if let Some((message, member)) = super::host::mismatch(EXTERNALS[*i].name, layout) {
+                let found = match member {
+                    Some(member) => self.at_member(shader, &binding.name, &member, message),
+                    None => self.at_declaration(shader, &binding.name, message),
+                };
+                if !self.findings.contains(&found) {
+                    self.findings.push(found);
+                }
+            }
+        }
+    }
+
+    /// An error at the line of a member, `type member;`, before the line where a shader declares its block; there, where
+    /// the member has no line of its own.
+    fn at_member(&self, shader: &Compiled, name: &str, member: &str, message: String) -> Diagnostic {
+        let block = self.at_declaration(shader, name, message);
+        let declares = |line: &str| {
+            let word = line.split_whitespace().nth(1).unwrap_or("");
+            word.strip_prefix(member).is_some_and(|rest| rest.starts_with([';', '[', ',']))
+        };
+        let text = shader.texts.iter().find(|(file, _)| block.place.file.ends_with(file.as_str())).map(|(_, t)| t);
+        let lines = (1u32..).zip(text.map_or("", String::as_str).lines());
+        match lines.take_while(|(n, _)| *n <= block.place.line).filter(|(_, line)| declares(line)).last() {
+            Some((line, source)) => {
+                Diagnostic { place: Place { line, ..block.place }, source: Some(source.trim().into()), ..block }
+            }
+            None => block,
         }
     }
 

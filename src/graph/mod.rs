@@ -4,6 +4,7 @@ mod choices;
 pub mod expr;
 pub mod externals;
 pub mod file;
+pub(crate) mod host;
 pub mod layouts;
 pub mod link;
 mod live;

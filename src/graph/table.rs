@@ -195,7 +195,7 @@ impl TableDecl {
                     Some((_, other)) => {
                         return Err(error(
                             path.at,
-                            format!("'{}' is a {other}; rows are counted by a uint", path.value),
+                            format!("'{}' is of type {other}; rows are counted by a uint", path.value),
                         ));
                     }
                     None => None,
@@ -206,7 +206,10 @@ impl TableDecl {
             return Ok(None);
         };
         let Layout::Array { of, stride, .. } = found else {
-            return Err(error(list.at, format!("'{}' is a {found}; the rows of a table are an array's", list.value)));
+            return Err(error(
+                list.at,
+                format!("'{}' is of type {found}; the rows of a table are an array's", list.value),
+            ));
         };
         let (mut columns, mut wrong) = (Vec::new(), Vec::new());
         for column in &self.columns.0 {
@@ -295,7 +298,7 @@ impl ColumnDecl {
             Layout::Vector(Scalar::Float, 3) => CellKind::Vec3,
             Layout::Vector(Scalar::Float, 4) => CellKind::Vec4,
             other => {
-                let message = format!("column '{}': '{path}' is a {other}, which no table shows", self.name);
+                let message = format!("column '{}': '{path}' is of type {other}, which no table shows", self.name);
                 return Err((message, Some("tables show uint, int, float, vec2, vec3 and vec4".into())));
             }
         };

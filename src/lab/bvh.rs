@@ -1,6 +1,6 @@
 //! A hierarchy over all triangles of a scene in one pose, for shaders that trace rays (`shaders/include/trace.glsl`).
 
-use super::scene::DrawBlock;
+use crate::graph::host::DrawBlock;
 use crate::vulkan::{Result, VulkanError};
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3, Vec3A};

@@ -3,61 +3,13 @@
 use super::bvh::{self, Soup};
 use super::materials::{self, NO_TEXTURE};
 use super::view::{lights, shadow_view_count};
+use crate::graph::host::{CameraBlock, DrawBlock, InstanceBlock, MaterialBlock, SceneInfoBlock};
 use crate::graph::run::{Geometry, SceneResources};
 use crate::scene::{Light, Scene};
 use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, VulkanError, vk};
-use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct SceneInfoBlock {
-    bounds_min: [f32; 3],
-    light_count: u32,
-    bounds_max: [f32; 3],
-    shadow_views: u32,
-    sky: [f32; 3],
-    triangle_count: u32,
-    draw_count: u32,
-    vertex_count: u32,
-    instance_count: u32,
-    pad: u32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct MaterialBlock {
-    base_color: [f32; 4],
-    emission: [f32; 3],
-    metallic: f32,
-    roughness: f32,
-    alpha_cutoff: f32,
-    normal_scale: f32,
-    flags: u32,
-    base_color_texture: u32,
-    metallic_roughness_texture: u32,
-    normal_texture: u32,
-    emission_texture: u32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct DrawBlock {
-    pub instance: u32,
-    material: u32,
-    pub first_index: u32,
-    pub index_count: u32,
-}
-
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable, PartialEq)]
-struct InstanceBlock {
-    model: [f32; 16],
-    previous_model: [f32; 16],
-    normal_matrix: [f32; 16],
-}
 
 /// A scene's resources on the device.
 #[derive(Clone)]
@@ -74,7 +26,7 @@ pub struct SceneGpu {
 }
 
 /// Bytes of the block `camera`.
-const CAMERA_BYTES: usize = 5 * 64 + 5 * 16;
+const CAMERA_BYTES: usize = size_of::<CameraBlock>();
 
 impl SceneGpu {
     /// Uploads a scene; `rays`: with the hierarchy that rays need.

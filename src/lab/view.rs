@@ -1,31 +1,9 @@
 //! Cameras and shadow views as the shaders see them.
 
 use crate::experiment::PlacedCamera;
+use crate::graph::host::{CameraBlock, LightBlock, ShadowBlock};
 use crate::scene::{Camera, Light, LightKind, Scene};
-use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec3};
-
-/// The uniform block `camera` of `scene.glsl` (std140).
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-struct CameraBlock {
-    view: [f32; 16],
-    projection: [f32; 16],
-    view_projection: [f32; 16],
-    inverse_view_projection: [f32; 16],
-    previous_view_projection: [f32; 16],
-    position: [f32; 3],
-    near: f32,
-    direction: [f32; 3],
-    far: f32,
-    up: [f32; 3],
-    fov_y: f32,
-    previous_position: [f32; 3],
-    time: f32,
-    size: [u32; 2],
-    frame: u32,
-    delta_time: f32,
-}
 
 /// A camera with what it saw in the frame before.
 #[derive(Clone, Debug)]
@@ -114,31 +92,6 @@ fn perspective(fov_y: f32, aspect: f32, near: f32, far: f32) -> Mat4 {
     glam::camera::rh::proj::vulkan::perspective(fov_y, aspect, near, far.max(near * 1.001))
 }
 
-/// A light as shaders see it, `Light` of `lights.glsl` (std430).
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct LightBlock {
-    position: [f32; 3],
-    kind: u32,
-    direction: [f32; 3],
-    shadow_view: i32,
-    color: [f32; 3],
-    range: f32,
-    cos_inner: f32,
-    cos_outer: f32,
-    pad: [f32; 2],
-}
-
-/// A shadow map's view, `ShadowView` of `lights.glsl` (std430).
-#[repr(C)]
-#[derive(Clone, Copy, Pod, Zeroable)]
-pub(super) struct ShadowBlock {
-    view_projection: [f32; 16],
-    inverse_view_projection: [f32; 16],
-    texel_size_and_depth: [f32; 3],
-    light: u32,
-}
-
 /// Lights of a scene with these bounds, and the views of their shadow maps.
 pub(super) fn lights(lights: &[Light], bounds: (Vec3, Vec3)) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
     let (mut blocks, mut views) = (Vec::new(), Vec::new());
@@ -161,7 +114,8 @@ pub(super) fn lights(lights: &[Light], bounds: (Vec3, Vec3)) -> (Vec<LightBlock>
             range: 0.0,
             cos_inner: inner.cos(),
             cos_outer: outer.cos(),
-            pad: [0.0; 2],
+            pad0: 0.0,
+            pad1: 0.0,
         });
     }
     (blocks, views)

@@ -1,0 +1,212 @@
+//! The structs of the scene's resources as the program fills them. Each is stated once, here; what a shader declares of one
+//! is compared with it by name.
+
+use crate::shader::Layout;
+use crate::shader::layout::{Member, Scalar};
+use bytemuck::{Pod, Zeroable};
+use std::mem::offset_of;
+
+/// A Rust type that stands for one of GLSL's.
+trait Glsl {
+    const LAYOUT: Layout;
+}
+
+impl Glsl for f32 {
+    const LAYOUT: Layout = Layout::Scalar(Scalar::Float);
+}
+
+impl Glsl for u32 {
+    const LAYOUT: Layout = Layout::Scalar(Scalar::Uint);
+}
+
+impl Glsl for i32 {
+    const LAYOUT: Layout = Layout::Scalar(Scalar::Int);
+}
+
+impl Glsl for [f32; 2] {
+    const LAYOUT: Layout = Layout::Vector(Scalar::Float, 2);
+}
+
+impl Glsl for [f32; 3] {
+    const LAYOUT: Layout = Layout::Vector(Scalar::Float, 3);
+}
+
+impl Glsl for [f32; 4] {
+    const LAYOUT: Layout = Layout::Vector(Scalar::Float, 4);
+}
+
+impl Glsl for [f32; 16] {
+    const LAYOUT: Layout = Layout::Matrix { columns: 4, rows: 4, stride: 16 };
+}
+
+impl Glsl for [u32; 2] {
+    const LAYOUT: Layout = Layout::Vector(Scalar::Uint, 2);
+}
+
+/// Defines a struct and the layout of its fields.
+macro_rules! block {
+    ($(#[$about:meta])* $name:ident { $($field:ident: $ty:ty,)* }) => {
+        $(#[$about])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Pod, Zeroable, PartialEq)]
+        pub(crate) struct $name {
+            $(pub $field: $ty,)*
+        }
+
+        impl $name {
+            fn members() -> Vec<Member> {
+                let member = |name: &str, offset: usize, layout: Layout| Member {
+                    name: name.into(),
+                    offset: u32::try_from(offset).unwrap_or(u32::MAX),
+                    layout,
+                };
+                vec![$(member(stringify!($field), offset_of!($name, $field), <$ty as Glsl>::LAYOUT),)*]
+            }
+        }
+    };
+}
+
+block! {
+    /// The uniform block `camera` (std140).
+    CameraBlock {
+        view: [f32; 16],
+        projection: [f32; 16],
+        view_projection: [f32; 16],
+        inverse_view_projection: [f32; 16],
+        previous_view_projection: [f32; 16],
+        position: [f32; 3],
+        near: f32,
+        direction: [f32; 3],
+        far: f32,
+        up: [f32; 3],
+        fov_y: f32,
+        previous_position: [f32; 3],
+        time: f32,
+        size: [u32; 2],
+        frame: u32,
+        delta_time: f32,
+    }
+}
+
+block! {
+    /// The uniform block `sceneInfo` (std140).
+    SceneInfoBlock {
+        bounds_min: [f32; 3],
+        light_count: u32,
+        bounds_max: [f32; 3],
+        shadow_views: u32,
+        sky: [f32; 3],
+        triangle_count: u32,
+        draw_count: u32,
+        vertex_count: u32,
+        instance_count: u32,
+        pad: u32,
+    }
+}
+
+block! {
+    /// An element of `lights` (std430).
+    LightBlock {
+        position: [f32; 3],
+        kind: u32,
+        direction: [f32; 3],
+        shadow_view: i32,
+        color: [f32; 3],
+        range: f32,
+        cos_inner: f32,
+        cos_outer: f32,
+        pad0: f32,
+        pad1: f32,
+    }
+}
+
+block! {
+    /// A shadow map's view, an element of `shadowViews` (std430).
+    ShadowBlock {
+        view_projection: [f32; 16],
+        inverse_view_projection: [f32; 16],
+        texel_size_and_depth: [f32; 3],
+        light: u32,
+    }
+}
+
+block! {
+    /// An element of `materials` (std430).
+    MaterialBlock {
+        base_color: [f32; 4],
+        emission: [f32; 3],
+        metallic: f32,
+        roughness: f32,
+        alpha_cutoff: f32,
+        normal_scale: f32,
+        flags: u32,
+        base_color_texture: u32,
+        metallic_roughness_texture: u32,
+        normal_texture: u32,
+        emission_texture: u32,
+    }
+}
+
+block! {
+    /// An element of `instances` (std430).
+    InstanceBlock {
+        model: [f32; 16],
+        previous_model: [f32; 16],
+        normal_matrix: [f32; 16],
+    }
+}
+
+block! {
+    /// An element of `draws` (std430).
+    DrawBlock {
+        instance: u32,
+        material: u32,
+        first_index: u32,
+        index_count: u32,
+    }
+}
+
+/// Why a shader's declaration of one of the scene's resources does not fit, and the member that it is about, if it is one.
+/// Members of other names, and resources without a struct, are the shader's own affair.
+pub(super) fn mismatch(resource: &str, declared: &Layout) -> Option<(String, Option<String>)> {
+    let (members, bytes, elements) = match resource {
+        "camera" => (CameraBlock::members(), size_of::<CameraBlock>(), false),
+        "sceneInfo" => (SceneInfoBlock::members(), size_of::<SceneInfoBlock>(), false),
+        "lights" => (LightBlock::members(), size_of::<LightBlock>(), true),
+        "shadowViews" => (ShadowBlock::members(), size_of::<ShadowBlock>(), true),
+        "materials" => (MaterialBlock::members(), size_of::<MaterialBlock>(), true),
+        "instances" => (InstanceBlock::members(), size_of::<InstanceBlock>(), true),
+        "draws" => (DrawBlock::members(), size_of::<DrawBlock>(), true),
+        _ => return None,
+    };
+    let declared = if elements { element(declared)? } else { (declared, None) };
+    if let Some(stride) = declared.1.filter(|stride| *stride as usize != bytes) {
+        return Some((format!("an element of '{resource}' has {bytes} bytes, and the shader declares {stride}"), None));
+    }
+    for member in declared.0.members() {
+        let end = member.offset.saturating_add(member.layout.bytes());
+        let message = match members.iter().find(|m| m.name == member.name) {
+            Some(known) if known.layout != member.layout => {
+                format!("is of type {}, and the shader declares {}", known.layout, member.layout)
+            }
+            Some(known) if known.offset != member.offset => {
+                format!("lies at byte {}, and the shader declares it at {}", known.offset, member.offset)
+            }
+            None if end as usize > bytes => format!("ends at byte {end}, and there are {bytes}"),
+            _ => continue,
+        };
+        return Some((format!("'{}' of '{resource}' {message}", member.name), Some(member.name.clone())));
+    }
+    None
+}
+
+/// The struct of an array that is all of a block, and its stride.
+fn element(block: &Layout) -> Option<(&Layout, Option<u32>)> {
+    match block.members() {
+        [list] => match &list.layout {
+            Layout::Array { of, stride, .. } if !of.members().is_empty() => Some((&**of, Some(*stride))),
+            _ => None,
+        },
+        _ => None,
+    }
+}
