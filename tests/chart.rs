@@ -15,7 +15,7 @@ const SMALL: &str =
     r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256 })"#;
 
 /// Four points, one of them [`SMALL`].
-const SWEEP: &str = r#"(experiments: ["configs/driver.ron"], warmup: 1, frames: 3,
+const SWEEP: &str = r#"(experiments: ["configs/opened.ron"], warmup: 1, frames: 3,
     axes: [List(name: "voxel_dim", values: [16, 32]), List(name: "lod_offset", values: [-2, 0])])"#;
 
 fn number(event: &Value, name: &str) -> f64 {

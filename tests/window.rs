@@ -48,7 +48,7 @@ fn a_slider_changes_the_picture_and_undo_brings_it_back() {
 
     // It is the picture that the command line makes.
     let path = driver.home.path().join("first.png");
-    succeeds(conelab(driver.home.path()).args(["render", "configs/driver.ron", "-o"]).arg(&path));
+    succeeds(conelab(driver.home.path()).args(["render", "configs/opened.ron", "-o"]).arg(&path));
     let rendered = image::open(path).unwrap().to_rgba8();
     assert_eq!(fingerprint(&rendered), first);
     assert_eq!(fingerprint(&shot.rgba), first, "texel for texel");
@@ -438,15 +438,15 @@ fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
 
     // A file that exists is not replaced by the first click.
     driver.click("", "Save");
-    let before = driver.file("configs/driver.ron");
+    let before = driver.file("configs/opened.ron");
     let mark = driver.now();
     driver.click("Button", "save");
     driver.event(mark, "not saved");
-    assert_eq!(driver.file("configs/driver.ron"), before);
+    assert_eq!(driver.file("configs/opened.ron"), before);
     let mark = driver.now();
     driver.click("Button", "replace it");
     driver.event(mark, "saved");
-    let saved = driver.file("configs/driver.ron");
+    let saved = driver.file("configs/opened.ron");
     assert!(saved.contains("exposure") && saved.contains("\"voxel_dim\": 32") && !saved.contains("bias"), "{saved}");
 
     // A capture holds the picture that was on the screen, and makes it again.
@@ -454,21 +454,21 @@ fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
     driver.click("Button", "capture");
     let captured = driver.event(mark, "captured");
     assert_eq!(captured["ok"], true, "{captured}");
-    let picture = image::open(driver.home.path().join("captures/driver/picture.png")).unwrap().to_rgba8();
+    let picture = image::open(driver.home.path().join("captures/opened/picture.png")).unwrap().to_rgba8();
     assert_eq!(fingerprint(&picture), brighter);
-    let said = succeeds(conelab(driver.home.path()).args(["replay", "captures/driver"]));
+    let said = succeeds(conelab(driver.home.path()).args(["replay", "captures/opened"]));
     assert!(said.starts_with("identical"), "{said}");
 
     // From the gallery too; and its settings can be loaded.
     let mark = driver.now();
-    driver.click("", "replay driver");
+    driver.click("", "replay opened");
     let replayed = driver.wait_at_most(Duration::from_secs(30), mark, "a replay", |e| e["event"] == "replayed");
     assert!(replayed["text"].as_str().unwrap().contains("identical"), "{replayed}");
     let mark = driver.now();
     driver.click("", "reset exposure");
     driver.picture(mark, 0, &first);
     let mark = driver.now();
-    driver.click("", "load driver");
+    driver.click("", "load opened");
     driver.picture(mark, 0, &brighter);
     driver.close();
     drop(driver);

@@ -108,13 +108,13 @@ impl WindowDriver {
         for folder in ["passes", "shaders", "configs"] {
             copy(&root().join(folder), &home.path().join(folder));
         }
-        std::fs::write(home.path().join("configs/driver.ron"), experiment).unwrap();
+        std::fs::write(home.path().join("configs/opened.ron"), experiment).unwrap();
         let (server, display) = screen();
         let log = home.path().join("events.jsonl");
         File::create(&log).unwrap();
         let window = format!("{}x{}", WINDOW.0, WINDOW.1);
         let program = conelab(home.path())
-            .args(["view", "configs/driver.ron", "--events", "events.jsonl", "--window", &window])
+            .args(["view", "configs/opened.ron", "--events", "events.jsonl", "--window", &window])
             .args(args)
             .env("DISPLAY", &display)
             .env("CONELAB_CACHE", home.path().join("cache"))
