@@ -166,6 +166,9 @@ impl Linker<'_> {
         let mut bound = Vec::new();
         for shader in &stages {
             for binding in &shader.interface.bindings {
+                if !pass.bind.0.iter().any(|(key, _)| key.value == binding.name) {
+                    self.used.insert(binding.name.clone());
+                }
                 let cases = self.graph.cases(pass, &binding.name).into_iter();
                 // All of them are looked at: each must fit.
                 let cases: Vec<Option<BoundCase>> = cases
@@ -342,7 +345,7 @@ impl Linker<'_> {
         resource: &Resource,
     ) -> Option<Target> {
         let resource_name = decl.map_or(name, |d| d.of.value.as_str());
-        self.used.extend([name.to_string(), resource_name.to_string()]);
+        self.used.insert(resource_name.to_string());
         let external = EXTERNALS.iter().position(|e| e.name == resource_name);
         let buffer = self.graph.buffers.iter().position(|b| b.0 == resource_name);
         let texture = self.graph.textures.iter().position(|t| t.0 == resource_name);

@@ -158,20 +158,29 @@ impl Layout {
         Ok(at)
     }
 
-    /// Its 32-bit numbers and their bytes, where it has no array without a count; at most 64.
-    fn words(&self, start: u32) -> Vec<(u32, Scalar)> {
-        let all: Vec<(u32, Scalar)> = match self {
-            Layout::Scalar(s) => vec![(start, *s)],
-            Layout::Vector(s, n) => (0..*n).map(|i| (start + 4 * i, *s)).collect(),
-            Layout::Matrix { .. } => vec![],
+    /// Its first 32-bit numbers and their bytes, about as many as asked for; those of an array without a count are none.
+    fn words(&self, start: u32, most: usize) -> Vec<(u32, Scalar)> {
+        let mut list = Vec::new();
+        match self {
+            Layout::Scalar(s) => list.push((start, *s)),
+            Layout::Vector(s, n) => list.extend((0..*n).map(|i| (start.saturating_add(4 * i), *s))),
+            Layout::Matrix { .. } => {}
             Layout::Array { of, count, stride } => {
-                (0..count.unwrap_or(0).min(64)).flat_map(|i| of.words(start.saturating_add(stride * i))).collect()
+                for i in (0..count.unwrap_or(0)).take(most) {
+                    if list.len() < most {
+                        list.extend(of.words(start.saturating_add(stride.saturating_mul(i)), most));
+                    }
+                }
             }
             Layout::Struct(members) => {
-                members.iter().flat_map(|m| m.layout.words(start.saturating_add(m.offset))).collect()
+                for m in members.iter().take(most) {
+                    if list.len() < most {
+                        list.extend(m.layout.words(start.saturating_add(m.offset), most));
+                    }
+                }
             }
-        };
-        all.into_iter().take(64).collect()
+        }
+        list
     }
 
     /// The members that are single numbers, those of structs in it too, with their bytes.
@@ -188,7 +197,7 @@ impl Layout {
     pub fn has_uints(&self, (offset, found): &(u32, Layout), count: u32) -> bool {
         let words = match found {
             Layout::Scalar(_) => self.scalars(0),
-            _ => Some(found.words(*offset)).filter(|w| w.len() == count as usize).unwrap_or_default(),
+            _ => Some(found.words(*offset, 16)).filter(|w| w.len() == count as usize).unwrap_or_default(),
         };
         (0..count).all(|i| words.contains(&(offset.saturating_add(4 * i), Scalar::Uint)))
     }
@@ -204,7 +213,7 @@ fn step((offset, layout): &(u32, Layout), name: &str) -> Result<(u32, Layout), V
         Layout::Vector(s, n) => {
             let names: Vec<&str> = ["x", "y", "z", "w"].into_iter().take(*n as usize).collect();
             match (0..).zip(&names).find(|(_, c)| **c == name) {
-                Some((i, _)) => Ok((offset + s.bytes() * i, Layout::Scalar(*s))),
+                Some((i, _)) => Ok((offset.saturating_add(s.bytes() * i), Layout::Scalar(*s))),
                 None => Err(names.into_iter().map(String::from).collect()),
             }
         }
