@@ -165,7 +165,7 @@ fn resources_come_as_they_are() {
         "--resource",
         "voxelRadiance:2",
         "--set",
-        "directional=false",
+        "mips=isotropic",
     ]));
     let (width, height, texels) = read_exr(&out.path("mip.exr"));
     assert_eq!((width, height), (8, 64));
@@ -215,7 +215,7 @@ fn wrong_arguments_are_told_and_leave_nothing() {
     assert_snapshot!(resource("voxelRadience"), @"error: no texture 'voxelRadience' (did you mean 'voxelRadiance'?)");
     assert_snapshot!(resource("voxelRadiance:9"), @"error: 'voxelRadiance' has 1 mips and 1 layers; there is no mip 9, layer 0");
     assert_snapshot!(resource("voxelRadiance:x"), @"error: --resource voxelRadiance:x: 'x' is no mip");
-    assert_snapshot!(resource("voxelHistory"), @"error: 'voxelHistory' is not made with these parameters: no pass that runs uses it");
+    assert_snapshot!(resource("inspected"), @"error: 'inspected' is not made with these parameters: no pass that runs uses it");
     assert_snapshot!(error_of(&["--device", "Voodoo"]).split(": found").next().unwrap(), @"error: no Vulkan 1.3 device named 'Voodoo'");
     assert!(out.names().is_empty(), "{:?}", out.names());
 }
@@ -336,14 +336,14 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
         assert!(text.contains(old), "{name}");
         std::fs::write(out.path(name), text.replacen(old, new, 1)).unwrap();
     };
-    edit("configs/thesis.ron", "\"voxel_dim\": 256", "\"voxel_dim\": 8");
+    edit("configs/thesis.ron", "params: {}", "params: { \"voxel_dim\": 8 }");
     let mut command = files();
     command.env("CONELAB_HOME", out.0.path()).current_dir(out.0.path());
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert_snapshot!(out.tidy(&String::from_utf8_lossy(&output.stdout)), @r#"
-    configs/thesis.ron:9:9: error: 'voxel_dim': 8 is outside 16 to 512
-        |         "voxel_dim": 8,
+    configs/thesis.ron:7:15: error: 'voxel_dim': 8 is outside 16 to 512
+        |     params: { "voxel_dim": 8 },
     checked 5 files, 1 errors
     "#);
     edit("shaders/cones/cone.glsl", "vec4", "vec5");

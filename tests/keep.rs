@@ -257,15 +257,15 @@ fn an_edit_keeps_the_comments() {
     // Nothing to change, nothing changed.
     write(&Experiment::read(&path).unwrap(), &defaults, &path, true).unwrap();
     assert_eq!(project.text("configs/mine.ron"), new);
-    // The published settings keep every line.
-    let thesis = std::fs::read_to_string(root().join("configs/thesis.ron")).unwrap();
-    let copy = project.write("configs/thesis.ron", &thesis);
+    // Settings of the method keep every line.
+    let fine = "(\n    graph: \"vct.ron\", // plain\n    scene: \"atrium\",\n    params: {\n        // Fine.\n        \"voxel_dim\": 256,\n    },\n)\n";
+    let copy = project.write("configs/fine.ron", fine);
     let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
     let vct = load(&root().join("passes/vct.ron"), &folders).unwrap().params;
     let mut experiment = Experiment::read(&copy).unwrap();
     set(&mut experiment, "voxel_dim", "64");
     write(&experiment, &vct, &copy, true).unwrap();
-    assert_eq!(project.text("configs/thesis.ron"), thesis.replace("\"voxel_dim\": 256", "\"voxel_dim\": 64"));
+    assert_eq!(project.text("configs/fine.ron"), fine.replace("\"voxel_dim\": 256", "\"voxel_dim\": 64"));
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod common;
 use common::closed_meshes::{placed, torus};
 use common::{assert_clean, copy, experiment, floats, lab, prepare, root, scene};
 use conelab::experiment::PlacedCamera;
+use conelab::graph::source::{At, Loc};
 use conelab::graph::table::{Cell, decode};
 use conelab::lab::{Lab, Session};
 use conelab::oracle::{Score, Surfaces, compare, exact, read, triangles_of};
@@ -157,8 +158,13 @@ fn home() -> TempDir {
 
 /// A session that writes the mapping of the volume.
 fn mapping_session(lab: &Lab, settings: &[(&str, &str)]) -> Session {
-    let mut experiment = experiment("cornell", (16, 16), &[&BASE[..], settings].concat());
+    let mut experiment = experiment("cornell", (16, 16), &BASE);
     experiment.graph = "mapping.ron".into();
+    experiment.params.extend(
+        settings
+            .iter()
+            .map(|(name, value)| (Loc { value: (*name).to_string(), at: At::default() }, (*value).to_string())),
+    );
     prepare(lab, &experiment, &["mapping"])
 }
 

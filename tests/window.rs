@@ -154,9 +154,9 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
     driver.shows(&first);
 
     // Four ways to break it: file, text, and the place and words that the window must show.
-    let graph = driver.file("passes/display.ron");
+    let graph = driver.file("passes/parts/display.ron");
     let at = |text: &str, part: &str| 1 + text.lines().position(|l| l.contains(part)).unwrap();
-    let source = "bind: { \"source\": (of: \"radiance\") }, color: [(to: \"display\")])";
+    let source = "(of: \"radiance\"),";
     let cases = [
         (
             "shaders/display/display.frag",
@@ -177,7 +177,7 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
             "sourze",
         ),
         (
-            "passes/display.ron",
+            "passes/parts/display.ron",
             with(&graph, source, &source.replace("\"radiance\"", "\"radiant\"")),
             Some(at(&graph, source)),
             "radiant",

@@ -259,6 +259,11 @@ impl Param {
         !self.files.is_empty()
     }
 
+    /// Whether another value needs other shaders or pipelines, and is not just a number that shaders read.
+    pub fn is_compiled(&self) -> bool {
+        self.constant || self.is_module()
+    }
+
     /// Whether a value is of the right kind and in range; the error names the parameter and what was expected.
     ///
     /// # Errors

@@ -33,7 +33,7 @@ impl ParamTrack {
         let (Some(param), Some(start)) = (params.index(name).map(|i| &params.list[i]), params.get(name)) else {
             return Err(own.set(name, "0").err().unwrap_or_default());
         };
-        if param.constant {
+        if param.is_compiled() {
             return Err(format!("'{name}' is compiled into the shaders and cannot move"));
         }
         let steps = match step {

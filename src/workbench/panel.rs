@@ -114,7 +114,7 @@ fn help(ui: &mut Ui, param: &Param) {
     if !param.unit.is_empty() {
         facts.push(param.unit.clone());
     }
-    if param.constant {
+    if param.is_compiled() {
         facts.push("a constant of its shaders: changing it builds them anew".into());
     }
     ui.weak(facts.join(", "));

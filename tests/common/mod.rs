@@ -78,7 +78,7 @@ pub fn graph_with(params: &[(&str, &str)]) -> String {
         params.iter().all(|(name, _)| graph.params.index(name).is_some())
     };
     let both = root().join("tests/common/warps_temporal.ron").to_string_lossy().into_owned();
-    let graphs = ["vct.ron", "warps.ron", "temporal.ron", "thesis.ron", &both].map(String::from);
+    let graphs = ["vct.ron", "warps.ron", "temporal.ron", "thesis.ron", "reference.ron", &both].map(String::from);
     graphs.into_iter().find(has_all).unwrap_or_else(|| panic!("no graph has all of {params:?}"))
 }
 
