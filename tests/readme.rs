@@ -1,5 +1,5 @@
-//! Every command of the README works as written: each line of its `sh` blocks is run from the repository's root, on the
-//! software device.
+//! Every command of the README and of the long tour works as written: each line of their `sh` blocks is run from the
+//! repository's root, on the software device, those of the README first.
 
 mod common;
 
@@ -9,30 +9,39 @@ use std::process::Command;
 /// Commands that build, install or test the whole program: `make test` is what runs this, and they take minutes.
 const BUILDS: [&str; 3] = ["make demo", "make test", "make dist"];
 
-#[test]
-fn every_command_of_the_readme_works() {
-    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+/// The lines of a page's `sh` blocks.
+fn commands_of(page: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(root().join(page)).unwrap();
     let mut commands = Vec::new();
     let mut inside = false;
-    for line in readme.lines() {
+    for line in text.lines() {
         match line.trim() {
             "```sh" => inside = true,
             "```" => inside = false,
-            command if inside && !command.is_empty() && !command.starts_with('#') => commands.push(command),
+            command if inside && !command.is_empty() && !command.starts_with('#') => commands.push(command.to_string()),
             _ => {}
         }
     }
-    assert!(commands.len() >= 10, "the README has lost its tour: {commands:?}");
+    commands
+}
+
+#[test]
+fn every_command_of_the_readme_and_of_the_tour_works() {
+    let readme = commands_of("README.md");
+    let tour = commands_of("docs/tour.md");
+    assert!(readme.len() >= 10, "the README has lost its tour: {readme:?}");
+    assert!(tour.len() >= 20, "the long tour has lost its commands: {tour:?}");
     for build in ["make demo", "make test"] {
-        assert!(commands.contains(&build), "the README does not say `{build}`");
+        assert!(readme.iter().any(|c| c == build), "the README does not say `{build}`");
     }
     let makefile = std::fs::read_to_string(root().join("Makefile")).unwrap();
-    for command in commands {
+    // The tour goes on with what the README's commands left.
+    for command in readme.iter().chain(&tour) {
         if let Some(target) = BUILDS.iter().find(|b| command.starts_with(*b)).and_then(|b| b.split(' ').nth(1)) {
             assert!(makefile.lines().any(|l| l.starts_with(&format!("{target}:"))), "no `{command}` in the Makefile");
             continue;
         }
-        // The README speaks of the release build; tests have their own.
+        // The pages speak of the release build; tests have their own.
         let command = command.replace("target/release/conelab", env!("CARGO_BIN_EXE_conelab"));
         let output = Command::new("sh")
             .args(["-c", &command])
