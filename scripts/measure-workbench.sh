@@ -22,4 +22,4 @@ for tab in Scene Time; do
 done
 echo "an edit of the cone shader"
 "$conelab" screenshot --scene "$scene" --size "$size" -o "$home/shot.png" --times 25 \
-    --edit "$home/shaders/include/cone.glsl" --from 'params.cone_height * v0' --to 'params.cone_height * v0 * 1.01'
+    --edit "$home/shaders/cones/cone.glsl" --from 'params.cone_height * first_cell' --to 'params.cone_height * first_cell * 1.01'

@@ -27,7 +27,6 @@ bool holds(VolumeMap map, vec3 p) {
     return inVolume(worldToVolume(map, p));
 }
 
-
 // What curved cells have, for code that knows both.
 const vec3 CURVED_BORDERS = vec3(1.0);
 const bool CURVED_SEAM = false;

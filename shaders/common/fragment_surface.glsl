@@ -1,4 +1,4 @@
-// The surface under a fragment of forward.vert.
+// The surface under a fragment of gbuffer/surface.vert.
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
 #include "common/scene.glsl"

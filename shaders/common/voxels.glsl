@@ -76,7 +76,7 @@ vec3 unpackRadiance(uint w) {
     return vec3(w & 511u, w >> 9 & 511u, w >> 18 & 511u) * exp2(float(w >> 27) - 24.0);
 }
 
-// x, y: up to 512; z: as many for each block.
+// x, y: up to 512; z: as many for each cascade.
 uint packCell(ivec3 c) {
     return uint(c.x | c.y << 9 | c.z << 18);
 }

@@ -1,5 +1,7 @@
 // Cone tracing as Listing 4.1 of the thesis has it: a start `bias` voxels along the shading normal, a level as wide as the
-// cone, opacity as stored, steps as long as the cone's radius. Lengths are world lengths; the listing's are in voxels.
+// cone, opacity as stored, steps as long as the cone's radius. Lengths are
+// world lengths; the listing's are in voxels. Not in the listing: a cone ends where it leaves the volume (the listing goes on
+// through the border's zeros), a step is at least a twentieth of a voxel, and texels with next to no opacity add nothing.
 #ifndef CONE_GLSL
 #define CONE_GLSL
 #include "cones/origin.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // What the voxel view colours its cubes by, where the voxels have it in one level only: premultiplied by opacity,
-// so that filter.comp makes the other levels.
+// so that filter/isotropic.comp makes the other levels.
 #include "params.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Depth prepass (thesis, Section 4.7.1). The position must come out bit-equal to forward.vert's: the
+// Depth prepass (thesis, Section 4.7.1). The position must come out bit-equal to gbuffer/surface.vert's: the
 // shading pass compares depth with EQUAL.
 #include "common/scene.glsl"
 

@@ -59,7 +59,8 @@ void main() {
         // Normals that disagree lie on a curved or two-sided surface: what the mean does not explain is
         // taken as spread over all directions, whose mean cosine is 1/4.
         float cosine = max(dot(n, incident.to_light), 0.0) * agreement + 0.25 * (1.0 - agreement);
-        if (cosine > 0.0 && incident.irradiance != vec3(0.0)) irradiance += incident.irradiance * cosine * voxelVisibility(light, center, axes, n, incident.to_light);
+        if (cosine > 0.0 && incident.irradiance != vec3(0.0))
+            irradiance += incident.irradiance * cosine * voxelVisibility(light, center, axes, n, incident.to_light);
     }
     imageStore(injected, cell, vec4((color.rgb / PI * irradiance + meanEmission(slot)) * color.a, color.a));
 }

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Radiance injection from the shadow maps (thesis, Section 4.3 and Algorithm 2): one thread a texel writes
-// into the voxel it hits: its base colour, not the light that it reflects, and the texel's corner, not its centre. Writes of several texels, and of several lights, race: the last one stays.
+// into the voxel it hits: its base colour, not the light that it reflects, and from the texel's corner, not its centre.
+// Writes of several texels, and of several lights, race: the last one stays.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/shadow_views.glsl"

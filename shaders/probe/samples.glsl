@@ -1,4 +1,4 @@
-// What the cone probe records: every sample of every cone of one pixel, a row each. passes/probe.ron names the
+// What the cone probe records: every sample of every cone of one pixel, a row each. passes/parts/probe.ron names the
 // columns.
 #ifndef CONE_SAMPLES_GLSL
 #define CONE_SAMPLES_GLSL

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Tessellation levels such that points lie at most one local cell apart (thesis, Section 4.1.2).
+// Tessellation levels by the length of edges in cells (thesis, Section 4.1.2).
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "voxelize/tessellated.glsl"

@@ -71,18 +71,19 @@ fn files_of(folder: &Path, ending: &str) -> Vec<PathBuf> {
     list
 }
 
-/// The program's own files. Graphs that others include are checked there: alone they lack what they build on.
+/// The program's own files. What graphs include is checked there, where it has no picture of its own.
 fn own_files(home: &Home) -> Vec<PathBuf> {
     let graphs = files_of(&home.root.join("passes"), "ron");
-    let mut included: Vec<PathBuf> = Vec::new();
+    let (mut included, mut whole): (Vec<PathBuf>, Vec<PathBuf>) = (Vec::new(), Vec::new());
     for path in &graphs {
         let mut sources = Sources::default();
         let Ok(file) = sources.read(path) else { continue };
         if let Some(graph) = sources.parse::<GraphFile>(file, &mut Vec::new(), &mut Vec::new()) {
             included.extend(graph.include.0.iter().map(|i| home.root.join("passes").join(&i.value)));
+            whole.extend(graph.output.map(|_| path.clone()));
         }
     }
-    let mut files: Vec<PathBuf> = graphs.into_iter().filter(|g| !included.contains(g)).collect();
+    let mut files: Vec<PathBuf> = graphs.into_iter().filter(|g| whole.contains(g) || !included.contains(g)).collect();
     files.extend(
         ["configs", "configs/scenes", "configs/paths", "configs/sweeps", "configs/stability"]
             .iter()

@@ -316,7 +316,12 @@ pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
     let chart = suite.chart.as_ref();
     let methods: Vec<Method> =
         suite.methods.iter().flat_map(|m| chart.map_or_else(|| vec![m.clone()], |c| c.variants(m))).collect();
-    for (method, case) in methods.iter().flat_map(|m| suite.cases.iter().map(move |c| (m, c))) {
+    // Variants of a method for a chart's equal time bear its name and more.
+    let runs = |method: &Method, case: &Case| {
+        case.methods.is_empty() || case.methods.iter().any(|m| method.name.starts_with(m))
+    };
+    let pairs = methods.iter().flat_map(|m| suite.cases.iter().map(move |c| (m, c)));
+    for (method, case) in pairs.filter(|(m, c)| runs(m, c)) {
         let mut params = |name: &str| {
             let found = graphs.entry(name.into()).or_insert_with(|| home.graph(name).map(|g| g.0.params));
             found.clone()

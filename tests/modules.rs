@@ -1,0 +1,463 @@
+//! Modules: an opacity model is added as docs/method.md says, with the texts that stand there; and what the parts of
+//! graphs may say of one another.
+
+mod common;
+
+use common::{assert_clean, conelab, copy, experiment, fails, floats, lab, mean, prepare, root, scene, succeeds};
+use conelab::experiment::Experiment;
+use conelab::graph::load::{Folders, Graph, load};
+use conelab::graph::param::Value;
+use conelab::graph::successor::Change;
+use conelab::lab::{Home, Lab, Session, values_of};
+use insta::assert_snapshot;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use tempfile::TempDir;
+
+/// What the page says.
+struct Page {
+    /// The new shader, from the repository's root.
+    shader: PathBuf,
+    glsl: String,
+    /// The graph file that names it.
+    graph: PathBuf,
+    line: String,
+    /// The option's name.
+    option: String,
+}
+
+fn page() -> Page {
+    let text = std::fs::read_to_string(root().join("docs/method.md")).unwrap();
+    let section =
+        text.split("\n## ").find(|s| s.starts_with("Adding an opacity model\n")).expect("the section is there");
+    let quoted = |start: &str| {
+        let from = section.find(&format!("`{start}")).unwrap_or_else(|| panic!("`{start}...` stands in the section"));
+        PathBuf::from(section[from + 1..].split('`').next().unwrap())
+    };
+    let block = |language: &str| {
+        let fence = format!("\n```{language}\n");
+        assert_eq!(section.matches(&fence).count(), 1, "one block of {language}");
+        section.split(&fence).nth(1).unwrap().split("```").next().unwrap().to_string()
+    };
+    let shader = quoted("shaders/modules/opacity/");
+    let option = shader.file_stem().unwrap().to_string_lossy().into_owned();
+    Page { glsl: block("glsl"), line: block("ron"), graph: quoted("passes/"), shader, option }
+}
+
+/// A copy of the method with the page's model in it: one file, one line.
+fn home_with_model(page: &Page) -> TempDir {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["passes", "shaders"] {
+        copy(&root().join(folder), &home.path().join(folder));
+    }
+    copy_file("configs/default.ron", home.path());
+    assert!(!home.path().join(&page.shader).exists(), "{} is a new file", page.shader.display());
+    std::fs::write(home.path().join(&page.shader), &page.glsl).unwrap();
+    assert_eq!(page.line.lines().count(), 1, "one line");
+    edit(home.path(), &page.graph, |text| {
+        let module = text.find("Module(name: \"opacity\"").unwrap();
+        let options = module + text[module..].find("options: {\n").unwrap() + "options: {\n".len();
+        let end = options
+            + text[options..].lines().take_while(|l| !l.trim().starts_with('}')).map(|l| l.len() + 1).sum::<usize>();
+        format!("{}{}{}", &text[..end], page.line, &text[end..])
+    });
+    home
+}
+
+fn copy_file(name: &str, home: &Path) {
+    std::fs::create_dir_all(home.join(name).parent().unwrap()).unwrap();
+    std::fs::copy(root().join(name), home.join(name)).unwrap();
+}
+
+fn edit(home: &Path, file: &Path, change: impl FnOnce(String) -> String) {
+    let text = std::fs::read_to_string(home.join(file)).unwrap();
+    std::fs::write(home.join(file), change(text)).unwrap();
+}
+
+/// A small picture of a built-in scene.
+fn small(opacity: &str) -> Experiment {
+    let experiment =
+        experiment("cornell", (48, 36), &[("voxel_dim", "32"), ("shadow_dim", "256"), ("opacity", opacity)]);
+    assert_eq!(experiment.graph, "vct.ron");
+    experiment
+}
+
+/// The same on the command line, of the folders of `home`.
+fn command(home: &Path, name: &str) -> Command {
+    let mut command = conelab(home);
+    command.args([name, "configs/default.ron", "--scene", "cornell", "--size", "48x36"]);
+    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256"]);
+    command
+}
+
+const WANTED: [&str; 3] = ["display", "radiance", "occlusion"];
+
+fn pictures(session: &mut Session) -> [Vec<u8>; 3] {
+    session.frame(0.0).unwrap();
+    session.finish().unwrap();
+    WANTED.map(|name| session.texels(name, 0, 0).unwrap().bytes)
+}
+
+/// The pictures of an option by the files in `folder`, and how open its surfaces are.
+fn render(gpu: &Lab, folder: &Path, opacity: &str) -> ([Vec<u8>; 3], f64) {
+    let lab = at(gpu, folder);
+    let mut session = prepare(&lab, &small(opacity), &WANTED);
+    let pictures = pictures(&mut session);
+    assert_clean(&lab);
+    (pictures, mean(&floats(&mut session, "occlusion", 0)))
+}
+
+/// The same device on other folders.
+fn at(lab: &Lab, folder: &Path) -> Lab {
+    Lab { home: Home { root: folder.to_path_buf(), cache: lab.home.cache.clone() }, gpu: lab.gpu.clone() }
+}
+
+/// All files of a folder.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
+}
+
+#[test]
+fn the_page_names_files_and_settings_that_are_there() {
+    let page = page();
+    let home = home_with_model(&page);
+    let text = std::fs::read_to_string(root().join("docs/method.md")).unwrap();
+    let prose: String = text.split("\n```").step_by(2).collect();
+    let files = [files(&home.path().join("shaders")), files(&home.path().join("passes"))].concat();
+    let folders = Home { root: home.path().to_path_buf(), cache: None }.folders();
+    let graph = |name: &str| load(&folders.passes.join(name), &folders).unwrap().params;
+    let graphs = ["vct.ron", "thesis.ron", "warps.ron", "temporal.ron"].map(graph);
+    let (mut found, mut missing) = (0, Vec::new());
+    for word in prose.split('`').skip(1).step_by(2).filter(|w| !w.contains([' ', '(', '*', '>'])) {
+        let there = match (word.split_once('='), Path::new(word).extension()) {
+            (Some((name, value)), _) => graphs.iter().any(|g| g.clone().set(name, value).is_ok()),
+            // Made by the program.
+            _ if word == "modules/opacity.glsl" => true,
+            (_, Some(e)) if e != "rs" => files.iter().any(|f| f.ends_with(word)),
+            _ if word.ends_with('/') => {
+                [".", "shaders", "passes"].iter().any(|f| home.path().join(f).join(word).is_dir())
+            }
+            _ => continue,
+        };
+        found += 1;
+        if !there {
+            missing.push(word);
+        }
+    }
+    assert_eq!(missing, Vec::<&str>::new());
+    assert!(found > 100, "{found} names of files and settings");
+}
+
+#[test]
+fn a_model_is_one_file_and_one_line() {
+    let page = page();
+    let home = home_with_model(&page);
+    // The page promises the graphs that include the file too.
+    for graph in ["vct.ron", "warps.ron", "temporal.ron"] {
+        let said = succeeds(conelab(home.path()).arg("check").arg(Path::new("passes").join(graph)));
+        assert_eq!(said, "checked 1 files, 0 errors\n", "{graph}");
+    }
+
+    let gpu = lab(home.path());
+    let (made, open) = render(&gpu, home.path(), &page.option);
+    let (coverage, coverage_open) = render(&gpu, home.path(), "coverage");
+    let (layers, _) = render(&gpu, home.path(), "layers");
+    let (before, _) = render(&gpu, root(), "coverage");
+    assert!(before == coverage, "a model that is not chosen changes nothing");
+    for (i, name) in WANTED.iter().enumerate() {
+        assert!(made[i] != coverage[i] && made[i] != layers[i], "{name} is of the new model");
+    }
+    // Surfaces that hide one another hide less of a cone.
+    println!("openness: {open:.4}, by coverage {coverage_open:.4}");
+    assert!(open > coverage_open + 0.005, "{open} against {coverage_open}");
+}
+
+#[test]
+fn a_mistake_in_a_model_is_told_and_keeps_nobody_from_rendering_with_another() {
+    let page = page();
+    let home = home_with_model(&page);
+    let gpu = lab(home.path());
+    for file in [&page.shader, Path::new("shaders/modules/opacity/layers.glsl")] {
+        let text = std::fs::read_to_string(home.path().join(file)).unwrap();
+        std::fs::write(home.path().join(file), format!("{text}float broken = ;\n")).unwrap();
+        let place = format!("{}:{}: error", home.path().join(file).display(), text.lines().count() + 1);
+
+        let output = conelab(home.path()).args(["check", "passes/vct.ron"]).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert_eq!(said.matches(&place).count(), 1, "{place}\n{said}");
+        assert!(said.ends_with("checked 1 files, 1 errors\n"), "{said}");
+        let option = file.file_stem().unwrap().to_string_lossy();
+        let said = fails(command(home.path(), "render").args(["--set", &format!("opacity={option}"), "-o", "a.png"]));
+        assert!(said.contains(&place), "{place}\n{said}");
+
+        assert!(render(&gpu, home.path(), "coverage").0 == render(&gpu, root(), "coverage").0);
+        std::fs::write(home.path().join(file), text).unwrap();
+    }
+    // A line for a file that is not there.
+    std::fs::remove_file(home.path().join(&page.shader)).unwrap();
+    let output = conelab(home.path()).args(["check", "passes/vct.ron"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let file = page.shader.strip_prefix("shaders").unwrap().to_string_lossy();
+    assert!(said.contains(&*file), "{said}");
+    assert!(render(&gpu, home.path(), "coverage").0 == render(&gpu, root(), "coverage").0);
+}
+
+#[test]
+fn a_live_session_builds_only_what_includes_the_model() {
+    let page = page();
+    let home = home_with_model(&page);
+    let lab = lab(home.path());
+    let cornell = scene("cornell");
+    let build = |option: &str, old: Option<&Session>| {
+        let experiment = small(option);
+        let loaded = lab.home.load_for(&experiment, &cornell).unwrap();
+        let wanted = WANTED.map(String::from).to_vec();
+        let reuse = old.map(Session::reusable_parts);
+        lab.build(&experiment, &loaded, cornell.clone(), wanted, reuse.as_ref()).unwrap()
+    };
+    let replace = |old: &mut Session, option: &str| {
+        let mut next = build(option, Some(old));
+        next.swap_in(old).unwrap();
+        next
+    };
+    let mut session = build("coverage", None);
+    let first = session.program.change;
+    assert!(first.kept == 0 && first.built > 8, "{first:?}");
+    let coverage = pictures(&mut session);
+
+    // Another option: shading alone includes it.
+    let one = Change { kept: first.built - 1, built: 1, resized: 0 };
+    session = replace(&mut session, &page.option);
+    assert_eq!(session.program.change, one);
+    let made = pictures(&mut session);
+    assert!(made != coverage && made == pictures(&mut build(&page.option, None)));
+
+    // An edit of its file.
+    edit(home.path(), &page.shader, |text| {
+        assert_eq!(text.matches("exp(-a").count(), 1);
+        text.replace("exp(-a", "exp(-2.0 * a")
+    });
+    session = replace(&mut session, &page.option);
+    assert_eq!(session.program.change, one);
+    assert!(pictures(&mut session) != made);
+
+    // An edit of a file that is not chosen.
+    edit(home.path(), Path::new("shaders/modules/opacity/layers.glsl"), |text| text + "// another\n");
+    session = replace(&mut session, &page.option);
+    assert_eq!(session.program.change, Change { kept: first.built, built: 0, resized: 0 });
+
+    // And back.
+    session = replace(&mut session, "coverage");
+    assert_eq!(session.program.change, one);
+    assert!(pictures(&mut session) == coverage);
+    assert_clean(&lab);
+}
+
+#[test]
+fn what_is_no_more_says_what_to_write_instead() {
+    let folders = Home { root: root().to_path_buf(), cache: None }.folders();
+    let graph = load(&folders.passes.join("vct.ron"), &folders).unwrap();
+    let instead = |name: &str| graph.params.retired.iter().find(|r| r.0 == name).unwrap().1.clone();
+    let out = tempfile::tempdir().unwrap();
+    for (setting, retired, word) in
+        [("directional=false", "directional", "mips"), ("opacity=stored", "opacity=stored", "thesis.ron")]
+    {
+        let said = fails(command(root(), "render").args(["--set", setting, "-o"]).arg(out.path().join("a.png")));
+        let text = instead(retired);
+        assert!(text.contains(word) && said.contains(&text), "{setting}: {said}");
+    }
+    assert!(std::fs::read_dir(out.path()).unwrap().next().is_none(), "nothing was rendered");
+}
+
+#[test]
+fn a_capture_replays_and_can_be_varied() {
+    let page = page();
+    let home = home_with_model(&page);
+    succeeds(command(home.path(), "capture").args(["--name", "kept"]));
+    let kept = home.path().join("captures/kept");
+    let files = std::fs::read_dir(kept.join("graph/shaders/modules/opacity")).unwrap();
+    let files: BTreeSet<String> = files.map(|f| f.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    let own = format!("{}.glsl", page.option);
+    assert_eq!(files, BTreeSet::from(["cell.glsl", "coverage.glsl", "layers.glsl", &own].map(String::from)));
+
+    // What the project holds does not matter any more.
+    std::fs::remove_dir_all(home.path().join("shaders/modules")).unwrap();
+    let said = succeeds(conelab(home.path()).args(["replay", "captures/kept"]));
+    assert!(said.contains("identical: 2 images"), "{said}");
+
+    // Another option, by the capture's own files, is what the method makes with it.
+    let (graph, picture) = (kept.join("graph"), home.path().join("varied.exr"));
+    let mut varied = conelab(&graph);
+    varied.arg("render").arg(kept.join("experiment.ron")).args(["--set", &format!("opacity={}", page.option), "-o"]);
+    succeeds(varied.arg(&picture));
+    let [varied, coverage] = [&picture, &kept.join("picture.exr")].map(|p| std::fs::read(p).unwrap());
+    assert!(varied != coverage);
+    let fresh = home_with_model(&page);
+    let again = fresh.path().join("again.exr");
+    succeeds(command(fresh.path(), "render").args(["--set", &format!("opacity={}", page.option), "-o"]).arg(&again));
+    assert!(varied == std::fs::read(again).unwrap());
+}
+
+/// Graphs that need no device.
+struct Bench(TempDir);
+
+/// What others build on.
+const BASE: &str = r#"(
+    params: [
+        Int(name: "size", default: 8, range: (1, 64), help: "Edge."),
+        Choice(name: "filter", options: ["box", "tent"], help: "Kernel."),
+        Choice(name: "grid", options: ["even", "warped"], help: "Cells."),
+        Bool(name: "steady", default: false, help: "Blends."),
+    ],
+    values: { "edge": Int("2 * size"), "area": Int("edge * edge") },
+    textures: { "picture": (size: ("area", 1), format: "r32f") },
+    passes: [
+        (name: "fill", clear: "picture"),
+        (name: "finish", clear: "picture"),
+    ],
+    output: "picture",
+)"#;
+
+impl Bench {
+    /// `graph.ron`, which includes the base and says `text`.
+    fn new(text: &str) -> Bench {
+        let bench = Bench(tempfile::tempdir().unwrap());
+        bench.write("passes/base.ron", BASE);
+        bench.write("passes/graph.ron", &format!("(\n    include: [\"base.ron\"],\n{text}\n)"));
+        bench.write("shaders/modules/plain.glsl", "float plain() { return 1.0; }\n");
+        bench
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        let path = self.0.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+
+    fn load(&self) -> Result<Graph, String> {
+        let folders = Folders { passes: self.0.path().join("passes"), shaders: self.0.path().join("shaders") };
+        load(&folders.passes.join("graph.ron"), &folders).map_err(|errors| {
+            let text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
+            text.replace(&format!("{}/", self.0.path().display()), "")
+        })
+    }
+}
+
+#[track_caller]
+fn graph(text: &str) -> Graph {
+    Bench::new(text).load().unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+#[track_caller]
+fn mistakes(text: &str) -> String {
+    Bench::new(text).load().expect_err("it has a mistake")
+}
+
+#[test]
+fn defaults_are_of_parameters_that_are_there() {
+    assert_eq!(graph("    defaults: { \"size\": 16 },").params.get("size"), Some(&Value::Int(16)));
+    assert_snapshot!(mistakes("    defaults: { \"sise\": 16 },"), @r#"
+    passes/graph.ron:3:17: error: no parameter 'sise' to give a default to
+        |     defaults: { "sise": 16 },
+        = help: did you mean 'size'?
+    "#);
+    assert_snapshot!(mistakes("    defaults: { \"size\": 65 },"), @r#"
+    passes/graph.ron:3:25: error: default of 'size': 65 is outside 1 to 64
+        |     defaults: { "size": 65 },
+    "#);
+}
+
+#[test]
+fn a_module_is_fixed_or_chosen() {
+    const CHOSEN: &str = r#"    params: [
+        Module(name: "kernel", help: "Which.", options: { "plain": "modules/plain.glsl" }),
+    ],"#;
+    const FIXED: &str = r#"    modules: { "kernel": "modules/plain.glsl" },"#;
+    assert_eq!(graph(FIXED).modules, [("kernel".to_string(), "modules/plain.glsl".to_string())]);
+    assert_snapshot!(mistakes(&format!("{CHOSEN}\n{FIXED}")), @r#"
+    passes/graph.ron:6:16: error: module 'kernel' is a parameter, which an option is chosen for: remove one
+        |     modules: { "kernel": "modules/plain.glsl" },
+    "#);
+    assert_snapshot!(mistakes(&FIXED.replace("plain.glsl", "plane.glsl")), @r#"
+    passes/graph.ron:3:26: error: no shader file 'modules/plane.glsl'
+        |     modules: { "kernel": "modules/plane.glsl" },
+        = help: did you mean 'modules/plain.glsl'?
+    "#);
+
+    // What an included file has fixed, an including one may offer.
+    let bench = Bench::new(CHOSEN);
+    bench.write("passes/base.ron", &BASE.replace("    values: {", &format!("{FIXED}\n    values: {{")));
+    let graph = bench.load().unwrap();
+    assert!(graph.modules.is_empty() && graph.params.get("kernel") == Some(&Value::Choice("plain".into())));
+}
+
+#[test]
+fn a_pass_stands_behind_one_that_is_there() {
+    let pass = |after: &str| format!("    passes: [(name: \"between\", after: \"{after}\", clear: \"picture\")],");
+    let names: Vec<String> = graph(&pass("fill")).passes.iter().map(|p| p.value.name.value.clone()).collect();
+    assert_eq!(names, ["fill", "between", "finish"]);
+    assert_snapshot!(mistakes(&pass("fil")), @r#"
+    passes/graph.ron:3:39: error: no pass 'fil' stands before this one
+        |     passes: [(name: "between", after: "fil", clear: "picture")],
+        = help: did you mean 'fill'?
+    "#);
+}
+
+/// A named value of a graph with these settings.
+fn value(graph: &Graph, name: &str, settings: &[(&str, &str)]) -> Value {
+    let mut params = graph.params.clone();
+    for (name, value) in settings {
+        params.set(name, value).unwrap();
+    }
+    let values = values_of(graph, &params, &scene("triangles"), (64, 48));
+    let index = graph.values.iter().position(|v| v.name == name).unwrap();
+    values[index].clone()
+}
+
+#[test]
+fn a_value_of_an_including_file_replaces_the_included_one() {
+    assert_eq!(value(&graph(""), "area", &[]), Value::Int(256));
+    // What reads it, there too, reads the new one.
+    let replaced = graph("    values: { \"edge\": Int(\"3 * size\") },");
+    assert_eq!([value(&replaced, "edge", &[]), value(&replaced, "area", &[])], [Value::Int(24), Value::Int(576)]);
+    // Twice in one file is a mistake still.
+    assert_snapshot!(mistakes("    values: { \"edge\": Int(1), \"edge\": Int(2) },"), @r#"
+    passes/graph.ron:3:31: error: 'edge' stands twice
+        |     values: { "edge": Int(1), "edge": Int(2) },
+    "#);
+}
+
+#[test]
+fn a_hash_differs_where_an_argument_does() {
+    let graph = graph("    values: { \"signature\": Int(\"hash(hash(filter, grid), hash(steady, size))\") },");
+    let axes = [
+        ("filter", &["box", "tent"][..]),
+        ("grid", &["even", "warped"]),
+        ("steady", &["false", "true"]),
+        ("size", &["8", "9", "16"]),
+    ];
+    let mut settings: Vec<Vec<(&str, &str)>> = vec![Vec::new()];
+    for (name, options) in axes {
+        let with = |s: &Vec<_>| options.iter().map(|option| [&s[..], &[(name, *option)]].concat()).collect::<Vec<_>>();
+        settings = settings.iter().flat_map(with).collect();
+    }
+    let mut found = BTreeSet::new();
+    for settings in &settings {
+        let Value::Int(signature) = value(&graph, "signature", settings) else { panic!("a whole number") };
+        assert!((1..1 << 31).contains(&signature), "{signature}");
+        assert!(found.insert(signature), "{settings:?} has the signature of another setting");
+    }
+    assert_eq!(found.len(), 24);
+    // Which argument is which matters.
+    let both = self::graph("    values: { \"one\": Int(\"hash(size, 1)\"), \"other\": Int(\"hash(1, size)\") },");
+    assert_ne!(value(&both, "one", &[]), value(&both, "other", &[]));
+    assert_snapshot!(mistakes("    values: { \"signature\": Int(\"hash(filtre, 1)\") },"), @r#"
+    passes/graph.ron:3:32: error: unknown variable 'filtre' in 'hash(filtre, 1)'
+        |     values: { "signature": Int("hash(filtre, 1)") },
+        = help: did you mean 'filter'?
+    "#);
+}
