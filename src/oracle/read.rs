@@ -99,7 +99,7 @@ fn grid_of(bytes: &[u8], texture: [u32; 3]) -> Result<(Grid, u32), String> {
         words.split_first_chunk::<5>().ok_or("the buffer of the cells' borders is too short")?;
     if *boxes == 0 {
         return Err(
-            "the cells are curved, no boxes: the oracle knows boxes only. Choose another warp, or another block \
+            "the cells are curved, no boxes: the oracle knows boxes only. Choose another warp, or another cascade \
                     of the volume"
                 .into(),
         );
