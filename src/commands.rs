@@ -16,6 +16,7 @@ macro_rules! say_part {
     }};
 }
 
+mod ablate;
 mod adapt;
 mod bench;
 mod capture;
@@ -29,7 +30,6 @@ mod replay;
 mod report;
 mod save;
 mod screenshot;
-mod split;
 mod stability;
 mod sweep;
 mod view;
@@ -78,8 +78,9 @@ enum Command {
     Reference(reference::ReferenceArgs),
     /// Find the cheapest setting of an experiment that stays within an error, or the best within a time.
     Fit(fit::FitArgs),
-    /// Split an experiment's error into what voxels, cones and filtering each add.
-    Split(split::SplitArgs),
+    /// Tell what voxels, cones and filtering each add to an experiment's error.
+    #[command(alias = "split")]
+    Ablate(ablate::AblateArgs),
     /// Compare the voxels of an experiment with what its triangles exactly overlap.
     Voxels(voxels::VoxelsArgs),
     /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
@@ -140,7 +141,7 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Save(args) => save::run(&args),
         Command::Reference(args) => reference::run(&args),
         Command::Fit(args) => fit::run(&args),
-        Command::Split(args) => split::run(&args),
+        Command::Ablate(args) => ablate::run(&args),
         Command::Voxels(args) => voxels::run(&args),
         Command::Graph(args) => graph::run(&args),
         Command::Check(args) => check::run(&args),

@@ -4,7 +4,7 @@
 use conelab::experiment::Experiment;
 use conelab::graph::plan::{PlanInput, plan};
 use conelab::graph::source::Diagnostic;
-use conelab::lab::{Home, LabError, any_device, environment, params_of};
+use conelab::lab::{LabError, Workspace, any_device, environment, params_of};
 use conelab::scene::Scene;
 use conelab::vulkan::DeviceInfo;
 use insta::assert_snapshot;
@@ -167,7 +167,7 @@ impl Bench {
     }
 
     fn check(&self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
-        let home = Home { root: self.folder.path().to_path_buf(), cache: None };
+        let home = Workspace { root: self.folder.path().to_path_buf(), cache: None };
         let experiment = Experiment::read(&self.path("configs/run.ron"))?;
         let (graph, linked, warnings) = home.graph(&experiment.graph)?;
         let params = params_of(&graph, &experiment).map_err(|e| match e {

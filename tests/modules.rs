@@ -5,10 +5,10 @@ mod common;
 
 use common::{assert_clean, conelab, copy, experiment, fails, floats, lab, mean, prepare, root, scene, succeeds};
 use conelab::experiment::Experiment;
+use conelab::graph::hot_reload::Change;
 use conelab::graph::load::{Folders, Graph, load};
 use conelab::graph::param::Value;
-use conelab::graph::successor::Change;
-use conelab::lab::{Home, Lab, Session, values_of};
+use conelab::lab::{Lab, Session, Workspace, values_of};
 use insta::assert_snapshot;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -110,7 +110,7 @@ fn render(gpu: &Lab, folder: &Path, opacity: &str) -> ([Vec<u8>; 3], f64) {
 
 /// The same device on other folders.
 fn at(lab: &Lab, folder: &Path) -> Lab {
-    Lab { home: Home { root: folder.to_path_buf(), cache: lab.home.cache.clone() }, gpu: lab.gpu.clone() }
+    Lab { home: Workspace { root: folder.to_path_buf(), cache: lab.home.cache.clone() }, gpu: lab.gpu.clone() }
 }
 
 /// All files of a folder.
@@ -126,7 +126,7 @@ fn the_page_names_files_and_settings_that_are_there() {
     let text = std::fs::read_to_string(root().join("docs/method.md")).unwrap();
     let prose: String = text.split("\n```").step_by(2).collect();
     let files = [files(&home.path().join("shaders")), files(&home.path().join("passes"))].concat();
-    let folders = Home { root: home.path().to_path_buf(), cache: None }.folders();
+    let folders = Workspace { root: home.path().to_path_buf(), cache: None }.folders();
     let graph = |name: &str| load(&folders.passes.join(name), &folders).unwrap().params;
     let graphs = ["vct.ron", "thesis.ron", "warps.ron", "temporal.ron"].map(graph);
     let (mut found, mut missing) = (0, Vec::new());
@@ -259,7 +259,7 @@ fn a_live_session_builds_only_what_includes_the_model() {
 
 #[test]
 fn what_is_no_more_says_what_to_write_instead() {
-    let folders = Home { root: root().to_path_buf(), cache: None }.folders();
+    let folders = Workspace { root: root().to_path_buf(), cache: None }.folders();
     let graph = load(&folders.passes.join("vct.ron"), &folders).unwrap();
     let instead = |name: &str| graph.params.retired.iter().find(|r| r.0 == name).unwrap().1.clone();
     let out = tempfile::tempdir().unwrap();

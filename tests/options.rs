@@ -8,7 +8,7 @@ use conelab::experiment::Experiment;
 use conelab::graph::load::load;
 use conelab::graph::param::{Kind, Param};
 use conelab::graph::source::{At, Loc};
-use conelab::lab::{Home, Lab, LabError};
+use conelab::lab::{Lab, LabError, Workspace};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -17,8 +17,8 @@ use tempfile::TempDir;
 fn textures(group: &str) -> &'static [&'static str] {
     match group {
         "Shadows" => &["shadowMap", "direct"],
-        "Volume" => &["voxelIndex", "voxelRadiance"],
-        "Voxels" => &["voxelIndex", "voxelColor", "voxelNormal"],
+        "Volume" => &["voxelColor", "voxelRadiance"],
+        "Voxels" => &["voxelColor", "voxelNormal"],
         "Radiance" => &["voxelRadiance", "diffuseIndirect"],
         "Shading" => &["direct"],
         "Diffuse cones" | "Tracing" => &["diffuseIndirect"],
@@ -111,7 +111,7 @@ fn options(param: &Param) -> Vec<String> {
 #[test]
 fn every_option_builds_renders_and_changes_what_its_group_says() {
     let (lab, scenes) = (lab(root()), Scenes::new());
-    let home = Home { root: root().to_path_buf(), cache: None };
+    let home = Workspace { root: root().to_path_buf(), cache: None };
     let params = |graph: &str| load(&home.graph_path(graph), &home.folders()).unwrap().params.list;
     let plain: Vec<String> = params("vct.ron").iter().map(|p| p.name.clone()).collect();
     let (mut options_run, mut wrong) = (0, Vec::new());

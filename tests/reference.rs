@@ -5,7 +5,7 @@ mod common;
 
 use common::{assert_clean, conelab, experiment, fails, lab, root, scene, succeeds};
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
-use conelab::lab::{Home, Lab};
+use conelab::lab::{Lab, Workspace};
 use conelab::reference::{Goal, Reference, find, gather};
 use conelab::scene::Scene;
 use sha2::{Digest, Sha256};
@@ -289,7 +289,7 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
     let cornell = scene("cornell");
     let plain = || experiment("cornell", (16, 12), &[]);
     let made = trace(&lab, &plain(), &cornell, 1, 32);
-    let found = |home: &Home, experiment: &Experiment, scene: &Arc<Scene>, bounces: u32| {
+    let found = |home: &Workspace, experiment: &Experiment, scene: &Arc<Scene>, bounces: u32| {
         find(home, experiment, scene, bounces).unwrap().map(|r| bits(&r))
     };
     assert_eq!(found(&lab.home, &plain(), &cornell, 1), Some(bits(&made)));

@@ -26,9 +26,12 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
             a = stepAlpha(x.texel.a, 1.0 - alpha, x.advance, x.voxel, x.cell);
             color += x.texel.rgb * (a / x.texel.a);
             alpha += a;
+            if (1.0 - alpha < params.stop_transmittance) {
+                CONE_SAMPLED(i, along, x, a, 1.0 - alpha);
+                return stopped(color, alpha);
+            }
         }
         CONE_SAMPLED(i, along, x, a, 1.0 - alpha);
-        if (1.0 - alpha < params.stop_transmittance) return stopped(color, alpha);
         if (x.last) break;
         along += x.advance;
     }

@@ -4,7 +4,7 @@
 use super::{Bench, Times};
 use crate::experiment::Experiment;
 use crate::graph::source::{At, Diagnostic, Loc};
-use crate::lab::{Home, LabError};
+use crate::lab::{LabError, Workspace};
 use crate::measure::{Frames, Warm};
 use crate::stats::DeviceStats;
 use crate::sweep::{Labels, Setting, SweepPoint, read_json};
@@ -70,7 +70,7 @@ pub fn record_file(path: &Path, device: &str) -> PathBuf {
 ///
 /// # Errors
 /// No record; all mistakes, each once.
-pub fn check_record(home: &Home, path: &Path) -> Result<(), LabError> {
+pub fn check_record(home: &Workspace, path: &Path) -> Result<(), LabError> {
     let mut warm = Warm::default();
     let mut errors: Vec<Diagnostic> = Vec::new();
     for recorded in Record::read(path)?.configurations {
@@ -97,7 +97,7 @@ impl Record {
     ///
     /// # Errors
     /// A configuration that failed; a device without timestamps.
-    pub fn of(bench: &Bench, points: &[SweepPoint], home: &Home) -> Result<Record, LabError> {
+    pub fn of(bench: &Bench, points: &[SweepPoint], home: &Workspace) -> Result<Record, LabError> {
         let mut configurations = Vec::new();
         for (configuration, point) in bench.configurations.iter().zip(points) {
             let Some(times) = &configuration.times else {
@@ -218,7 +218,7 @@ impl Lines {
 }
 
 impl Recorded {
-    fn of(point: &SweepPoint, times: &Times, home: &Home) -> Recorded {
+    fn of(point: &SweepPoint, times: &Times, home: &Workspace) -> Recorded {
         let SweepPoint { experiment, subject, .. } = point;
         let file = experiment.sources.paths().next().unwrap_or(Path::new(""));
         let scene = match Path::new(&experiment.scene).is_file() {
@@ -293,7 +293,7 @@ impl Recorded {
     }
 
     /// Its experiment's file.
-    pub fn file(&self, home: &Home) -> PathBuf {
+    pub fn file(&self, home: &Workspace) -> PathBuf {
         home.root.join(&self.experiment)
     }
 
@@ -301,7 +301,7 @@ impl Recorded {
     ///
     /// # Errors
     /// Mistakes of the file, and settings that are none; unknown parameters are found with the graph.
-    pub fn experiment(&self, home: &Home) -> Result<Experiment, Vec<Diagnostic>> {
+    pub fn experiment(&self, home: &Workspace) -> Result<Experiment, Vec<Diagnostic>> {
         let mut experiment = Experiment::read(&self.file(home))?;
         let lines: Vec<String> = self.settings.iter().map(|(name, text)| format!("{name}: {text}")).collect();
         let file = experiment.sources.add(format!("settings of {}", self.title()).as_ref(), lines.join("\n"));
@@ -323,7 +323,7 @@ const FIXED: [&str; 4] = ["scene", "camera", "size", "time"];
 
 /// A file as it is named in a record: from the program's folder where it lies in it, so that a record means the same in
 /// every checkout.
-fn from_root(home: &Home, file: &Path) -> String {
+fn from_root(home: &Workspace, file: &Path) -> String {
     let whole = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
     let (root, file) = (whole(&home.root), whole(file));
     file.strip_prefix(root).unwrap_or(&file).to_string_lossy().into_owned()

@@ -17,7 +17,7 @@ pub use take::{Resource, What, free_name, take};
 
 use crate::experiment::Experiment;
 use crate::graph::load::Graph;
-use crate::lab::{Home, Lab, LabError, Texels};
+use crate::lab::{Lab, LabError, Texels, Workspace};
 use crate::scene::Scene;
 use crate::stats::{self, Stats};
 use std::path::Path;
@@ -54,7 +54,7 @@ fn render(
     (frames, step): (usize, f64),
     images: impl FnOnce(&Graph) -> Result<Vec<Image>, LabError>,
 ) -> Result<(Vec<(Image, Texels)>, Stats), LabError> {
-    let home = Home { root: folder.join(SOURCES), cache: lab.home.cache.clone() };
+    let home = Workspace { root: folder.join(SOURCES), cache: lab.home.cache.clone() };
     let lab = Lab { home, gpu: lab.gpu.clone() };
     let mut chosen = Vec::new();
     let (mut session, _) = lab.prepare(experiment, scene, |graph| {

@@ -6,7 +6,7 @@ use crate::bench::{
     Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, percent, record_file, slower, text,
 };
 use crate::experiment::Experiment;
-use crate::lab::{Home, Lab, LabError};
+use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::{Frames, Warm};
 use crate::scene::SceneError;
 use crate::stats::DeviceStats;
@@ -76,7 +76,7 @@ pub fn run(args: &BenchArgs) -> Result<(), LabError> {
 fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     let (rounds, frames) = counts(args, ROUNDS, FRAMES)?;
     let sweep = sweep_of(args, frames)?;
-    let lab = Lab::open(Home::find()?, args.device.options())?;
+    let lab = Lab::open(Workspace::find()?, args.device.options())?;
     let record = args.record.as_deref().map(|path| record_file(path, &lab.gpu.info.name));
     record.as_ref().map(|path| super::writable(path, &["json"])).transpose()?;
     let mut warm = Warm::default();
@@ -98,7 +98,7 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
 
 /// What a record of this device holds.
 fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
-    let lab = Lab::open(Home::find()?, args.device.options())?;
+    let lab = Lab::open(Workspace::find()?, args.device.options())?;
     let device = DeviceStats::of(&lab.gpu.info);
     let path = record_file(path, &device.name);
     if !path.exists() {
@@ -189,7 +189,7 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
 }
 
 /// The configurations of a record whose experiments the command line names; all if it names none.
-fn chosen<'r>(args: &BenchArgs, home: &Home, record: &'r Record) -> Result<Vec<&'r Recorded>, LabError> {
+fn chosen<'r>(args: &BenchArgs, home: &Workspace, record: &'r Record) -> Result<Vec<&'r Recorded>, LabError> {
     let same = |path: &Path, recorded: &Recorded| {
         let real = path.canonicalize();
         real.is_ok_and(|real| recorded.file(home).canonicalize().is_ok_and(|file| file == real))
@@ -216,7 +216,7 @@ struct Again<'r> {
     broken: Vec<(String, String)>,
 }
 
-fn again<'r>(home: &Home, warm: &mut Warm, chosen: Vec<&'r Recorded>, frames: Frames) -> Again<'r> {
+fn again<'r>(home: &Workspace, warm: &mut Warm, chosen: Vec<&'r Recorded>, frames: Frames) -> Again<'r> {
     let mut builder = PointBuilder::new(home, &super::open_scene);
     let mut out = Again::default();
     for recorded in chosen {
@@ -253,7 +253,7 @@ fn measured(
 }
 
 /// Writes numbers and charts.
-fn write_files(args: &BenchArgs, home: &Home, name: &str, result: &Bench) -> Result<(), LabError> {
+fn write_files(args: &BenchArgs, home: &Workspace, name: &str, result: &Bench) -> Result<(), LabError> {
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/bench").join(name));
     let json = serde_json::to_vec_pretty(result).map_err(|e| LabError::Request(e.to_string()))?;
     let mut files = vec![("bench.json".to_string(), json), ("bench.csv".to_string(), csv(result)?.into_bytes())];

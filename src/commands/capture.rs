@@ -4,7 +4,7 @@ use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs, parse_resource};
 use crate::capture::{Resource, What, free_name, sweep_partials, take};
 use crate::experiment::checked_name;
-use crate::lab::{Home, Lab, LabError};
+use crate::lab::{Lab, LabError, Workspace};
 use clap::Args;
 use std::sync::Arc;
 
@@ -38,7 +38,7 @@ pub fn run(args: &CaptureArgs) -> Result<(), LabError> {
         Ok(Resource { name, mip, layer })
     });
     let what = What { resources: resources.collect::<Result<_, LabError>>()?, frames: args.frames, step: args.step };
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let folder = home.root.join("captures");
     let name = match &args.name {
         Some(name) => checked_name(name)?,

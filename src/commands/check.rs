@@ -4,7 +4,7 @@ use crate::bench::check_record;
 use crate::experiment::Experiment;
 use crate::graph::file::GraphFile;
 use crate::graph::source::{Severity, Sources};
-use crate::lab::{Home, LabError, params_of};
+use crate::lab::{LabError, Workspace, params_of};
 use crate::scene::SceneError;
 use clap::Args;
 use std::ops::ControlFlow;
@@ -72,7 +72,7 @@ fn files_of(folder: &Path, ending: &str) -> Vec<PathBuf> {
 }
 
 /// The program's own files. What graphs include is checked there, where it has no picture of its own.
-fn own_files(home: &Home) -> Vec<PathBuf> {
+fn own_files(home: &Workspace) -> Vec<PathBuf> {
     let graphs = files_of(&home.root.join("passes"), "ron");
     let (mut included, mut whole): (Vec<PathBuf>, Vec<PathBuf>) = (Vec::new(), Vec::new());
     for path in &graphs {
@@ -95,7 +95,7 @@ fn own_files(home: &Home) -> Vec<PathBuf> {
 
 /// Checks files; every finding is printed.
 pub fn run(args: &CheckArgs) -> Result<(), LabError> {
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let mut files = args.files.clone();
     let all = files.is_empty();
     if all {
@@ -144,7 +144,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
     if wrong > 0 { Err(LabError::Request(format!("{wrong} errors"))) } else { Ok(()) }
 }
 
-fn check_experiment(home: &Home, file: &Path) -> Vec<crate::graph::source::Diagnostic> {
+fn check_experiment(home: &Workspace, file: &Path) -> Vec<crate::graph::source::Diagnostic> {
     let experiment = match Experiment::read(file) {
         Ok(e) => e,
         Err(errors) => return errors,

@@ -4,7 +4,7 @@ use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use crate::experiment::Experiment;
 use crate::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
-use crate::lab::{Home, Lab, LabError, params_of};
+use crate::lab::{Lab, LabError, Workspace, params_of};
 use crate::measure::Frames;
 use crate::reference;
 use clap::Args;
@@ -101,7 +101,7 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     if !(goal.bound() > 0.0 && goal.bound().is_finite()) || args.evaluations == 0 {
         return Err(LabError::Request("the bound and --evaluations must be above 0".into()));
     }
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let output = match &args.output {
         Some(path) if path.extension().is_some_and(|e| e == "ron") => path.clone(),
         Some(path) => return Err(LabError::Request(format!("'{}': give it a name that ends in .ron", path.display()))),

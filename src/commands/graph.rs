@@ -5,7 +5,7 @@ use crate::graph::plan::{PlanInput, plan};
 use crate::graph::report;
 use crate::graph::source::nearest;
 use crate::graph::value::fill;
-use crate::lab::{Home, LabError, any_device, environment, params_of};
+use crate::lab::{LabError, Workspace, any_device, environment, params_of};
 use clap::Args;
 
 /// Arguments of `graph`.
@@ -35,7 +35,7 @@ pub struct GraphArgs {
 
 /// Prints a graph's plan.
 pub fn run(args: &GraphArgs) -> Result<(), LabError> {
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let experiment = match crate::commands::check::kind(&args.file) {
         crate::commands::check::FileKind::Experiment => {
             Some(Experiment::read(args.file.as_ref()).map_err(LabError::Input)?)

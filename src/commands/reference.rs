@@ -2,7 +2,7 @@
 
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
-use crate::lab::{Home, Lab, LabError};
+use crate::lab::{Lab, LabError, Workspace};
 use crate::reference::{Gathered, Goal, Reference, gather};
 use clap::Args;
 use std::ops::ControlFlow;
@@ -47,7 +47,7 @@ pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
         (Some(_), _) => return Err(LabError::Request("--spp must be 1 to 16777216".into())),
         (None, None) => Goal::Samples(DEFAULT_SAMPLES),
     };
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let scene = Arc::new(adapt::open_scene(&experiment)?);
     let lab = Lab::open(home, args.device.options())?;
     let reference = with_bar(&lab, &experiment, &scene, args.bounces, goal)?;

@@ -5,7 +5,7 @@ use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
 use crate::graph::load::Graph;
 use crate::graph::run::FrameTimes;
-use crate::lab::{Home, Lab, LabError, Session};
+use crate::lab::{Lab, LabError, Session, Workspace};
 use crate::{picture, stats};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -62,7 +62,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         without_frames(folder)?;
     }
     let path = args.path.as_deref().map(CameraPath::read).transpose().map_err(LabError::Input)?;
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let mut scene = adapt::open_scene(&experiment)?;
     if let Some(seed) = args.shuffle {
         scene = scene.shuffled(seed);

@@ -2,7 +2,7 @@
 
 use super::DeviceArgs;
 use crate::capture::{Manifest, changes, replay};
-use crate::lab::{Home, Lab, LabError};
+use crate::lab::{Lab, LabError, Workspace};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
         say!("{change}");
     }
     // Graph and shaders are the capture's own; the project has only the caches.
-    let home = Home { root: args.capture.clone(), cache: Home::cache() };
+    let home = Workspace { root: args.capture.clone(), cache: Workspace::cache() };
     let lab = Lab::open(home, args.device.options())?;
     let result = replay(&lab, &args.capture, &manifest, super::open_scene, args.output.as_deref())?;
     for change in &result.changes {

@@ -3,7 +3,7 @@
 use super::adapt::ExperimentArgs;
 use crate::experiment::{checked_name, write};
 use crate::graph::load::load;
-use crate::lab::{Home, LabError};
+use crate::lab::{LabError, Workspace};
 use clap::Args;
 
 /// Arguments of `save`.
@@ -23,7 +23,7 @@ pub struct SaveArgs {
 pub fn run(args: &SaveArgs) -> Result<(), LabError> {
     let name = checked_name(&args.name)?;
     let experiment = args.experiment.read()?;
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let graph = load(&home.graph_path(&experiment.graph), &home.folders()).map_err(LabError::Input)?;
     let path = home.root.join("configs").join(format!("{name}.ron"));
     write(&experiment, &graph.params, &path, args.overwrite)?;

@@ -2,7 +2,7 @@
 
 use super::DeviceArgs;
 use super::adapt::parse_size;
-use crate::lab::{Home, LabError};
+use crate::lab::{LabError, Workspace};
 use crate::screenshot::{Edit, Script, take};
 use crate::workbench::Options;
 use clap::Args;
@@ -60,7 +60,7 @@ pub struct ScreenshotArgs {
 
 /// Takes the picture.
 pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let format = image::ImageFormat::from_path(&args.output)
         .ok()
         .filter(|f| matches!(f, image::ImageFormat::Png | image::ImageFormat::Jpeg))

@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use super::adapt::parse_size;
 use crate::files::write_whole;
-use crate::lab::{Home, Lab, LabError};
+use crate::lab::{Lab, LabError, Workspace};
 use crate::stability::{Options, Outcome, Progress, Suite, failure_table, failures, run as run_suite, sheet};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -61,7 +61,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     if let Some(sheet) = &args.sheet {
         super::writable(sheet, &["jpg", "jpeg"])?;
     }
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/stability").join(&suite.name));
     let options = Options {
         folder,

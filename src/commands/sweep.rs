@@ -1,7 +1,7 @@
 //! `conelab sweep`.
 
 use super::DeviceArgs;
-use crate::lab::{Home, Lab, LabError};
+use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::Frames;
 use crate::sweep::{Counts, Options, Outcome, Progress, Shard, Sweep, run as run_sweep};
 use clap::Args;
@@ -43,7 +43,7 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
     let frames =
         Frames { warmup: args.warmup.unwrap_or(sweep.frames.warmup), count: args.frames.unwrap_or(sweep.frames.count) };
     super::adapt::check_frames(frames.count, frames.warmup, 0.0)?;
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/sweeps").join(&sweep.name));
     let options = Options { folder, shard, frames, again: args.again, samples: args.reference };
     let bar = ProgressBar::new(0).with_style(

@@ -1,7 +1,7 @@
 //! `conelab view`.
 
 use super::DeviceArgs;
-use crate::lab::{Home, LabError};
+use crate::lab::{LabError, Workspace};
 use crate::vulkan::GpuOptions;
 use crate::window::{self, WindowOptions};
 use crate::workbench::Options;
@@ -34,7 +34,7 @@ pub struct ViewArgs {
 
 /// Opens the window.
 pub fn run(args: &ViewArgs) -> Result<(), LabError> {
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let size = args.size.as_deref().map(super::adapt::parse_size).transpose()?;
     let gpu = args.device.options();
     let window = WindowOptions {

@@ -3,7 +3,7 @@
 use super::adapt::{self, ExperimentArgs};
 use super::{DeviceArgs, writable};
 use crate::experiment::{CameraChoice, Experiment};
-use crate::lab::{Home, Lab, LabError, Loaded, camera_of};
+use crate::lab::{Lab, LabError, Loaded, Workspace, camera_of};
 use crate::oracle::{self, Cell, Comparison, Grid, Score, Surfaces, Triangle};
 use crate::picture;
 use crate::scene::Scene;
@@ -73,7 +73,7 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
     if let Some(json) = &args.json {
         writable(json, &["json"])?;
     }
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
     let wanted = oracle::wanted(&loaded.graph)?;
     let scene = Arc::new(adapt::open_scene(&experiment)?);

@@ -55,7 +55,8 @@ pub struct GraphFile {
     /// Parameters that cost time and quality, and the values worth trying.
     pub fit: Entries<Items<RawText>>,
     /// Settings from the ideal to the method: what each step costs is the method's error, split.
-    pub ladder: Items<ViewDecl>,
+    #[serde(alias = "ladder")]
+    pub ablation: Items<ViewDecl>,
     /// The voxels that the graph makes.
     pub voxels: Option<Loc<VoxelsDecl>>,
 }

@@ -68,7 +68,7 @@ pub struct Graph {
     /// Parameters that trade time for quality, and the values worth trying, neighbours alike.
     pub fit: Vec<(String, Vec<String>)>,
     /// Settings from the ideal to the method as it is set: what each step adds is a part of its error.
-    pub ladder: Vec<Loc<ViewDecl>>,
+    pub ablation: Vec<Loc<ViewDecl>>,
     /// The voxels that it makes.
     pub voxels: Option<Loc<VoxelsDecl>>,
     /// The files it came from.
@@ -123,7 +123,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         tables: Vec::new(),
         compare: Vec::new(),
         views: Vec::new(),
-        ladder: Vec::new(),
+        ablation: Vec::new(),
         voxels: None,
         fit: Vec::new(),
         sources,
@@ -164,7 +164,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         checks.extend(file.checks.0);
         graph.compare.extend(file.compare.0);
         graph.views.extend(file.views.0);
-        graph.ladder.extend(file.ladder.0);
+        graph.ablation.extend(file.ablation.0);
         graph.voxels = file.voxels.or(graph.voxels);
         for (name, values) in file.fit.0 {
             let texts = values.value.0.iter().map(|v| v.value.0.clone()).collect();
@@ -206,7 +206,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         check.values(compare.value.a.0.iter().chain(&compare.value.b.0));
     }
     check.values(fit.iter());
-    for view in graph.views.iter().chain(&graph.ladder) {
+    for view in graph.views.iter().chain(&graph.ablation) {
         check.values(view.value.set.0.iter());
     }
     if let Some(voxels) = &graph.voxels {

@@ -2,12 +2,12 @@
 
 use super::externals::EXTERNALS;
 use super::file::Which;
+use super::hot_reload::{Change, Parts};
 use super::link::{Linked, Target, bound_shape};
 use super::load::Graph;
 use super::param::{Params, Value};
 use super::pipelines::{Pipelines, clear_value, descriptor_pool, descriptor_type, make_pipelines, sampler_desc};
 use super::plan::{Plan, Step, Work};
-use super::successor::{Change, Parts};
 use super::usage::{Barrier, Layouts, Res, Schedule, schedule};
 use crate::shader::{Resource, Shape};
 use crate::vulkan::{
@@ -108,7 +108,7 @@ const FRAMES_IN_FLIGHT: usize = 3;
 
 impl Program {
     /// Makes everything that the plan needs, except what can be taken from the parts of a running program; see
-    /// [`Program::succeed`].
+    /// [`Program::swap_in`].
     ///
     /// # Errors
     /// Out of device memory, and what the driver refuses.

@@ -1,21 +1,22 @@
 //! The lab: a device and what is loaded on it; turns an experiment into frames.
 
 mod bvh;
-mod home;
 mod materials;
 mod parts;
 mod scene;
 mod variables;
 mod view;
+mod workspace;
 
-pub use home::{Home, Loaded};
 pub use parts::parts_of;
 pub use scene::SceneGpu;
 pub use variables::{environment, values_of};
 pub use view::Viewpoint;
+pub use workspace::{Loaded, Workspace};
 
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
+use crate::graph::hot_reload::Parts;
 use crate::graph::layouts::Layouts;
 use crate::graph::link::{Linked, Target};
 use crate::graph::load::Graph;
@@ -24,7 +25,6 @@ use crate::graph::plan::{Plan, PlanInput, plan};
 use crate::graph::run::{FrameTimes, Program};
 use crate::graph::runs::runs;
 use crate::graph::source::{Diagnostic, nearest};
-use crate::graph::successor::Parts;
 use crate::graph::table::Table;
 use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
@@ -56,7 +56,7 @@ pub enum LabError {
 #[derive(Clone)]
 pub struct Lab {
     /// The program's folders.
-    pub home: Home,
+    pub home: Workspace,
     /// The device.
     pub gpu: Arc<Gpu>,
 }
@@ -111,7 +111,7 @@ impl Lab {
     ///
     /// # Errors
     /// No device, no folders.
-    pub fn open(home: Home, options: GpuOptions) -> Result<Lab, LabError> {
+    pub fn open(home: Workspace, options: GpuOptions) -> Result<Lab, LabError> {
         let options = GpuOptions { cache: home.cache.clone(), ..options };
         Ok(Lab { gpu: Gpu::open(&options)?, home })
     }
@@ -280,7 +280,7 @@ impl Session {
     /// # Errors
     /// The device was lost.
     pub fn swap_in(&mut self, old: &mut Session) -> Result<(), LabError> {
-        self.program.succeed(&mut old.program)?;
+        self.program.swap_in(&mut old.program)?;
         self.viewpoint = old.viewpoint.clone();
         self.time = old.time;
         self.frame = old.frame;

@@ -62,7 +62,7 @@ impl Warm {
     ///
     /// # Errors
     /// All mistakes of graph and shaders.
-    pub fn graph(&mut self, home: &crate::lab::Home, name: &str) -> Result<&Loaded, LabError> {
+    pub fn graph(&mut self, home: &crate::lab::Workspace, name: &str) -> Result<&Loaded, LabError> {
         if !self.loaded.contains_key(name) {
             let loaded = home.load(name).map_err(LabError::Input)?;
             self.loaded.insert(name.to_string(), loaded);

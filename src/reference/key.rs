@@ -3,7 +3,7 @@
 use crate::capture::{hex, scene_hash};
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
-use crate::lab::{Home, LabError, Loaded, camera_of, params_of};
+use crate::lab::{LabError, Loaded, Workspace, camera_of, params_of};
 use crate::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ const DISPLAY: &str = "Display";
 ///
 /// # Errors
 /// The graph of references, or that of the experiment, cannot be read; a value that it does not take.
-pub fn experiment_for(home: &Home, experiment: &Experiment, bounces: u32) -> Result<Experiment, LabError> {
+pub fn experiment_for(home: &Workspace, experiment: &Experiment, bounces: u32) -> Result<Experiment, LabError> {
     traced_by(&home.load(GRAPH).map_err(LabError::Input)?, experiment, bounces)
 }
 

@@ -9,7 +9,7 @@ pub use gather::{Gathered, Goal, Tracer, gather};
 pub use key::{GRAPH, experiment_for};
 
 use crate::experiment::Experiment;
-use crate::lab::{Home, LabError};
+use crate::lab::{LabError, Workspace};
 use crate::metrics::Linear;
 use crate::scene::Scene;
 use std::collections::BTreeMap;
@@ -43,7 +43,7 @@ pub struct ReferencePart {
 ///
 /// # Errors
 /// A graph of references that cannot be read.
-pub fn shaders(home: &Home) -> Result<String, LabError> {
+pub fn shaders(home: &Workspace) -> Result<String, LabError> {
     let loaded = home.load(GRAPH).map_err(LabError::Input)?;
     Ok(key::shaders(&loaded))
 }
@@ -53,7 +53,7 @@ pub fn shaders(home: &Home) -> Result<String, LabError> {
 /// # Errors
 /// A camera or a graph that cannot be read; a file that cannot be.
 pub fn find(
-    home: &Home,
+    home: &Workspace,
     experiment: &Experiment,
     scene: &Arc<Scene>,
     bounces: u32,

@@ -7,7 +7,7 @@ use crate::experiment::Experiment;
 use crate::graph::file::RawText;
 use crate::graph::param::Params;
 use crate::graph::source::{Diagnostic, Entries, Loc, Severity, Sources};
-use crate::lab::Home;
+use crate::lab::Workspace;
 use crate::sweep::Setting;
 use serde::Deserialize;
 use std::collections::HashMap;
@@ -309,7 +309,7 @@ fn method((name, set): &(Loc<String>, Loc<Entries<RawText>>)) -> Method {
 ///
 /// # Errors
 /// All mistakes, each once.
-pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
+pub fn check(home: &Workspace, path: &Path) -> Result<(), Vec<Diagnostic>> {
     let suite = Suite::read(path)?;
     let mut graphs: HashMap<String, Result<Params, Vec<Diagnostic>>> = HashMap::new();
     let mut errors: Vec<Diagnostic> = Vec::new();

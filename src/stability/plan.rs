@@ -7,7 +7,7 @@ use super::param_track::ParamTrack;
 use crate::capture::{hex, scene_hash};
 use crate::experiment::{Experiment, check_size};
 use crate::graph::source::{At, Diagnostic, Loc};
-use crate::lab::{Home, LabError, camera_of, parts_of};
+use crate::lab::{LabError, Workspace, camera_of, parts_of};
 use crate::measure::{Frames, Warm};
 use crate::reference;
 use crate::scene::Scene;
@@ -74,7 +74,7 @@ pub struct Job {
 /// # Errors
 /// All that is wrong with its settings, scenes and motions: nothing is measured then.
 pub fn plan(
-    home: &Home,
+    home: &Workspace,
     device: &DeviceInfo,
     builder: &mut PointBuilder,
     warm: &mut Warm,
@@ -110,7 +110,7 @@ pub fn plan(
 }
 
 fn job(
-    home: &Home,
+    home: &Workspace,
     device: &DeviceInfo,
     builder: &mut PointBuilder,
     warm: &mut Warm,

@@ -5,7 +5,7 @@ use super::record::Subject;
 use crate::capture::scene_hash;
 use crate::experiment::{Experiment, placed_text};
 use crate::graph::source::Diagnostic;
-use crate::lab::{Home, LabError, Loaded, camera_of};
+use crate::lab::{LabError, Loaded, Workspace, camera_of};
 use crate::measure::{Frames, Warm};
 use crate::scene::Scene;
 use sha2::{Digest, Sha256};
@@ -31,7 +31,7 @@ pub struct SweepPoint {
 
 /// Makes points; scenes and graphs are opened and hashed once for all of them.
 pub struct PointBuilder<'a> {
-    home: &'a Home,
+    home: &'a Workspace,
     open: &'a dyn Fn(&str) -> Result<Scene, LabError>,
     scenes: HashMap<String, Arc<Scene>>,
     /// Scenes under changed light, by scene and light.
@@ -41,7 +41,7 @@ pub struct PointBuilder<'a> {
 
 impl<'a> PointBuilder<'a> {
     /// `open` opens a scene by name or path.
-    pub fn new(home: &'a Home, open: &'a dyn Fn(&str) -> Result<Scene, LabError>) -> PointBuilder<'a> {
+    pub fn new(home: &'a Workspace, open: &'a dyn Fn(&str) -> Result<Scene, LabError>) -> PointBuilder<'a> {
         PointBuilder { home, open, scenes: HashMap::new(), lit: HashMap::new(), graphs: HashMap::new() }
     }
 
@@ -145,7 +145,7 @@ pub fn list(
 ///
 /// # Errors
 /// All mistakes, each once.
-pub fn check(home: &Home, path: &Path) -> Result<(), Vec<Diagnostic>> {
+pub fn check(home: &Workspace, path: &Path) -> Result<(), Vec<Diagnostic>> {
     let sweep = Sweep::read(path)?;
     let mut warm = Warm::default();
     let mut errors: Vec<Diagnostic> = Vec::new();

@@ -34,7 +34,7 @@ mod watch;
 
 use crate::experiment::Experiment;
 use crate::graph::source::Diagnostic;
-use crate::lab::{Home, LabError};
+use crate::lab::{LabError, Workspace};
 use crate::scene::Scene;
 use crate::vulkan::GpuOptions;
 use compare::{Map, Mode};
@@ -91,7 +91,7 @@ enum Tab {
 /// How to open the workbench.
 pub struct Options {
     /// The program's folders.
-    pub home: Home,
+    pub home: Workspace,
     /// The device that renders.
     pub gpu: GpuOptions,
     /// The experiment to open.
@@ -151,7 +151,7 @@ pub struct Workbench {
     shown_revision: u64,
     wake: Arc<dyn Fn() + Send + Sync>,
     root: PathBuf,
-    home: Home,
+    home: Workspace,
     gpu: GpuOptions,
 }
 

