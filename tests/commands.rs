@@ -278,7 +278,17 @@ fn a_failure_keeps_the_old_picture() {
 #[test]
 fn graph_explains_itself() {
     let graph = |args: &[&str]| succeeds(conelab(root()).arg("graph").args(args));
-    let text = graph(&["passes/vct.ron", "--size", "64x48"]);
+    // What runs fits on a screen or two; all of it, with barriers, does not.
+    for (name, stages) in [("vct", 11), ("thesis", 7), ("warps", 11), ("temporal", 11)] {
+        let text = graph(&[&format!("passes/{name}.ron")]);
+        assert!(text.starts_with(&format!("graph {name}: ")) && text.lines().count() < 90, "{text}");
+        assert!(text.lines().filter(|l| !l.is_empty() && !l.starts_with(' ')).count() >= stages, "{text}");
+        assert!(!text.contains("COMPUTE_SHADER"), "{text}");
+    }
+    let layers = graph(&["passes/vct.ron", "--set", "mips=isotropic"]);
+    assert!(!layers.contains("voxelRadianceAniso"), "{layers}");
+
+    let text = graph(&["passes/vct.ron", "--size", "64x48", "--barriers"]);
     assert!(text.starts_with("graph vct: "), "{text}");
     for part in ["\norder\n", "  shading\n", "reads voxelRadiance", "\nresources ", "voxelColor", "\nleft out\n"] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");

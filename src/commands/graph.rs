@@ -28,6 +28,9 @@ pub struct GraphArgs {
     /// Print the parameters with their ranges and help, and the named values as set.
     #[arg(long)]
     params: bool,
+    /// Print every step with its barriers, and sizes, formats and lifetimes of resources.
+    #[arg(long)]
+    barriers: bool,
     /// Print a Graphviz picture.
     #[arg(long)]
     dot: bool,
@@ -43,7 +46,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         _ => None,
     };
     let name = experiment.as_ref().map_or(args.file.as_str(), |e| e.graph.as_str());
-    let (graph, linked, warnings) = home.graph(name).map_err(LabError::Input)?;
+    let (graph, _, warnings) = home.graph(name).map_err(LabError::Input)?;
     for warning in warnings {
         eprintln!("{warning}");
     }
@@ -82,9 +85,17 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         return Err(LabError::Request(format!("no resource '{name}'{hint}")));
     }
     wanted.extend(graph.checks.iter().map(|c| c.buffer().to_string()));
+    let linked = home.linked(&graph, &params).map_err(LabError::Input)?;
     let device = any_device();
     let input = PlanInput { params: &params, env, wanted, device: &device };
     let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
-    say_part!("{}", if args.dot { report::dot(&graph, &linked, &plan) } else { report::text(&graph, &linked, &plan) });
+    say_part!(
+        "{}",
+        match (args.dot, args.barriers) {
+            (true, _) => report::dot(&graph, &linked, &plan),
+            (_, true) => report::text(&graph, &linked, &plan),
+            _ => report::summary(&graph, &plan),
+        }
+    );
     Ok(())
 }

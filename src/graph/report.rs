@@ -21,7 +21,51 @@ fn texture_bytes(plan: &Plan, t: usize) -> u64 {
     mips * u64::from(p.layers) * u64::from(p.format.bytes) * (1 + u64::from(p.history))
 }
 
-/// Order, lifetimes, barriers, memory, what was left out and why.
+/// What runs, stage by stage: work, what it reads and what it writes; memory; what was left out and why.
+pub fn summary(graph: &Graph, plan: &Plan) -> String {
+    let mut out = String::new();
+    let (ran, all, params) = (ran(plan).len(), graph.passes.len(), graph.params.list.len());
+    let _ = writeln!(out, "graph {}: {ran} of {all} passes run, {params} parameters", graph.name);
+    let mut stage = "";
+    for steps in plan.steps.chunk_by(|a, b| a.pass == b.pass) {
+        let Some(first) = steps.first() else { continue };
+        let pass = &graph.passes[first.pass].value;
+        if pass.stage() != stage {
+            stage = pass.stage();
+            let _ = writeln!(out, "\n{stage}");
+        }
+        let times = if steps.len() > 1 { format!(" x{}", steps.len()) } else { String::new() };
+        let named = |written: bool| {
+            let uses = first.uses.iter().filter(|u| if written { u.write } else { u.read && !u.write });
+            let mut names: Vec<String> = uses.map(|u| resource_name(graph, u.res)).collect();
+            names.sort();
+            names.dedup();
+            names.join(" ")
+        };
+        let head = format!("  {}{times}: {}", pass.name.value, work_text(graph, first));
+        let _ = writeln!(out, "{head}\n      {} -> {}", named(false), named(true));
+    }
+    let _ = writeln!(out, "\nmemory, MiB");
+    let textures = plan.textures.iter().enumerate().filter(|(_, p)| !p.usage.is_empty());
+    let textures = textures.map(|(t, _)| (graph.textures[t].0.as_str(), texture_bytes(plan, t)));
+    let buffers = plan.buffers.iter().enumerate().filter(|(_, p)| p.used);
+    let buffers = buffers.map(|(b, p)| (graph.buffers[b].0.as_str(), p.size));
+    let mut memory: Vec<(&str, u64)> = textures.chain(buffers).collect();
+    memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
+    let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+    // What is smaller than a tenth is not worth a word.
+    let (large, small): (Vec<_>, Vec<_>) = memory.iter().partition(|(_, bytes)| mib(*bytes) >= 0.1);
+    let items: Vec<String> = large.iter().map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes))).collect();
+    let total = mib(memory.iter().map(|(_, bytes)| bytes).sum());
+    let _ = writeln!(out, "  {}, {} smaller ones; {total:.1} in all", items.join(", "), small.len());
+    let _ = writeln!(out, "\nleft out");
+    for (pass, why) in &plan.dropped {
+        let _ = writeln!(out, "  {}: {why}", graph.passes[*pass].value.name.value);
+    }
+    out
+}
+
+/// Every step in order with its barriers; sizes, formats and lifetimes of resources; what was left out and why.
 pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "graph {}: {} of {} passes run\n", graph.name, ran(plan).len(), graph.passes.len());

@@ -4,7 +4,7 @@ use super::{LabError, environment, params_of};
 use crate::experiment::Experiment;
 use crate::graph::link::{Linked, link};
 use crate::graph::load::{Folders, Graph, load};
-use crate::graph::param::{Kind, Value};
+use crate::graph::param::{Kind, Params, Value};
 use crate::graph::runs::{Runs, runs};
 use crate::graph::source::{Diagnostic, Place};
 use crate::scene::Scene;
@@ -118,6 +118,14 @@ impl Workspace {
             }
         }
         findings
+    }
+
+    /// All shaders of a graph, of the files that these parameters choose.
+    ///
+    /// # Errors
+    /// All mistakes in them.
+    pub fn linked(&self, graph: &Graph, params: &Params) -> Result<Vec<Linked>, Vec<Diagnostic>> {
+        Ok(self.link(graph, &Runs::all(graph, params))?.0)
     }
 
     /// [`Workspace::graph`], to be shared.
