@@ -1,5 +1,7 @@
 //! The pass graph: parameters, textures, buffers and passes, read from RON. It knows no voxels.
 mod alias;
+mod check;
+mod check_pass;
 mod choices;
 pub mod expr;
 pub mod externals;
