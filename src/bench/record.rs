@@ -154,38 +154,12 @@ impl Record {
             .try_for_each(|(i, c)| c.check().map_err(|why| format!("configuration {}: {why}", i + 1)))
     }
 
-    /// The file's text: JSON with one line for each list, so that people can read it and see what changed.
+    /// The file's text: JSON.
     ///
     /// # Errors
     /// Writing to memory gives none, whatever the record.
     pub fn text(&self) -> Result<String, LabError> {
-        self.lines().map_err(|e| LabError::Request(e.to_string()))
-    }
-
-    fn lines(&self) -> Result<String, serde_json::Error> {
-        let mut lines = Lines { text: "{\n".into(), indent: 2 };
-        lines.add("schema", &self.schema, ",")?;
-        lines.add("version", &self.version, ",")?;
-        lines.add("device", &self.device, ",")?;
-        lines.add("rounds", &self.rounds, ",")?;
-        lines.add("frames", &self.frames, ",")?;
-        lines.text += "  \"configurations\": [\n";
-        for (i, c) in self.configurations.iter().enumerate() {
-            lines.text += "    {\n";
-            lines.indent = 6;
-            lines.add("experiment", &c.experiment, ",")?;
-            lines.add("settings", &c.settings, ",")?;
-            lines.add("scene_sha256", &c.scene_sha256, ",")?;
-            lines.add("params", &c.params, ",")?;
-            lines.add("total", &c.total, ",")?;
-            lines.text += "      \"stages\": {\n";
-            lines.indent = 8;
-            for (j, (stage, rounds)) in c.stages.iter().enumerate() {
-                lines.add(stage, rounds, if j + 1 < c.stages.len() { "," } else { "" })?;
-            }
-            lines.text += if i + 1 < self.configurations.len() { "      }\n    },\n" } else { "      }\n    }\n" };
-        }
-        Ok(lines.text + "  ]\n}\n")
+        serde_json::to_string_pretty(self).map(|text| text + "\n").map_err(|e| LabError::Request(e.to_string()))
     }
 
     /// Whether its times can be compared with those of a device.
@@ -201,19 +175,6 @@ impl Record {
              device with --device, or record times of this one with `conelab bench EXPERIMENT... --record FILE`",
             self.device.name, device.name
         )))
-    }
-}
-
-struct Lines {
-    text: String,
-    indent: usize,
-}
-
-impl Lines {
-    fn add(&mut self, name: &str, value: &impl Serialize, end: &str) -> Result<(), serde_json::Error> {
-        let (name, value) = (serde_json::to_string(name)?, serde_json::to_string(value)?);
-        self.text += &format!("{:1$}{name}: {value}{end}\n", "", self.indent);
-        Ok(())
     }
 }
 
