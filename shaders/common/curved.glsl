@@ -2,18 +2,7 @@
 // the curved ones, and curvedHolds.
 const bool WARPED = true, CURVED = true;
 
-// What function warps have, for passes that draw boxes before warping.
-vec3 warp(vec3 x) {
-    return x;
-}
-
-vec3 warpSlope(vec3 x) {
-    return vec3(1.0);
-}
-
-vec3 unwarp(vec3 y) {
-    return y;
-}
+#include "common/unwarped.glsl"
 
 // Outside the volume the result is outside [0,1].
 vec3 worldToVolume(VolumeMap map, vec3 p) {

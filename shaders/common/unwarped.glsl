@@ -1,0 +1,13 @@
+// No function before the volume: what function warps have, for passes that draw boxes before warping.
+
+vec3 warp(vec3 x) {
+    return x;
+}
+
+vec3 warpSlope(vec3 x) {
+    return vec3(1.0);
+}
+
+vec3 unwarp(vec3 y) {
+    return y;
+}
