@@ -70,11 +70,6 @@ impl Program {
         }
     }
 
-    /// The parts that another program may use at the same time.
-    pub fn shared_parts(&self) -> Parts {
-        Parts { pipelines: self.pipelines.clone(), ..Parts::default() }
-    }
-
     /// Takes the place of the program that this one was made from: waits for its frames, goes on with its count of
     /// frames (so that what was last frame's stays last frame's) and brings images into the layouts of its own frames.
     ///

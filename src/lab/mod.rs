@@ -30,6 +30,8 @@ use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
 use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
 use glam::Vec3;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 /// What can go wrong between an experiment and its picture.
@@ -271,7 +273,8 @@ impl Session {
 
     /// Parts for a session that renders at the same time: pipelines, geometry and textures of the scene.
     pub fn share(&self) -> ReusableParts {
-        ReusableParts { parts: self.program.shared_parts(), shared: true, ..self.reusable_parts() }
+        let all = self.reusable_parts();
+        ReusableParts { parts: all.parts.pipelines_only(), shared: true, ..all }
     }
 
     /// Takes the place of the session that this one was made from, at a frame's border: textures keep their content,
@@ -382,12 +385,18 @@ impl Session {
     /// # Errors
     /// The device was lost.
     pub fn failed_checks(&mut self) -> Result<Vec<String>, LabError> {
+        let layouts = Layouts::new(&self.graph, &self.linked);
         let mut failed = Vec::new();
+        // Checks of one buffer share one reading of it: each waits for the device.
+        let mut read = BTreeMap::new();
         for check in &self.graph.checks {
             let Some(buffer) = self.graph.buffers.iter().position(|b| b.0 == check.buffer()) else { continue };
             // Mistakes were told with the shaders; what none of them declares none of them writes.
-            let Ok(Some(word)) = Layouts::new(&self.graph, &self.linked).check(check) else { continue };
-            let bytes = self.program.read_buffer(buffer)?;
+            let Ok(Some(word)) = layouts.check(check) else { continue };
+            let bytes = match read.entry(buffer) {
+                Entry::Occupied(entry) => entry.into_mut(),
+                Entry::Vacant(entry) => entry.insert(self.program.read_buffer(buffer)?),
+            };
             let start = word as usize * 4;
             let value = bytes.get(start..start + 4).map_or(0, |b| u32::from_ne_bytes([b[0], b[1], b[2], b[3]]));
             if value != 0 {
