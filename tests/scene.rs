@@ -449,6 +449,97 @@ fn built_in_scenes_are_sound() {
     }
 }
 
+/// Where a ray meets a triangle, from its origin in units of its direction (Moeller and Trumbore).
+fn meets(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let p = direction.cross(ac);
+    let determinant = ab.dot(p);
+    let (t, q) = (origin - a, (origin - a).cross(ab));
+    let (u, v) = (t.dot(p) / determinant, direction.dot(q) / determinant);
+    let distance = ac.dot(q) / determinant;
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
+}
+
+/// All triangles in the world, with f64 so that neither 4 mm nor 200 km lose what matters.
+fn world(scene: &Scene) -> Vec<[DVec3; 3]> {
+    let mut list = Vec::new();
+    for (i, instance) in scene.instances.iter().enumerate() {
+        let place = scene.instance_transform(i, 0.0).as_dmat4();
+        let mesh = &scene.meshes[instance.mesh as usize];
+        let corner = |i: &u32| place.transform_point3(Vec3::from(mesh.vertices[*i as usize].position).as_dvec3());
+        list.extend(mesh.indices.as_chunks::<3>().0.iter().map(|t| t.each_ref().map(corner)));
+    }
+    list
+}
+
+#[test]
+fn built_in_scenes_are_seen_and_lit() {
+    for (name, _) in builtin::list() {
+        let scene = open(name).unwrap();
+        let triangles = world(&scene);
+        for [a, b, c] in &triangles {
+            assert!(a.is_finite() && b.is_finite() && c.is_finite(), "{name}");
+            let longest = a.distance_squared(*b).max(b.distance_squared(*c)).max(c.distance_squared(*a));
+            assert!((b - a).cross(c - a).length() > 1e-9 * longest, "{name}: a triangle without area");
+        }
+        for (camera, c) in &scene.cameras {
+            assert!(c.eye.is_finite() && c.target.is_finite() && c.eye != c.target, "{name} {camera}");
+            assert!(0.0 < c.near && c.near < c.far && (5.0..150.0).contains(&c.fov_y), "{name} {camera}");
+            let (eye, ahead) = (c.eye.as_dvec3(), (c.target - c.eye).as_dvec3().normalize());
+            let right = ahead.cross(c.up.as_dvec3()).normalize() * f64::from(0.5 * c.fov_y.to_radians()).tan();
+            let seen = f64::from(c.near)..f64::from(c.far);
+            // Straight ahead, half way to the picture's left and right edge, and to its lower one.
+            let below = right.cross(ahead) * -0.5;
+            let rays = [ahead, ahead - 0.5 * right, ahead + 0.5 * right, ahead + below];
+            let nearest =
+                |ray: DVec3| triangles.iter().filter_map(|t| meets(eye, ray, *t)).fold(f64::INFINITY, f64::min);
+            assert!(rays.iter().any(|ray| seen.contains(&nearest(*ray))), "{name} {camera} sees nothing in {seen:?}");
+        }
+        for m in &scene.materials {
+            let color = m.base_color.truncate();
+            assert!(color.min_element() >= 0.0 && color.max_element() <= 1.0, "{name} {}", m.name);
+            assert!(m.emission.is_finite() && m.emission.min_element() >= 0.0, "{name} {}", m.name);
+            assert!((0.0..=1.0).contains(&m.roughness) && (0.0..=1.0).contains(&m.metallic), "{name} {}", m.name);
+        }
+        for light in &scene.lights {
+            assert!((light.direction.length() - 1.0).abs() < 1e-3 && light.color.min_element() > 0.0, "{name}");
+        }
+        let glows = scene.materials.iter().any(|m| m.emission != Vec3::ZERO);
+        assert!(glows || scene.sky != Vec3::ZERO || !scene.lights.is_empty(), "{name} is dark");
+    }
+}
+
+/// The mesh of walls is closed: each edge is walked as often in one direction as in the other. So no ray leaves a
+/// room but by an opening.
+#[test]
+fn walls_of_built_in_rooms_have_no_cracks() {
+    for (name, walls) in [
+        ("small-quad", "room"),
+        ("emitters", "room"),
+        ("huge-ground", "shell"),
+        ("far-away", "shell"),
+        ("pocket", "room"),
+        ("blinds", "room"),
+        ("door-ajar", "rooms"),
+        ("corridor", "corridor"),
+        ("street", "house 1"),
+        ("gloss", "room"),
+    ] {
+        let scene = open(name).unwrap();
+        let mesh = scene.meshes.iter().find(|m| m.name == walls).unwrap();
+        let mut edges: HashMap<[[u32; 3]; 2], i32> = HashMap::new();
+        let corner = |i: u32| (Vec3::from(mesh.vertices[i as usize].position) + 0.0).to_array().map(f32::to_bits);
+        // A balcony's plates are bodies of their own: closed as well.
+        for t in mesh.indices.as_chunks::<3>().0 {
+            for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])].map(|(a, b)| (corner(a), corner(b))) {
+                *edges.entry([a.min(b), a.max(b)]).or_default() += if a < b { 1 } else { -1 };
+            }
+        }
+        let open = edges.values().filter(|n| **n != 0).count();
+        assert_eq!(open, 0, "{name}: open edges among {}", edges.len());
+    }
+}
+
 #[test]
 fn rooms_look_inward_and_solids_outward() {
     for (name, inward) in [("furnace", true), ("white-sky", false)] {

@@ -1,12 +1,20 @@
 //! Scenes that need no file: built by code, the same every time.
 
 mod atrium;
+mod classroom;
 mod cornell;
+mod foliage;
 mod furnace;
+mod gloss;
+mod lamps;
 mod moving;
 mod noise;
+mod openings;
 mod patterns;
+mod scales;
 mod shapes;
+mod solid;
+mod street;
 mod thin_walls;
 mod triangles;
 mod white_sky;
@@ -15,7 +23,7 @@ use glam::{Mat4, Vec3};
 
 use super::mesh::{RawMesh, prepare_all};
 use super::progress::{Progress, Watch};
-use super::{Camera, Instance, Material, Mesh, Scene, defaults};
+use super::{Camera, Instance, Light, LightKind, Material, Mesh, Scene, defaults};
 
 type Build = fn() -> Scene;
 
@@ -28,6 +36,22 @@ const ALL: &[(&str, &str, Build)] = &[
     ("triangles", "needles, obtuse, huge, sub-voxel and diagonal triangles in a 4 m cube", triangles::build),
     ("moving-box", "a thin box that crosses a lit room", moving::thin_box),
     ("blade", "a thin blade that turns before a lit wall", moving::blade),
+    ("small-quad", "a box of 2 m, lit by a quad of 47 x 38 cm close below its ceiling", lamps::small_quad),
+    ("emitters", "a dim room with 108 emitters of 1 to 4 cm", lamps::emitters),
+    (
+        "huge-ground",
+        "a class room of 12 m on a ground of 220 m: the volume's extent is not the room's",
+        classroom::huge_ground,
+    ),
+    ("far-away", "the same class room 100 km from the origin: coordinates in steps of 8 mm", classroom::far_away),
+    ("pocket", "a dollhouse room of 4 mm", scales::pocket),
+    ("plain", "a house of 8 m on a plane of 200 km", scales::plain),
+    ("blinds", "a room lit through slats of 25 mm before its window", openings::blinds),
+    ("door-ajar", "a dark room beside a bright one: light comes through a gap of 25 cm", openings::door_ajar),
+    ("corridor", "a corridor with two bends: light takes many turns from its end to the camera", openings::corridor),
+    ("street", "a street between tall houses with recessed windows and balconies under a grey sky", street::build),
+    ("gloss", "glossy tiles and a mirror in a room with a window", gloss::build),
+    ("foliage", "trees and bushes of small leaves, some cut out by a mask", foliage::build),
 ];
 
 /// Names and one-line descriptions of all built-in scenes.
@@ -76,4 +100,16 @@ fn view(eye: Vec3, target: Vec3, fov_y: f32, diagonal: f32) -> Camera {
 /// A plain dielectric material.
 fn matte(name: &str, color: Vec3) -> Material {
     Material { name: name.into(), base_color: color.extend(1.0), ..Material::default() }
+}
+
+/// A sun that casts shadows; the direction is the way its light travels.
+fn sun(color: Vec3, direction: Vec3) -> Light {
+    Light {
+        name: "sun".into(),
+        kind: LightKind::Directional,
+        color,
+        position: Vec3::ZERO,
+        direction: direction.normalize(),
+        shadow: true,
+    }
 }

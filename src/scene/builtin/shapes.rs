@@ -5,6 +5,9 @@ use indexmap::IndexMap;
 
 use crate::scene::{Mesh, Submesh, Vertex};
 
+/// Faces of a cuboid that stands on something: all but the bottom.
+pub(super) const STANDING: [bool; 6] = [true, true, false, true, true, true];
+
 /// Collects triangles by material; everything is placed by `transform`.
 pub(super) struct MeshBuilder {
     name: String,
