@@ -118,6 +118,25 @@ fn points_that_fail_or_warn_are_recorded_and_the_rest_goes_on() {
 }
 
 #[test]
+fn scenes_that_are_not_on_the_machine_fail_alone() {
+    let home = home();
+    std::fs::write(home.path().join("gone.ron"), "(models: [(file: \"nowhere/gone.obj\")])").unwrap();
+    let file = sweep_file(home.path(), "List(name: \"scene\", values: [\"gone.ron\", \"white-sky\"])");
+    let folder = home.path().join("out");
+    let said = fails(&mut sweep(home.path(), &file, &folder, &["--reference", "32"]));
+    assert!(said.contains("set CONELAB_SCENES") && said.contains("1 points failed"), "{said}");
+    let rows = table(&folder.join("sweep.csv"));
+    assert_eq!(rows.iter().map(|r| r["outcome"].as_str()).collect::<Vec<_>>(), ["failed", "done"]);
+    assert!(rows[0]["error"].contains("model file 'nowhere/gone.obj' is in none of"), "{:?}", rows[0]);
+    // Where the model has come since, the point is another one and is measured.
+    let quad = "v -1 0 -3\nv 1 0 -3\nv 1 1 -3\nv -1 1 -3\nf 1 2 3 4\n";
+    std::fs::create_dir(home.path().join("nowhere")).unwrap();
+    std::fs::write(home.path().join("nowhere/gone.obj"), quad).unwrap();
+    let said = succeeds(&mut sweep(home.path(), &file, &folder, &[]));
+    assert!(said.contains("2 points: 2 done, 0 failed"), "{said}");
+}
+
+#[test]
 fn shards_merge_to_the_whole_in_one_page_without_a_network() {
     let home = home();
     let file = sweep_file(

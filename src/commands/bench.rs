@@ -81,6 +81,9 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     record.as_ref().map(|path| super::writable(path, &["json"])).transpose()?;
     let mut warm = Warm::default();
     let (points, _) = list(&mut PointBuilder::new(&lab.home, &super::open_scene), &mut warm, &sweep, frames)?;
+    if let Some(why) = points.iter().find_map(|p| p.absent.clone()) {
+        return Err(LabError::Request(why));
+    }
     let result = measured(&lab, &mut warm, sweep.names, &points, rounds, frames)?;
     say_part!("{}", text(&result));
     write_files(args, &lab.home, &sweep.name, &result)?;

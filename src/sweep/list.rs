@@ -7,7 +7,7 @@ use crate::experiment::{Experiment, placed_text};
 use crate::graph::source::Diagnostic;
 use crate::lab::{LabError, Loaded, Workspace, camera_of};
 use crate::measure::{Frames, Warm};
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -21,8 +21,10 @@ pub struct SweepPoint {
     pub id: String,
     /// The experiment that is run.
     pub experiment: Experiment,
-    /// The scene, lit as the experiment says.
+    /// The scene, lit as the experiment says; an empty one where it is absent.
     pub scene: Arc<Scene>,
+    /// Why the scene is not on this machine: the point cannot be measured here.
+    pub absent: Option<String>,
     /// Scene, camera, size and time of the picture.
     pub subject: Subject,
     /// Its values, by the names of what is varied.
@@ -61,7 +63,6 @@ impl<'a> PointBuilder<'a> {
         let params = experiment.params_over(&loaded.graph.params)?;
         let (scene, sha256) = self.scene(&experiment)?;
         let camera = camera_of(&experiment, &scene)?;
-        let mut hash = Sha256::new();
         let values = params.list.iter().zip(&params.values).map(|(p, v)| format!("{}={v}", p.name));
         let subject = Subject {
             scene: scene.name.clone(),
@@ -78,13 +79,8 @@ impl<'a> PointBuilder<'a> {
             format!("{}x{} at {} s", subject.size.0, subject.size.1, subject.time),
             format!("{} + {} frames", frames.warmup, frames.count),
         ];
-        for fact in facts.into_iter().chain(values) {
-            hash.update((fact.len() as u64).to_le_bytes());
-            hash.update(fact);
-        }
-        let mut id = crate::capture::hex(&hash.finalize());
-        id.truncate(32);
-        Ok(SweepPoint { id, experiment, scene, subject, labels })
+        let id = id_of(facts.into_iter().chain(values));
+        Ok(SweepPoint { id, experiment, scene, absent: None, subject, labels })
     }
 
     /// The scene under the experiment's light, with its hash.
@@ -109,7 +105,29 @@ impl<'a> PointBuilder<'a> {
     }
 }
 
-/// All points of a sweep in order, without those that another one equals; and how many those are.
+/// A point whose model is not on this machine. Where it is, the point has another number, by the scene's content.
+fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoint {
+    let name = Path::new(&experiment.scene).file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
+    let (size, time) = (experiment.size, format!("{:?}", experiment.time));
+    let subject = Subject { scene: name, sha256: String::new(), camera: String::new(), size, time };
+    let values = labels.iter().map(|(name, value)| format!("{name}={value}"));
+    let id = id_of(["absent".to_string(), format!("{subject:?}")].into_iter().chain(values));
+    SweepPoint { id, experiment, scene: Arc::default(), absent: Some(why.to_string()), subject, labels }
+}
+
+fn id_of(facts: impl Iterator<Item = String>) -> String {
+    let mut hash = Sha256::new();
+    for fact in facts {
+        hash.update((fact.len() as u64).to_le_bytes());
+        hash.update(fact);
+    }
+    let mut id = crate::capture::hex(&hash.finalize());
+    id.truncate(32);
+    id
+}
+
+/// All points of a sweep in order, without those that another one equals; and how many those are. A model that is not
+/// on this machine makes its points absent, and no error: suites name scenes that not everybody has.
 ///
 /// # Errors
 /// Everything that is wrong with the sweep's settings: nothing is measured then.
@@ -123,8 +141,13 @@ pub fn list(
     let mut known = std::collections::HashSet::new();
     let mut errors: Vec<Diagnostic> = Vec::new();
     for index in 0..sweep.len() {
-        let point = sweep.point(index).map_err(LabError::Input);
-        match point.and_then(|(experiment, labels)| builder.point(warm, experiment, labels, frames)) {
+        let point = sweep.point(index).map_err(LabError::Input).and_then(|(experiment, labels)| {
+            match builder.point(warm, experiment.clone(), labels.clone(), frames) {
+                Err(LabError::Scene(why @ SceneError::NoModel { .. })) => Ok(absent(experiment, labels, &why)),
+                other => other,
+            }
+        });
+        match point {
             Ok(point) if known.insert(point.id.clone()) => points.push(point),
             Ok(_) => {}
             Err(LabError::Input(list)) => add_new(&mut errors, list),

@@ -54,7 +54,8 @@ pub struct Record {
     pub schema: String,
     /// Number of the point.
     pub id: String,
-    /// The experiment with nothing left to defaults, as it would stand in a file of the sweep's folder.
+    /// The experiment with nothing left to defaults, as it would stand in a file of the sweep's folder; empty where the
+    /// scene is not on the machine.
     pub experiment: String,
     /// What is looked at: points of one subject can be compared.
     pub subject: Subject,

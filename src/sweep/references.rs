@@ -33,6 +33,9 @@ impl<'s> References<'s> {
         point: &SweepPoint,
         on_progress: &mut dyn FnMut(Progress),
     ) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
+        if point.absent.is_some() {
+            return Ok(Vec::new());
+        }
         let key = key(lab, warm, point)?;
         if let Some(found) = self.found.get(&key) {
             return Ok(found.clone());

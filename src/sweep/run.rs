@@ -97,7 +97,12 @@ pub fn run(
     let mut elsewhere = 0;
     for point in mine {
         let record = folder.read(&point.id);
-        let known = references.get(&lab, &mut warm, point, on_progress)?;
+        let known = match references.get(&lab, &mut warm, point, on_progress) {
+            Ok(known) => known,
+            // A finished point is not given up for it. Others meet it again, and keep it, when their turn comes.
+            Err(error) if matches!(record, Some(Record { outcome: Outcome::Done(_), .. })) => return Err(error),
+            Err(_) => Vec::new(),
+        };
         let samples: BTreeMap<u32, u64> = known.iter().map(|(bounces, r)| (*bounces, r.samples)).collect();
         match record.as_ref().map(|r| (&r.outcome, &r.device)) {
             // A reference that has come or grown since makes other scores.
@@ -116,16 +121,20 @@ pub fn run(
     }
     on_progress(Progress::Begins { todo: todo.len(), before: counts.done + counts.failed });
     for point in todo {
-        let known = references.get(&lab, &mut warm, point, on_progress)?;
-        let attempt =
-            |lab: &Lab, warm: &mut Warm| measure(lab, warm, &point.experiment, &point.scene, options.frames, &known);
-        let mut result = attempt(&lab, &mut warm);
+        let mut attempt = |lab: &Lab, warm: &mut Warm, on_progress: &mut dyn FnMut(Progress)| match &point.absent {
+            Some(why) => Err(LabError::Request(why.clone())),
+            None => {
+                let known = references.get(lab, warm, point, on_progress)?;
+                measure(lab, warm, &point.experiment, &point.scene, options.frames, &known)
+            }
+        };
+        let mut result = attempt(&lab, &mut warm, on_progress);
         if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
             // Often the point before it is to blame; if it is this one, it fails again.
             on_progress(Progress::Note(String::from("the device was lost; it is opened again")));
             warm.leave_device();
             lab = reopen()?;
-            result = attempt(&lab, &mut warm);
+            result = attempt(&lab, &mut warm, on_progress);
         }
         if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
             warm.leave_device();
@@ -155,9 +164,16 @@ fn record_of(
     point: &SweepPoint,
     outcome: Outcome,
 ) -> Result<Record, LabError> {
-    let params = &warm.graph(&lab.home, &point.experiment.graph)?.graph.params;
-    let camera = camera_of(&point.experiment, &point.scene)?;
-    let text = resolved_text(&point.experiment, params, &camera, &point.scene, &options.folder.join("experiment.ron"))?;
+    let text = match &point.absent {
+        // Camera and light are not known.
+        Some(_) => String::new(),
+        None => {
+            let params = &warm.graph(&lab.home, &point.experiment.graph)?.graph.params;
+            let camera = camera_of(&point.experiment, &point.scene)?;
+            let path = options.folder.join("experiment.ron");
+            resolved_text(&point.experiment, params, &camera, &point.scene, &path)?
+        }
+    };
     Ok(Record {
         schema: POINT_SCHEMA.into(),
         id: point.id.clone(),
