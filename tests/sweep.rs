@@ -137,6 +137,47 @@ fn scenes_that_are_not_on_the_machine_fail_alone() {
 }
 
 #[test]
+fn a_report_of_several_scenes_has_them_in_a_table_worst_first() {
+    let home = home();
+    std::fs::write(home.path().join("gone.ron"), "(models: [(file: \"nowhere/gone.obj\")])").unwrap();
+    let path = home.path().join("scenes.ron");
+    let text = "(experiments: [\"configs/default.ron\", \"configs/thesis.ron\"], warmup: 1, frames: 1, bounces: [4, 1],\n\
+                set: { \"size\": (64, 36), \"shadow_dim\": 256, \"voxel_dim\": 16 },\n\
+                axes: [List(name: \"scene\", values: [\"white-sky\", \"gone.ron\", \"cornell\"])])";
+    std::fs::write(&path, text).unwrap();
+    let folder = home.path().join("out");
+    fails(&mut sweep(home.path(), &path, &folder, &["--reference", "64"]));
+    let wrote = succeeds(conelab(home.path()).arg("report").arg(&folder));
+    assert!(wrote.contains("scenes.csv"), "{wrote}");
+    let rows = table(&folder.join("report/scenes.csv"));
+    let told: Vec<[&str; 3]> = rows.iter().map(|r| ["scene", "method", "bounces"].map(|c| r[c].as_str())).collect();
+    let expected = ["cornell", "white-sky"].into_iter().flat_map(|scene| {
+        [("default", "4"), ("default", "1"), ("thesis", "4"), ("thesis", "1")].map(|(method, b)| [scene, method, b])
+    });
+    let gone = [["gone", "default", ""], ["gone", "thesis", ""]];
+    assert_eq!(told, expected.chain(gone).collect::<Vec<_>>());
+    // The scores are those of the sweep's table, each against its own reference.
+    let all = table(&folder.join("sweep.csv"));
+    for row in rows.iter().filter(|r| r["error"].is_empty()) {
+        let point = all.iter().find(|p| p["scene"] == row["scene"] && p["experiment"] == row["method"]).unwrap();
+        let part = if row["bounces"] == "4" { "total" } else { "total, 1 bounces" };
+        for metric in ["energy_ratio", "relmse", "flip"] {
+            assert_eq!(row[metric], point[&format!("{part} {metric}")], "{row:?}");
+        }
+    }
+    let page = std::fs::read_to_string(folder.join("report/index.html")).unwrap();
+    let begin = page.find("<table id=\"scenes\">").unwrap();
+    let shown = &page[begin..page.find("<div id=\"controls\">").unwrap()];
+    let places = ["cornell", "white-sky", "gone"].map(|name| shown.find(&format!(">{name}<br>")).unwrap());
+    assert!(places.is_sorted(), "{places:?}");
+    // Of each of the two scenes the reference, and a picture and a map of the error for each method.
+    assert_eq!(shown.matches("<img alt=\"reference\" src=\"data:image/jpeg;base64,").count(), 2);
+    assert_eq!(shown.matches("data-kind=\"picture\"").count(), 4);
+    assert_eq!(shown.matches("data-kind=\"error_map\"").count(), 4);
+    assert_eq!(shown.matches("failed: ").count(), 2);
+}
+
+#[test]
 fn shards_merge_to_the_whole_in_one_page_without_a_network() {
     let home = home();
     let file = sweep_file(

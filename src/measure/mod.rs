@@ -46,6 +46,8 @@ pub struct Measured {
     pub picture: Option<Vec<u8>>,
     /// Map of the error against the reference, if there is one.
     pub error_map: Option<Vec<u8>>,
+    /// The first reference, displayed with the default tone map.
+    pub reference: Option<Vec<u8>>,
 }
 
 /// What one measurement leaves to the next: compiled graphs, pipelines, the scene on the device. No content of textures:
@@ -101,7 +103,7 @@ pub fn measure(
     warm.timed = Some(session.share());
     drop(session);
     let mut point = Point { stats, scores: BTreeMap::new(), noise: BTreeMap::new(), references: BTreeMap::new() };
-    let mut error_map = None;
+    let (mut error_map, mut shown) = (None, None);
     if !references.is_empty() {
         let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
         for (number, (bounces, reference)) in references.iter().enumerate() {
@@ -117,12 +119,13 @@ pub fn measure(
                 point.noise.insert(name, expected.noise);
                 if number == 0 && part == "total" {
                     error_map = Some(pictures::error_map(light, &expected.mean)?);
+                    shown = Some(pictures::displayed(&expected.mean)?);
                 }
             }
             point.references.insert(*bounces, reference.samples);
         }
     }
-    Ok(Measured { point, picture, error_map })
+    Ok(Measured { point, picture, error_map, reference: shown })
 }
 
 /// An experiment that has run.

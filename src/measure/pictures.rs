@@ -1,7 +1,8 @@
 //! Small pictures of a point, for people.
 
 use crate::lab::{LabError, Texels};
-use crate::metrics::Linear;
+use crate::metrics::colour::display;
+use crate::metrics::{Kind, Linear};
 use crate::picture::rgb8;
 use image::codecs::jpeg::JpegEncoder;
 use image::imageops::{FilterType, resize};
@@ -16,6 +17,12 @@ const QUALITY: u8 = 82;
 pub(super) fn thumbnail(texels: &Texels) -> Result<Vec<u8>, LabError> {
     let [width, height, _] = texels.extent;
     small_jpeg(RgbImage::from_raw(width, height, rgb8(texels)))
+}
+
+/// Radiance as graphs display it by default, for the reference beside their pictures. What is no number is black.
+pub(super) fn displayed(light: &Linear) -> Result<Vec<u8>, LabError> {
+    let byte = |v: f32| (display(Kind::Radiance, if v.is_finite() { v } else { 0.0 }) * 255.0 + 0.5) as u8;
+    small_jpeg(RgbImage::from_raw(light.size.0, light.size.1, light.rgb.iter().flatten().map(|v| byte(*v)).collect()))
 }
 
 /// The root of each pixel's relative squared error, |x - r| / sqrt(r^2 + 0.01), mean over channels: black at 0, through

@@ -1,5 +1,7 @@
 //! The colour spaces that FLIP works in; RGB is linear with the primaries of sRGB, white is D65.
 
+use super::Kind;
+
 /// Relative luminance of linear RGB (ITU-R BT.709).
 pub fn luminance(rgb: [f32; 3]) -> f64 {
     0.2126 * f64::from(rgb[0]) + 0.7152 * f64::from(rgb[1]) + 0.0722 * f64::from(rgb[2])
@@ -8,6 +10,14 @@ pub fn luminance(rgb: [f32; 3]) -> f64 {
 /// Linear value of an sRGB-encoded one, both 0 to 1 (IEC 61966-2-1).
 pub fn srgb_to_linear(v: f32) -> f32 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
+/// A channel as it is displayed, 0 to 1: c / (1 + c) for radiance, as it is for what is 0 to 1 ([`Kind`]); then encoded
+/// as sRGB (IEC 61966-2-1). Not rounded.
+pub fn display(kind: Kind, c: f32) -> f64 {
+    let c = f64::from(c.max(0.0));
+    let shown = if kind == Kind::Radiance { c / (1.0 + c) } else { c.min(1.0) };
+    if shown <= 0.003_130_8 { 12.92 * shown } else { 1.055 * shown.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// XYZ of the white point divided by itself is 1: all spaces here are relative to it.

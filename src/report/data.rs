@@ -37,6 +37,14 @@ pub struct Dot {
     pub error_map: Option<Vec<u8>>,
 }
 
+/// A point that could not be measured.
+pub struct Failed {
+    pub labels: IndexMap<String, String>,
+    /// What is looked at, and the device's name.
+    pub key: (Subject, String),
+    pub error: String,
+}
+
 /// A chart of the page; its points are drawn in this order.
 pub struct Chart {
     /// File name without its ending.
@@ -74,8 +82,9 @@ pub struct Data {
     /// How each subject was measured, one line.
     pub settings: Vec<String>,
     pub parts: Vec<String>,
-    /// Labels and errors.
-    pub failed: Vec<(IndexMap<String, String>, String)>,
+    /// The reference of each subject, displayed: JPEG.
+    pub references: Vec<Option<Vec<u8>>>,
+    pub failed: Vec<Failed>,
     /// Points without a result.
     pub left: usize,
 }
@@ -105,6 +114,7 @@ impl Data {
             bounces: Vec::new(),
             settings: Vec::new(),
             parts: Vec::new(),
+            references: Vec::new(),
             failed: Vec::new(),
             left: 0,
         };
@@ -118,7 +128,8 @@ impl Data {
             let point = match &record.outcome {
                 Outcome::Done(point) => point,
                 Outcome::Failed(error) => {
-                    data.failed.push((planned.labels.clone(), error.clone()));
+                    let key = (record.subject.clone(), record.device.name.clone());
+                    data.failed.push(Failed { labels: planned.labels.clone(), key, error: error.clone() });
                     continue;
                 }
             };
@@ -136,6 +147,9 @@ impl Data {
                     false => format!("reference: {}", references.join("; ")),
                 };
                 let beside = |b: &&u32| point.scores.contains_key(&format!("total, {b} bounces"));
+                let reference = collected.reference(record).filter(|b| b.len() <= room);
+                room -= reference.as_ref().map_or(0, Vec::len);
+                data.references.push(reference);
                 data.bounces.push(point.references.keys().find(|b| !beside(b)).copied());
                 let frames = point.stats.passes.first().map_or(0, |p| p.frames);
                 let alike = collected.points.iter().filter_map(|(_, r)| r.as_ref());

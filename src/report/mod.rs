@@ -5,6 +5,7 @@ mod data;
 mod page;
 mod pareto;
 mod scatter;
+mod scenes;
 
 pub use bars::{Bar, COLORS, bars};
 pub(crate) use data::{Data, Dot, Scored, error_of};
@@ -23,7 +24,8 @@ pub const METRICS: [&str; 2] = ["relmse", "hdr_flip"];
 const MAX_BARS: usize = 40;
 
 /// Writes `index.html`, `points.csv` and the charts to a folder: error against time for every part of the light and
-/// every metric, and the passes of the points on the Pareto front of the total.
+/// every metric, and the passes of the points on the Pareto front of the total. Where there are several scenes, also a
+/// table of them, with `scenes.csv`.
 ///
 /// # Errors
 /// No finished point; a folder that cannot be written to.
@@ -45,7 +47,11 @@ pub fn write(collected: &Collected, metrics: &[String], folder: &Path) -> Result
     for (name, svg) in &passes {
         files.push((folder.join(format!("{name}.svg")), svg.clone().into_bytes()));
     }
-    files.push((folder.join("index.html"), page::page(&data, &charts, &passes, &table)?.into_bytes()));
+    let scenes = scenes::Scenes::of(&data);
+    if let Some(scenes) = &scenes {
+        files.push((folder.join("scenes.csv"), scenes.csv(&data)?.into_bytes()));
+    }
+    files.push((folder.join("index.html"), page::page(&data, &charts, &passes, &table, scenes.as_ref())?.into_bytes()));
     for (path, bytes) in &files {
         write_file(path, bytes)?;
     }

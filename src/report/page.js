@@ -13,6 +13,13 @@ const state = { subject: 0, part: data.parts[0] || "", metric: data.charts.lengt
 const stages = [...new Set(data.dots.flatMap((d) => d.stages.map((s) => s[0])))];
 const color = (stage) => data.colors[stages.indexOf(stage) % data.colors.length];
 
+// Pictures of the table of scenes are those of the points.
+document.querySelectorAll("img[data-dot]").forEach((image) => {
+  const url = data.dots[Number(image.dataset.dot)][image.dataset.kind];
+  if (url) image.src = url;
+  else image.remove();
+});
+
 // Filters: boxes for few values, two ends for many numbers.
 const filters = [];
 for (const name of data.names) {

@@ -1,7 +1,8 @@
 //! The page: data, charts, style and script in one file.
 
 use super::bars::COLORS;
-use super::data::{Chart, Data, Dot};
+use super::data::{Chart, Data, Dot, Failed};
+use super::scenes::Scenes;
 use crate::lab::LabError;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -42,8 +43,13 @@ struct PageData<'a> {
 ///
 /// # Errors
 /// Writing to memory gives none, whatever the data.
-pub fn page(data: &Data, charts: &[Chart], passes: &[(String, String)], table: &str) -> Result<String, LabError> {
-    let url = |kind: &str, bytes: &[u8]| format!("data:{kind};base64,{}", STANDARD.encode(bytes));
+pub fn page(
+    data: &Data,
+    charts: &[Chart],
+    passes: &[(String, String)],
+    table: &str,
+    scenes: Option<&Scenes>,
+) -> Result<String, LabError> {
     let jpeg = |bytes: &Option<Vec<u8>>| bytes.as_ref().map(|b| url("image/jpeg", b));
     let dots =
         data.dots.iter().map(|dot| PageDot { dot, picture: jpeg(&dot.picture), error_map: jpeg(&dot.error_map) });
@@ -76,6 +82,7 @@ pub fn page(data: &Data, charts: &[Chart], passes: &[(String, String)], table: &
         counts.2,
         url("text/csv", table.as_bytes())
     );
+    out += &scenes.map_or(String::new(), |s| s.html(data));
     out += "<div id=\"controls\"></div><p id=\"settings\"></p>\n<div id=\"filters\"></div>\n<div id=\"charts\">\n";
     if charts.is_empty() {
         out += "<p>No point has a reference to be compared with: make one with <code>conelab reference</code> and run the \
@@ -91,7 +98,7 @@ pub fn page(data: &Data, charts: &[Chart], passes: &[(String, String)], table: &
     out += "<h2>Points</h2>\n<div class=\"wide\"><table id=\"points\"></table></div>\n";
     if !data.failed.is_empty() {
         out += "<h2>Failed</h2>\n<ul>\n";
-        for (labels, error) in &data.failed {
+        for Failed { labels, error, .. } in &data.failed {
             let labels: Vec<String> = labels.iter().map(|(name, value)| format!("{name} {value}")).collect();
             let error = error.lines().next().unwrap_or_default();
             let _ = writeln!(out, "<li>{}: {}</li>", escaped(&labels.join(", ")), escaped(error));
@@ -104,6 +111,11 @@ pub fn page(data: &Data, charts: &[Chart], passes: &[(String, String)], table: &
          <script>\n{SCRIPT}</script>\n</body></html>\n"
     );
     Ok(out)
+}
+
+/// A file inside of the page.
+pub fn url(kind: &str, bytes: &[u8]) -> String {
+    format!("data:{kind};base64,{}", STANDARD.encode(bytes))
 }
 
 /// Text that HTML shows as it is.

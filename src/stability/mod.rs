@@ -29,5 +29,5 @@ pub use param_track::ParamTrack;
 pub use plan::{Job, Options, plan};
 pub use record::{FrameScore, Measured, Outcome, PartResult, Record, Report, Worst};
 pub use run::{Counts, Progress, run};
-pub use score::{Change, Flicker, Step, change, display, flicker, settling, step};
+pub use score::{Change, Flicker, Step, change, flicker, settling, step};
 pub use sheet::{Failure, failures, sheet, table as failure_table};

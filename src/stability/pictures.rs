@@ -1,7 +1,7 @@
 //! A frame as pictures side by side.
 
-use super::score::display;
 use crate::lab::LabError;
+use crate::metrics::colour::display;
 use crate::metrics::{Kind, Linear};
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};

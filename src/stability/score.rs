@@ -1,6 +1,6 @@
 //! The definitions, on pictures and sequences at hand; docs/stability.md explains them with their sources.
 
-use crate::metrics::colour::luminance;
+use crate::metrics::colour::{display, luminance};
 use crate::metrics::{Kind, Linear};
 use serde::{Deserialize, Serialize};
 
@@ -18,14 +18,6 @@ pub struct Change {
     pub p999: f64,
     /// The largest over pixels and channels of the same after [`display`], in 1/255.
     pub jump: f64,
-}
-
-/// A channel as it is displayed, 0 to 1: c / (1 + c) for radiance, as it is for what is 0 to 1 ([`Kind`]); then encoded
-/// as sRGB (IEC 61966-2-1). Not rounded.
-pub fn display(kind: Kind, c: f32) -> f64 {
-    let c = f64::from(c.max(0.0));
-    let shown = if kind == Kind::Radiance { c / (1.0 + c) } else { c.min(1.0) };
-    if shown <= 0.003_130_8 { 12.92 * shown } else { 1.055 * shown.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// The change between two frames `x`, less that of their references `r`; none stands for references that are equal.

@@ -9,6 +9,7 @@ use crate::stats::DeviceStats;
 use indexmap::IndexMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -80,6 +81,15 @@ pub struct Subject {
     pub time: String,
 }
 
+impl Subject {
+    /// 32 hexadecimal digits that name it.
+    fn key(&self) -> String {
+        let mut key = crate::capture::hex(&Sha256::digest(format!("{self:?}")));
+        key.truncate(32);
+        key
+    }
+}
+
 /// The result of a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -108,7 +118,10 @@ impl Folder {
         let picture = pictures.and_then(|m| m.picture.as_deref()).map(|bytes| ("pictures", bytes));
         let error_map = pictures.and_then(|m| m.error_map.as_deref()).map(|bytes| ("errors", bytes));
         for (kind, bytes) in picture.into_iter().chain(error_map) {
-            write_file(&self.0.join(kind).join(format!("{}.jpg", record.id)), bytes)?;
+            write_file(&jpeg(&self.0, kind, &record.id), bytes)?;
+        }
+        if let Some(bytes) = pictures.and_then(|m| m.reference.as_deref()) {
+            write_file(&jpeg(&self.0, "references", &record.subject.key()), bytes)?;
         }
         write_file(&self.point(&record.id), &json(record)?)
     }
@@ -119,7 +132,7 @@ impl Folder {
             let age = e.metadata().and_then(|m| m.modified()).ok().and_then(|t| t.elapsed().ok());
             e.file_name().to_string_lossy().starts_with(".conelab-") && age.is_some_and(|a| a.as_secs() > 3600)
         };
-        for kind in ["points", "pictures", "errors"] {
+        for kind in ["points", "pictures", "errors", "references"] {
             let entries = std::fs::read_dir(self.0.join(kind)).into_iter().flatten().flatten();
             for entry in entries.filter(old) {
                 // What cannot be deleted only takes room.
@@ -163,10 +176,22 @@ pub struct Collected {
 impl Collected {
     /// The picture of a point, or where its light differs from the reference (`errors`): JPEG.
     pub fn picture(&self, kind: &str, id: &str) -> Option<Vec<u8>> {
-        let path = self.folders.get(id)?.join(kind).join(format!("{id}.jpg"));
-        let size = std::fs::metadata(&path).ok()?.len();
-        (size <= MAX_FILE).then(|| std::fs::read(&path).ok()).flatten()
+        small_file(&jpeg(self.folders.get(id)?, kind, id))
     }
+
+    /// The reference that a point was scored against, displayed: JPEG.
+    pub fn reference(&self, record: &Record) -> Option<Vec<u8>> {
+        small_file(&jpeg(self.folders.get(&record.id)?, "references", &record.subject.key()))
+    }
+}
+
+fn jpeg(folder: &Path, kind: &str, name: &str) -> PathBuf {
+    folder.join(kind).join(format!("{name}.jpg"))
+}
+
+fn small_file(path: &Path) -> Option<Vec<u8>> {
+    let size = std::fs::metadata(path).ok()?.len();
+    (size <= MAX_FILE).then(|| std::fs::read(path).ok()).flatten()
 }
 
 /// Reads folders of sweeps. A point that several hold is taken from the first in which it was measured without an error.
