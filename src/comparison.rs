@@ -9,6 +9,7 @@ pub use verdict::{Verdict, within_noise};
 use crate::metrics::maps::{MapFile, maps};
 use crate::metrics::region::{Region, regions};
 use crate::metrics::{Compared, Kind, Linear, MetricError, Scores};
+use crate::reference::Noise;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -27,8 +28,8 @@ pub struct Side {
     pub kind: Kind,
     /// Parts of the light; a picture that is not split has only `total`.
     pub parts: BTreeMap<String, Linear>,
-    /// relMSE between the halves of the samples of each part, where that is known.
-    pub noise: BTreeMap<String, f64>,
+    /// Noise of each part, where that is known.
+    pub noise: BTreeMap<String, Noise>,
 }
 
 /// One or two pictures against a reference; what `--json` writes.
@@ -57,6 +58,8 @@ pub struct PartComparison {
     pub part: String,
     /// relMSE between the halves of the reference's samples.
     pub noise: Option<f64>,
+    /// Structure error that the reference's noise alone gives, natural log units.
+    pub structure_noise: Option<f64>,
     /// First and last exposure of HDR-FLIP, stops.
     pub exposures: [f64; 2],
     /// How many exposures.
@@ -164,14 +167,15 @@ fn part_names(pictures: &[Side], reference: &Side, wanted: &[String]) -> Result<
     Ok(common)
 }
 
-fn compare_part(part: &str, compared: &[Compared], noise: Option<f64>, areas: &[Region]) -> PartComparison {
+fn compare_part(part: &str, compared: &[Compared], noise: Option<Noise>, areas: &[Region]) -> PartComparison {
     let region = |name: &str, share: f64, mask: Option<&[bool]>| {
         let scores: Vec<Option<Scores>> = compared.iter().map(|c| c.scores(mask)).collect();
         let better = match &scores[..] {
             [Some(a), Some(b)] => verdict::better(a, b, noise),
             _ => BTreeMap::new(),
         };
-        let within = |s: &Option<Scores>| s.as_ref().is_some_and(|s| verdict::within_noise(s.relmse, noise));
+        let within =
+            |s: &Option<Scores>| s.as_ref().is_some_and(|s| verdict::within_noise(s.relmse, noise.map(|n| n.relmse)));
         let within_noise = scores.iter().map(within).collect();
         RegionComparison { region: name.into(), share, scores, within_noise, better }
     };
@@ -180,7 +184,8 @@ fn compare_part(part: &str, compared: &[Compared], noise: Option<f64>, areas: &[
     let exposures = compared.first().map(|c| c.exposures);
     PartComparison {
         part: part.into(),
-        noise,
+        noise: noise.map(|n| n.relmse),
+        structure_noise: noise.map(|n| n.structure),
         exposures: exposures.map_or([0.0; 2], |e| [e.start, e.stop]),
         exposure_count: exposures.map_or(0, |e| e.count),
         regions: list,

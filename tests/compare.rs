@@ -76,7 +76,7 @@ fn two_pictures_beside_a_third_each_get_their_numbers_and_the_nearer_wins() {
         std::fs::read_dir(&maps).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
     files.sort();
     let of = |letter: &str| {
-        ["flip.png", "hdr-flip.png", "luminance.png", "maps.exr", "relative-error.png"]
+        ["flip.png", "hdr-flip.png", "luminance.png", "maps.exr", "relative-error.png", "structure.png"]
             .map(|f| format!("{letter}-total-{f}"))
     };
     assert_eq!(files, [of("a"), of("b")].concat());

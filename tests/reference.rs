@@ -192,7 +192,7 @@ fn twice_the_samples_halve_the_relmse() {
     let (cornell, experiment) = (scene("cornell"), experiment("cornell", (32, 24), &[]));
     let steps: Vec<Reference> = (5..=10).map(|i| trace(&lab, &experiment, &cornell, 1, 1 << i)).collect();
     for part in ["total", "diffuse", "specular", "occlusion"] {
-        let noise: Vec<f64> = steps.iter().map(|r| r.parts[part].noise).collect();
+        let noise: Vec<f64> = steps.iter().map(|r| r.parts[part].noise.relmse).collect();
         let slope = slope(&noise.iter().map(|n| n.log2()).collect::<Vec<f64>>());
         println!("{part}: {noise:?}, slope {slope:.3}");
         assert!((slope + 1.0).abs() <= 0.1, "{part}: slope {slope} of {noise:?}");

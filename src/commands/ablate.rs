@@ -113,7 +113,7 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
             scene: scene.name.clone(),
             device: lab.gpu.info.name.clone(),
             reference_samples: reference.samples,
-            noise: reference.parts.iter().map(|(n, p)| (n.clone(), p.noise)).collect(),
+            noise: reference.parts.iter().map(|(n, p)| (n.clone(), p.noise.relmse)).collect(),
             steps,
         };
         super::write_json(path, &ablation)?;
@@ -136,6 +136,6 @@ fn print(reference: &Reference, steps: &[Step]) {
                 None => format!("{:>24}", "-"),
             };
         }
-        say!("{line}{:>14.2e}", expected.noise);
+        say!("{line}{:>14.2e}", expected.noise.relmse);
     }
 }

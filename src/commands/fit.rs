@@ -114,7 +114,7 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     let lab = Lab::open(home, args.device.options())?;
     let wanted = reference::Goal::Samples(args.spp);
     let reference = super::reference::with_bar(&lab, &experiment, &scene, args.bounces, wanted)?;
-    let noise = reference.parts.get(&args.part).map_or(0.0, |p| p.noise);
+    let noise = reference.parts.get(&args.part).map_or(0.0, |p| p.noise.relmse);
     if let (Goal::Error(bound), Metric::Relmse) = (goal, args.metric)
         && bound < 4.0 * noise
     {
@@ -211,6 +211,7 @@ fn summary(found: &Found, goal: Goal, args: &FitArgs, sizes: &[usize]) -> Vec<St
     let metric = match args.metric {
         Metric::Relmse => "relMSE",
         Metric::HdrFlip => "HDR-FLIP",
+        Metric::Structure => "structure",
     };
     let bound = match goal {
         Goal::Error(bound) => format!("{metric} at most {bound}"),

@@ -52,9 +52,10 @@ pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
     let lab = Lab::open(home, args.device.options())?;
     let reference = with_bar(&lab, &experiment, &scene, args.bounces, goal)?;
     say!("{} samples a pixel, {} bounces, {}x{}", reference.samples, args.bounces, reference.size.0, reference.size.1);
-    say!("{:<12}{:>14}{:>22}", "part", "mean", "relMSE of the halves");
+    say!("{:<12}{:>14}{:>22}{:>20}", "part", "mean", "relMSE of the halves", "structure of noise");
     for (name, part) in &reference.parts {
-        say!("{name:<12}{:>14.6}{:>22.3e}", part.mean.mean(), part.noise);
+        let noise = part.noise;
+        say!("{name:<12}{:>14.6}{:>22.3e}{:>20.3e}", part.mean.mean(), noise.relmse, noise.structure);
     }
     say!("kept in {}", super::shown(&reference.folder).display());
     if let Some(path) = &args.output {

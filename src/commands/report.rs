@@ -15,7 +15,7 @@ pub struct ReportArgs {
     /// Where the page, the charts and the table go; `report` in the first folder when absent.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Errors that are charted: relmse, rmse, smape, flip, hdr_flip, energy_ratio, leak, over_occlusion.
+    /// Errors that are charted: relmse, rmse, smape, flip, hdr_flip, structure, energy_ratio, leak, over_occlusion.
     #[arg(long, value_delimiter = ',', default_values_t = METRICS.map(String::from))]
     metric: Vec<String>,
 }

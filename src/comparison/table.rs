@@ -9,13 +9,14 @@ const WIDTH: usize = 11;
 /// Width of the columns before them: region and picture.
 const TITLE: usize = 30;
 /// Heads of the columns, and the metrics whose verdict stands below them.
-const COLUMNS: [(&str, &str); 9] = [
+const COLUMNS: [(&str, &str); 10] = [
     ("relMSE", "relmse"),
     ("RMSE", "rmse"),
     ("energy", "energy_ratio"),
     ("SMAPE", "smape"),
     ("FLIP", "flip"),
     ("HDR-FLIP", "hdr_flip"),
+    ("structure", "structure"),
     ("leak", "leak"),
     ("over-occl.", "over_occlusion"),
     ("of pixels", "over_occluded"),
@@ -47,8 +48,9 @@ fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
     for region in &part.regions {
         rows(out, region);
     }
-    if let Some(noise) = part.noise {
-        let _ = writeln!(out, "  noise of the reference: relMSE {}", short(noise));
+    if let (Some(relmse), Some(structure)) = (part.noise, part.structure_noise) {
+        let (relmse, structure) = (short(relmse), short(structure));
+        let _ = writeln!(out, "  noise of the reference: relMSE {relmse}, structure {structure}");
     }
     let frame = part.regions.first();
     for (i, (letter, name)) in LETTERS.iter().zip(pictures).enumerate() {
@@ -89,8 +91,19 @@ fn rows(out: &mut String, region: &RegionComparison) {
     }
 }
 
-fn values(s: &Scores) -> [f64; 9] {
-    [s.relmse, s.rmse, s.energy_ratio, s.smape, s.flip, s.hdr_flip, s.leak, s.over_occlusion, s.over_occluded]
+fn values(s: &Scores) -> [f64; 10] {
+    [
+        s.relmse,
+        s.rmse,
+        s.energy_ratio,
+        s.smape,
+        s.flip,
+        s.hdr_flip,
+        s.structure,
+        s.leak,
+        s.over_occlusion,
+        s.over_occluded,
+    ]
 }
 
 /// A number to four digits; `-` where there is none.

@@ -5,7 +5,7 @@ use super::{Axis, at};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts};
 use crate::measure::{Frames, Timed, timed};
-use crate::metrics::{Compared, Kind, Linear, relmse};
+use crate::metrics::{Compared, Kind, Linear, relmse, structure};
 use crate::reference::Reference;
 use crate::scene::Scene;
 use crate::stats::spread;
@@ -21,6 +21,8 @@ pub enum Metric {
     Relmse,
     /// Mean HDR-FLIP.
     HdrFlip,
+    /// Edges that the reference does not have.
+    Structure,
 }
 
 /// What is made small and what is bounded.
@@ -143,6 +145,7 @@ impl<'a> Evaluator<'a> {
         let light = crate::picture::to_linear(&session.texels(&self.texture, 0, 0)?);
         let error = match s.metric {
             Metric::Relmse => relmse(&light, self.expected)?,
+            Metric::Structure => structure(&light, self.expected)?,
             Metric::HdrFlip => {
                 let compared = Compared::new(&light, self.expected, Kind::of_part(s.part))?;
                 compared.scores(None).map_or(f64::NAN, |scores| scores.hdr_flip)

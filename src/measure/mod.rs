@@ -34,6 +34,9 @@ pub struct Point {
     pub scores: BTreeMap<String, Scores>,
     /// relMSE between the two halves of the reference's samples, by part: what the scores cannot tell apart.
     pub noise: BTreeMap<String, f64>,
+    /// Structure error that the reference's noise alone gives, by part, natural log units.
+    #[serde(default)]
+    pub structure_noise: BTreeMap<String, f64>,
     /// Samples a pixel of each reference, by its number of bounces.
     pub references: BTreeMap<u32, u64>,
 }
@@ -102,7 +105,13 @@ pub fn measure(
     let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
     warm.timed = Some(session.share());
     drop(session);
-    let mut point = Point { stats, scores: BTreeMap::new(), noise: BTreeMap::new(), references: BTreeMap::new() };
+    let mut point = Point {
+        stats,
+        scores: BTreeMap::new(),
+        noise: BTreeMap::new(),
+        structure_noise: BTreeMap::new(),
+        references: BTreeMap::new(),
+    };
     let (mut error_map, mut shown) = (None, None);
     if !references.is_empty() {
         let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
@@ -116,7 +125,8 @@ pub fn measure(
                 let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
                 let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
                 point.scores.insert(name.clone(), scores);
-                point.noise.insert(name, expected.noise);
+                point.structure_noise.insert(name.clone(), expected.noise.structure);
+                point.noise.insert(name, expected.noise.relmse);
                 if number == 0 && part == "total" {
                     error_map = Some(pictures::error_map(light, &expected.mean)?);
                     shown = Some(pictures::displayed(&expected.mean)?);

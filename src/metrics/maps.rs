@@ -8,6 +8,8 @@ use std::io::Cursor;
 
 /// Decades of the relative squared error that the map shows, from its darkest to its brightest colour.
 const DECADES: (f64, f64) = (-4.0, 2.0);
+/// Structure error of the brightest colour, natural log units: two of a block's four neighbours differ by a factor of 3.
+const STRUCTURE: f64 = 0.5;
 
 /// One map as a file.
 pub struct MapFile {
@@ -20,8 +22,8 @@ pub struct MapFile {
 }
 
 /// The maps of a comparison: FLIP and HDR-FLIP in the colours of NVIDIA's evaluator (magma), the relative squared error
-/// on a logarithmic scale in the same colours, the difference of luminance from blue (too dark) over white to red (too
-/// bright), and all four as the channels of an EXR.
+/// on a logarithmic scale and the structure error in the same colours, the difference of luminance from blue (too dark)
+/// over white to red (too bright), and all five as the channels of an EXR.
 ///
 /// # Errors
 /// A size that PNG or EXR does not have.
@@ -31,6 +33,7 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         .map(|(x, r)| (x.iter().zip(r).map(|(x, r)| relative_square(*x, *r, *r)).sum::<f64>() / 3.0) as f32)
         .collect();
     let difference: Vec<f32> = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32).collect();
+    let structure = compared.structure.map();
     // What is dark is a known part of the mean.
     let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);
     let size = compared.test.size;
@@ -53,6 +56,11 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
             difference.iter().map(|v| diverging(f64::from(*v) / full)).collect(),
             format!("luminance x - r, blue -{full:.4} over white 0 to red +{full:.4}"),
         )?,
+        png(
+            "structure.png",
+            structure.iter().map(|v| magma.at(f64::from(*v) / STRUCTURE)).collect(),
+            format!("structure error, magma, 0 to {STRUCTURE}"),
+        )?,
         MapFile {
             name: "maps.exr",
             bytes: encode_exr(
@@ -62,9 +70,10 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
                     ("hdrFlip", &compared.hdr_flip),
                     ("luminanceDifference", &difference),
                     ("relativeSquaredError", &relative),
+                    ("structure", &structure),
                 ],
             )?,
-            scale: "32-bit floats; channels flip, hdrFlip, luminanceDifference, relativeSquaredError".into(),
+            scale: "32-bit floats; channels flip, hdrFlip, luminanceDifference, relativeSquaredError, structure".into(),
         },
     ])
 }
@@ -102,7 +111,7 @@ fn encode_png((width, height): (u32, u32), rgb: &[[u8; 3]]) -> Result<Vec<u8>, M
     Ok(out.into_inner())
 }
 
-fn encode_exr((width, height): (u32, u32), channels: [(&str, &Vec<f32>); 4]) -> Result<Vec<u8>, MetricError> {
+fn encode_exr((width, height): (u32, u32), channels: [(&str, &Vec<f32>); 5]) -> Result<Vec<u8>, MetricError> {
     let channel = |(name, values): (&str, &Vec<f32>)| AnyChannel::new(name, FlatSamples::F32(values.clone()));
     let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
     let size = (width as usize, height as usize);

@@ -5,10 +5,14 @@ pub mod flip;
 pub mod hdr_flip;
 pub mod maps;
 pub mod region;
+mod structure;
 mod sums;
+
+pub use structure::{structure, structure_noise};
 
 use hdr_flip::{Exposures, exposures, hdr_flip};
 use serde::{Deserialize, Deserializer, Serialize};
+use structure::Structure;
 
 /// Most pixels of a picture that is compared (8192 x 8192); FLIP takes about 120 bytes for each.
 pub const MAX_PIXELS: u64 = 1 << 26;
@@ -99,14 +103,22 @@ pub struct Scores {
     pub over_occlusion: f64,
     /// Part of the pixels where the picture is dark and the reference is not, 0 to 1.
     pub over_occluded: f64,
+    /// Mean over pairs of neighbouring blocks of how far the pictures' steps of log luminance differ, natural log units;
+    /// no number (null in JSON) where the reference is black, or no block has a neighbour.
+    #[serde(default = "no_number", deserialize_with = "null_is_no_number")]
+    pub structure: f64,
     /// Pixels.
     pub pixels: u64,
     /// Pixels that are infinite or no number in either picture.
     pub not_finite: u64,
 }
 
+fn no_number() -> f64 {
+    f64::NAN
+}
+
 fn null_is_no_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
+    Ok(Option::deserialize(deserializer)?.unwrap_or_else(no_number))
 }
 
 /// How far a picture of radiance is from a reference, over the whole frame.
@@ -123,7 +135,7 @@ pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> 
 pub struct Compared<'a> {
     test: &'a Linear,
     reference: &'a Linear,
-    /// Luminance up to which a pixel is dark.
+    /// Luminance up to which a pixel is dark ([`DARK`]).
     pub dark: f64,
     /// FLIP of every pixel, 0 to 1.
     pub flip: Vec<f32>,
@@ -131,6 +143,7 @@ pub struct Compared<'a> {
     pub hdr_flip: Vec<f32>,
     /// What HDR-FLIP looked at.
     pub exposures: Exposures,
+    structure: Structure,
 }
 
 impl<'a> Compared<'a> {
@@ -158,16 +171,23 @@ impl<'a> Compared<'a> {
         for (i, _) in finite.iter().enumerate().filter(|f| !f.1) {
             (flip[i], hdr_flip[i]) = (1.0, 1.0);
         }
-        let count = finite.iter().filter(|f| **f).count().max(1);
-        let sum: f64 = r.iter().map(|c| colour::luminance(*c)).sum();
-        Ok(Compared { test, reference, dark: DARK * sum / count as f64, flip, hdr_flip, exposures })
+        let dark = dark(test, reference);
+        let structure = Structure::new(test, reference, dark, 1.0);
+        Ok(Compared { test, reference, dark, flip, hdr_flip, exposures, structure })
     }
 
     /// The scores over the pixels of a mask, or over all of them; nothing where none of them is a number in both.
     /// What is dark does not depend on the mask.
     pub fn scores(&self, mask: Option<&[bool]>) -> Option<Scores> {
-        sums::sum(self, mask).scores()
+        sums::sum(self, mask).scores(self.structure.mean(mask))
     }
+}
+
+/// Luminance up to which a pixel is dark: [`DARK`] of the mean over the reference's pixels that are finite in both.
+fn dark(test: &Linear, reference: &Linear) -> f64 {
+    let finite = || test.rgb.iter().zip(&reference.rgb).filter(|(x, r)| is_finite(**x, **r)).map(|pair| pair.1);
+    let sum: f64 = finite().map(|c| colour::luminance(c.map(|v| v.max(0.0)))).sum();
+    DARK * sum / finite().count().max(1) as f64
 }
 
 fn is_finite(x: [f32; 3], r: [f32; 3]) -> bool {

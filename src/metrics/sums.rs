@@ -95,7 +95,7 @@ impl Sums {
     }
 
     /// Nothing without a finite pixel.
-    pub(super) fn scores(&self) -> Option<Scores> {
+    pub(super) fn scores(&self, structure: f64) -> Option<Scores> {
         if self.finite == 0 {
             return None;
         }
@@ -114,6 +114,7 @@ impl Sums {
             dark: share(self.dark),
             over_occlusion: over(self.over_occlusion, self.over_occluded),
             over_occluded: share(self.over_occluded),
+            structure,
             pixels: self.pixels,
             not_finite: self.pixels - self.finite,
         })

@@ -34,9 +34,17 @@ pub struct Reference {
 pub struct ReferencePart {
     /// Mean of all samples.
     pub mean: Linear,
-    /// Noise floor: relMSE of the mean of the even samples against that of the odd ones. The mean of all is four
-    /// times better.
-    pub noise: f64,
+    /// What its own noise scores.
+    pub noise: Noise,
+}
+
+/// Noise floor of a part of a reference, from the means of its even and of its odd samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// relMSE of one mean against the other. The mean of all samples is four times better.
+    pub relmse: f64,
+    /// Structure error of the mean of all samples ([`crate::metrics::structure_noise`]), natural log units.
+    pub structure: f64,
 }
 
 /// A number of the shaders that references are made with, 64 hexadecimal digits.

@@ -1,12 +1,12 @@
 //! Sums of samples, and their files: `sums-N.exr` with a layer for each part and half, and `reference.json`, which
 //! names the one that counts.
 
-use super::{Reference, ReferencePart};
+use super::{Noise, Reference, ReferencePart};
 use crate::capture::hex;
 use crate::experiment::Experiment;
 use crate::graph::load::Graph;
 use crate::lab::LabError;
-use crate::metrics::Linear;
+use crate::metrics::{Linear, MetricError, relmse, structure_noise};
 use crate::vulkan::DeviceInfo;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
@@ -93,8 +93,16 @@ impl Sums {
 
     /// relMSE of the even samples' mean against the odd ones'.
     pub fn noise(&self, part: &str) -> Result<f64, LabError> {
+        self.between_halves(part, relmse)
+    }
+
+    fn between_halves(
+        &self,
+        part: &str,
+        metric: fn(&Linear, &Linear) -> Result<f64, MetricError>,
+    ) -> Result<f64, LabError> {
         let (even, odd) = (self.mean(part, &[0]), self.mean(part, &[1]));
-        crate::metrics::relmse(&even, &odd).map_err(|e| LabError::Request(format!("the reference's '{part}': {e}")))
+        metric(&even, &odd).map_err(|e| LabError::Request(format!("the reference's '{part}': {e}")))
     }
 
     /// Means of the even and of the odd samples, by part.
@@ -105,7 +113,8 @@ impl Sums {
     /// Means and noise of all parts.
     pub fn reference(&self, folder: &Path) -> Result<Reference, LabError> {
         let part = |name: &String| {
-            Ok((name.clone(), ReferencePart { mean: self.mean(name, &[0, 1]), noise: self.noise(name)? }))
+            let noise = Noise { relmse: self.noise(name)?, structure: self.between_halves(name, structure_noise)? };
+            Ok((name.clone(), ReferencePart { mean: self.mean(name, &[0, 1]), noise }))
         };
         let parts = self.parts.keys().map(part).collect::<Result<_, LabError>>()?;
         Ok(Reference { size: self.size, samples: self.samples, parts, folder: folder.to_path_buf() })

@@ -93,7 +93,7 @@ function describe(index, event, pinned) {
   make("div", `${number(d.ms)} ms (95 %: ${number(d.p95)}), ${number(d.bytes / 1048576)} MiB`, tip);
   for (const part of data.parts.filter((p) => d.scores[p])) {
     const s = d.scores[part];
-    make("div", `${part}: ` + ["relmse", "hdr_flip", "flip", "energy_ratio", "leak", "over_occlusion"].filter((m) => s[m] !== undefined)
+    make("div", `${part}: ` + ["relmse", "hdr_flip", "flip", "structure", "energy_ratio", "leak", "over_occlusion"].filter((m) => s[m] !== undefined)
       .map((m) => `${m.replace("_", "-")} ${number(s[m])}`).join(", "), tip);
   }
   for (const warning of d.warnings) make("div", "warning: " + warning, tip).className = "warning";

@@ -88,7 +88,7 @@ pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> St
 
 type Column = (&'static str, fn(&Measured, &PartResult) -> Option<f64>);
 
-const COLUMNS: [Column; 15] = [
+const COLUMNS: [Column; 16] = [
     ("E_t", |_, p| p.e),
     ("noise", |_, p| p.e_noise),
     ("pops", |_, p| p.pops),
@@ -100,6 +100,7 @@ const COLUMNS: [Column; 15] = [
     ("overshoot", |_, p| p.step.map(|s| s.overshoot)),
     ("settling frames", |_, p| p.settling.map(|f| f as f64)),
     ("relMSE", |_, p| p.scores.as_ref().map(|s| s.relmse)),
+    ("structure", |_, p| p.scores.as_ref().map(|s| s.structure)),
     ("energy", |_, p| p.scores.as_ref().map(|s| s.energy_ratio)),
     ("leak", |_, p| p.scores.as_ref().map(|s| s.leak)),
     ("over-occluded", |_, p| p.scores.as_ref().map(|s| s.over_occluded)),

@@ -62,6 +62,9 @@ pub struct PartResult {
     pub scores: Option<Scores>,
     /// relMSE between the halves of that reference.
     pub noise: Option<f64>,
+    /// Structure error that the noise of that reference alone gives, natural log units.
+    #[serde(default)]
+    pub structure_noise: Option<f64>,
     /// Frame by frame.
     pub frames: Vec<FrameScore>,
 }

@@ -6,7 +6,7 @@ use crate::experiment::{CameraChoice, Experiment};
 use crate::lab::{Lab, LabError};
 use crate::measure::Warm;
 use crate::metrics::Linear;
-use crate::reference::{GRAPH, Gathered, Goal, Tracer};
+use crate::reference::{GRAPH, Gathered, Goal, Noise, Tracer};
 use crate::scene::Scene;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::ControlFlow;
@@ -20,8 +20,8 @@ pub(super) struct ReferencePart {
     pub mean: Linear,
     /// Means of the even and of the odd samples.
     pub halves: [Linear; 2],
-    /// relMSE between the halves.
-    pub noise: f64,
+    /// What its own noise scores.
+    pub noise: Noise,
 }
 
 /// A reference of one frame.

@@ -80,7 +80,8 @@ impl PartSeries {
             if last {
                 let compared = Compared::new(&x, &t.mean, self.kind).ok();
                 self.result.scores = compared.and_then(|c| c.scores(None));
-                self.result.noise = number(t.noise);
+                self.result.noise = number(t.noise.relmse);
+                self.result.structure_noise = number(t.noise.structure);
             }
         }
         let bad = frame.change.map(|c| c.rms).or(frame.relmse.filter(|_| self.before.is_none()));

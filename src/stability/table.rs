@@ -7,7 +7,7 @@ use crate::lab::LabError;
 type Column = (&'static str, fn(&PartResult) -> String);
 
 /// Columns of every part.
-const COLUMNS: [Column; 18] = [
+const COLUMNS: [Column; 20] = [
     ("E_t", |p| text(p.e)),
     ("E_t noise", |p| text(p.e_noise)),
     ("told apart", |p| p.told_apart.map_or("", |t| if t { "yes" } else { "no" }).into()),
@@ -21,6 +21,8 @@ const COLUMNS: [Column; 18] = [
     ("settling frames", |p| p.settling.map_or(String::new(), |f| f.to_string())),
     ("relMSE", |p| text(p.scores.as_ref().map(|s| s.relmse))),
     ("relMSE noise", |p| text(p.noise)),
+    ("structure", |p| text(p.scores.as_ref().map(|s| s.structure))),
+    ("structure noise", |p| text(p.structure_noise)),
     ("energy ratio", |p| text(p.scores.as_ref().map(|s| s.energy_ratio))),
     ("leak", |p| text(p.scores.as_ref().map(|s| s.leak))),
     ("dark", |p| text(p.scores.as_ref().map(|s| s.dark))),

@@ -5,7 +5,7 @@ use super::report::Report;
 use crate::capture::scene_hash;
 use crate::experiment::{Experiment, placed_text};
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of, params_of};
-use crate::metrics::{Compared, Kind, Linear, relmse};
+use crate::metrics::{Compared, Kind, Linear, relmse, structure};
 use crate::reference::{GRAPH, Reference, find};
 use crate::report::error_of;
 use crate::scene::{Light, Scene};
@@ -122,15 +122,18 @@ impl Cache {
         let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
         let expected = reference.parts.get(&part).ok_or_else(|| wrong("the reference does not have it".into()))?;
         let light = light_of(request, &part)?;
-        let error = if metric == "relmse" {
-            relmse(&light, &expected.mean).map_err(|e| wrong(e.0))?
-        } else {
-            let compared = Compared::new(&light, &expected.mean, Kind::of_part(&part)).map_err(|e| wrong(e.0))?;
-            let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures".into()))?;
-            numbers(&scores).get(&metric).copied().unwrap_or(f64::NAN)
+        let error = match metric.as_str() {
+            "relmse" => relmse(&light, &expected.mean).map_err(|e| wrong(e.0))?,
+            "structure" => structure(&light, &expected.mean).map_err(|e| wrong(e.0))?,
+            _ => {
+                let compared = Compared::new(&light, &expected.mean, Kind::of_part(&part)).map_err(|e| wrong(e.0))?;
+                let scores = compared.scores(None);
+                let scores = scores.ok_or_else(|| wrong("no pixel is a number in both pictures".into()))?;
+                numbers(&scores).get(&metric).copied().unwrap_or(f64::NAN)
+            }
         };
-        let error =
-            ReferenceError { error: error_of(&metric, error), noise: expected.noise, samples: reference.samples };
+        let (noise, samples) = (expected.noise.relmse, reference.samples);
+        let error = ReferenceError { error: error_of(&metric, error), noise, samples };
         Ok(PictureError { subject, error: Some(error) })
     }
 

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Metrics that are offered, by their fields' names.
-pub const METRICS: [&str; 8] = ["relmse", "hdr_flip", "flip", "rmse", "smape", "energy_ratio", "leak", "over_occluded"];
+pub const METRICS: [&str; 9] =
+    ["relmse", "hdr_flip", "flip", "structure", "rmse", "smape", "energy_ratio", "leak", "over_occluded"];
 
 /// A subject, part and metric.
 #[derive(Clone, Debug, PartialEq)]
