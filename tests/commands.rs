@@ -303,7 +303,7 @@ fn graph_explains_itself() {
 
     let params = graph(&["passes/vct.ron", "--params"]);
     assert!(
-        params.contains("  voxel_dim = 160 voxels  (a whole number, 16 to 512)\n      Edge of the volume"),
+        params.contains("  voxel_dim = 160 voxels  (a whole number, 16 to 512; plain: 128)\n      Edge of the volume"),
         "{params}"
     );
     assert!(params.contains("  voxelizer = raster  (one of raster, tessellated)\n"), "{params}");

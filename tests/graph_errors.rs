@@ -611,6 +611,10 @@ fn parameters() {
     passes/graph.ron:4:9: error: default of 'cells': 1024 is outside 16 to 512
         |         Int(name: "cells", default: 1024, range: (16, 512), help: "Edge of the grid."),
     "#);
+    assert_snapshot!(graph("default: 64", "default: 64, plain: 8"), @r#"
+    passes/graph.ron:4:9: error: plain value of 'cells': 8 is outside 16 to 512
+        |         Int(name: "cells", default: 64, plain: 8, range: (16, 512), help: "Edge of the grid."),
+    "#);
     assert_snapshot!(graph("default: 64, ", ""), @r#"
     passes/graph.ron:4:9: error: parameter 'cells' has no default
         |         Int(name: "cells", range: (16, 512), help: "Edge of the grid."),

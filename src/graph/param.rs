@@ -75,6 +75,8 @@ pub struct Param {
     pub kind: Kind,
     /// Value when nothing else is said.
     pub default: Value,
+    /// Value of a plain or cheaper method, to tell what the parameter is worth.
+    pub plain: Option<Value>,
     /// Least and greatest value, of each component of a vector.
     pub range: Option<(f64, f64)>,
     /// Distance of neighbouring settings, for sliders and sweeps.
@@ -125,6 +127,8 @@ pub struct ModuleFields {
     pub options: Entries<String>,
     /// Default; the first option when absent.
     pub default: Option<String>,
+    /// Plain or cheaper option.
+    pub plain: Option<String>,
     /// Group.
     #[serde(default)]
     pub group: String,
@@ -140,6 +144,8 @@ pub struct Fields<T> {
     pub name: Loc<String>,
     /// Default; a choice's first option when absent.
     pub default: Option<T>,
+    /// Plain or cheaper value.
+    pub plain: Option<T>,
     /// Least and greatest.
     pub range: Option<(f64, f64)>,
     /// Step.
@@ -185,6 +191,7 @@ impl Decl {
                 let choice = Fields {
                     name: f.name.clone(),
                     default: f.default.clone(),
+                    plain: f.plain.clone(),
                     range: None,
                     step: None,
                     unit: String::new(),
@@ -225,7 +232,7 @@ impl Decl {
 
 fn make<T>(fields: &Fields<T>, kind: Kind, value: impl Fn(&T) -> Value) -> Result<Param, String> {
     let name = &fields.name.value;
-    let default = fields.default.as_ref().map(value).ok_or(format!("parameter '{name}' has no default"))?;
+    let default = fields.default.as_ref().map(&value).ok_or(format!("parameter '{name}' has no default"))?;
     if fields.help.trim().is_empty() || fields.help.contains('\n') {
         return Err(format!("parameter '{name}' needs one line of help"));
     }
@@ -240,7 +247,8 @@ fn make<T>(fields: &Fields<T>, kind: Kind, value: impl Fn(&T) -> Value) -> Resul
     let param = Param {
         name: name.clone(),
         kind,
-        default: default.clone(),
+        default,
+        plain: fields.plain.as_ref().map(value),
         range: fields.range,
         step: fields.step,
         unit: fields.unit.clone(),
@@ -249,7 +257,8 @@ fn make<T>(fields: &Fields<T>, kind: Kind, value: impl Fn(&T) -> Value) -> Resul
         constant: fields.constant,
         files: Vec::new(),
     };
-    param.check(&default).map_err(|e| format!("default of {e}"))?;
+    param.check(&param.default).map_err(|e| format!("default of {e}"))?;
+    param.plain.iter().try_for_each(|v| param.check(v)).map_err(|e| format!("plain value of {e}"))?;
     Ok(param)
 }
 

@@ -211,7 +211,8 @@ pub fn params(params: &Params) -> String {
         }
         let range = p.range.map_or(String::new(), |(a, b)| format!(", {a} to {b}"));
         let unit = if p.unit.is_empty() { String::new() } else { format!(" {}", p.unit) };
-        let _ = writeln!(out, "  {} = {}{unit}  ({}{range})", p.name, p.default, p.expected());
+        let plain = p.plain.as_ref().map_or(String::new(), |v| format!("; plain: {v}"));
+        let _ = writeln!(out, "  {} = {}{unit}  ({}{range}{plain})", p.name, p.default, p.expected());
         let _ = writeln!(out, "      {}", p.help);
     }
     out
