@@ -2,6 +2,7 @@
 //!
 //! Knowledge flows one way: [`vulkan`], [`shader`], [`graph`] know no scene; [`scene`] knows no device; [`lab`] joins
 //! them to run an [`experiment`]; the commands and the [`workbench`] in its [`window`] are thin users of the lab.
+pub mod ablation;
 pub mod bench;
 pub mod camera_path;
 pub mod capture;

@@ -46,6 +46,23 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/sweeps").join(&sweep.name));
     let options = Options { folder, shard, frames, again: args.again, samples: args.reference };
+    let Counts { done, failed, left } = run_with_bar(&home, &args.device, &sweep, &options)?;
+    let of = if shard.of > 1 { format!("shard {}/{}: ", shard.number, shard.of) } else { String::new() };
+    say!("wrote {}", super::shown(&options.folder).display());
+    say!("{of}{} points: {done} done, {failed} failed, {left} left", done + failed + left);
+    match failed {
+        0 => Ok(()),
+        n => Err(LabError::Request(format!("{n} points failed: their errors are in sweep.csv"))),
+    }
+}
+
+/// Measures a sweep's points with a progress bar.
+pub fn run_with_bar(
+    home: &Workspace,
+    device: &DeviceArgs,
+    sweep: &Sweep,
+    options: &Options,
+) -> Result<Counts, LabError> {
     let bar = ProgressBar::new(0).with_style(
         ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
@@ -77,17 +94,10 @@ pub fn run(args: &SweepArgs) -> Result<(), LabError> {
             bar.inc(1);
         }
     };
-    let reopen = || Lab::open(home.clone(), args.device.options());
-    let counts = run_sweep(&reopen, &super::open_scene, &sweep, &options, &mut on_progress);
+    let reopen = || Lab::open(home.clone(), device.options());
+    let counts = run_sweep(&reopen, &super::open_scene, sweep, options, &mut on_progress);
     bar.finish_and_clear();
-    let Counts { done, failed, left } = counts?;
-    let of = if shard.of > 1 { format!("shard {}/{}: ", shard.number, shard.of) } else { String::new() };
-    say!("wrote {}", super::shown(&options.folder).display());
-    say!("{of}{} points: {done} done, {failed} failed, {left} left", done + failed + left);
-    match failed {
-        0 => Ok(()),
-        n => Err(LabError::Request(format!("{n} points failed: their errors are in sweep.csv"))),
-    }
+    counts
 }
 
 fn shown(labels: &[(String, String)]) -> String {

@@ -13,7 +13,7 @@ mod settings;
 mod table;
 
 pub use list::{PointBuilder, SweepPoint, check, list};
-pub use points::{Labels, MAX_POINTS, Sweep};
+pub use points::{Labels, MAX_POINTS, NOTHING, SCENE, SET, Sweep};
 pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, collect};
 pub(crate) use record::{read_json, write_file};
 pub use run::{Counts, Options, Progress, Shard, run};

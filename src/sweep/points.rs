@@ -13,6 +13,13 @@ pub const MAX_POINTS: usize = 20_000;
 /// Light that a lit surface reflects once more: what most methods gather.
 pub(super) const DEFAULT_BOUNCES: [u32; 1] = [1];
 
+/// What [`Sweep::one_at_a_time`] varies: the scene,
+pub const SCENE: &str = "scene";
+/// and what is set over the experiment, `NAME=VALUE`
+pub const SET: &str = "set";
+/// or this where it is as it is.
+pub const NOTHING: &str = "nothing";
+
 /// The values of a point, by the names of what is varied.
 pub type Labels = Vec<(String, String)>;
 
@@ -76,6 +83,46 @@ impl Sweep {
         let bounces = DEFAULT_BOUNCES.to_vec();
         let (beside, fixed, folder) = (Vec::new(), Vec::new(), PathBuf::from("."));
         Ok(Sweep { name, text, experiments, beside, names, frames, bounces, fixed, axes: list, folder })
+    }
+
+    /// A sweep without a file: in every scene an experiment as it is, then with each of some settings alone, name and RON.
+    pub fn one_at_a_time(
+        mut experiment: Experiment,
+        scenes: &[String],
+        settings: &[(String, String)],
+        frames: Frames,
+        bounces: u32,
+    ) -> Sweep {
+        let lines = || settings.iter().map(|(name, value)| format!("{name}={value}"));
+        let text = lines().collect::<Vec<_>>().join("\n");
+        experiment.sources.add("the settings in turn".as_ref(), text.clone());
+        let mut offset = 0;
+        let mut set = vec![Choice { labels: vec![(SET.into(), NOTHING.into())], settings: Vec::new() }];
+        for ((name, value), line) in settings.iter().zip(lines()) {
+            let name = Loc { value: name.clone(), at: At { file: 0, offset } };
+            offset += u32::try_from(line.len() + 1).unwrap_or(0);
+            let settings = vec![Setting { name, text: value.clone() }];
+            set.push(Choice { labels: vec![(SET.into(), line)], settings });
+        }
+        let scene = |name: &String| Choice {
+            labels: vec![(SCENE.into(), name.clone())],
+            settings: vec![Setting {
+                name: Loc { value: "scene".into(), at: At { file: 0, offset: 0 } },
+                text: format!("{name:?}"),
+            }],
+        };
+        Sweep {
+            name: experiment.name.clone(),
+            text,
+            experiments: vec![experiment],
+            beside: Vec::new(),
+            names: vec![SCENE.into(), SET.into()],
+            frames,
+            bounces: vec![bounces],
+            fixed: Vec::new(),
+            axes: vec![scenes.iter().map(scene).collect(), set],
+            folder: PathBuf::from("."),
+        }
     }
 
     /// How many points there are.

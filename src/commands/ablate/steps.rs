@@ -1,39 +1,13 @@
-//! `conelab ablate`.
+//! `conelab ablate --steps`: the steps from an ideal to the method that a graph names.
 
-use super::DeviceArgs;
-use super::adapt::{self, ExperimentArgs};
+use super::super::{adapt, reference, validated, write_json};
+use super::AblateArgs;
 use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::metrics::{Linear, relative_distance, relmse};
 use crate::reference::{Goal, Reference};
-use clap::Args;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Arc;
-
-/// Arguments of `ablate`.
-#[derive(Debug, Args)]
-pub struct AblateArgs {
-    #[command(flatten)]
-    experiment: ExperimentArgs,
-    /// Samples of every pixel of the reference, if more are needed than are there.
-    #[arg(long, default_value_t = 256)]
-    spp: u64,
-    /// Bounces of the reference.
-    #[arg(long, default_value_t = 1)]
-    bounces: u32,
-    /// Frames to run; methods that gather over time need more than one.
-    #[arg(long, default_value_t = 1)]
-    frames: usize,
-    /// Write the numbers to this JSON file.
-    #[arg(long)]
-    json: Option<PathBuf>,
-    /// Write the picture of every step and part, as EXR, to this folder.
-    #[arg(long, value_name = "FOLDER")]
-    pictures: Option<PathBuf>,
-    #[command(flatten)]
-    device: DeviceArgs,
-}
 
 /// Version of what `--json` writes.
 const SCHEMA: &str = "conelab-ablation-1";
@@ -63,7 +37,8 @@ struct Ablation {
 /// Tells what each step of the graph's ablation adds to an experiment's error.
 pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
-    adapt::check_frames(args.frames, 0, 0.0)?;
+    let frames = args.frames.unwrap_or(1);
+    adapt::check_frames(frames, 0, 0.0)?;
     let home = Workspace::find()?;
     let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
     if loaded.graph.ablation.is_empty() {
@@ -72,7 +47,7 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     }
     let scene = Arc::new(adapt::open_scene(&experiment)?);
     let lab = Lab::open(home, args.device.options())?;
-    let reference = super::reference::with_bar(&lab, &experiment, &scene, args.bounces, Goal::Samples(args.spp))?;
+    let reference = reference::with_bar(&lab, &experiment, &scene, args.bounces, Goal::Samples(args.spp))?;
 
     let names = parts_of(&loaded.graph);
     let (mut steps, mut before): (Vec<Step>, BTreeMap<String, Linear>) = (Vec::new(), BTreeMap::new());
@@ -83,7 +58,7 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
         }
         let wanted = names.iter().map(|n| n.1.clone()).collect();
         let mut session = lab.build(&set, &loaded, scene.clone(), wanted, None)?;
-        for _ in 0..args.frames {
+        for _ in 0..frames {
             session.frame(0.0)?;
         }
         session.finish()?;
@@ -116,9 +91,9 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
             noise: reference.parts.iter().map(|(n, p)| (n.clone(), p.noise.relmse)).collect(),
             steps,
         };
-        super::write_json(path, &ablation)?;
+        write_json(path, &ablation)?;
     }
-    super::validated(&lab)
+    validated(&lab)
 }
 
 fn print(reference: &Reference, steps: &[Step]) {

@@ -1,0 +1,106 @@
+//! `conelab ablate`.
+
+mod steps;
+
+use super::DeviceArgs;
+use super::adapt::{self, ExperimentArgs};
+use super::sweep::run_with_bar;
+use crate::ablation::{changes, csv, markdown, rows};
+use crate::lab::{LabError, Workspace, params_of};
+use crate::measure::Frames;
+use crate::sweep::{Options, Shard, Sweep, write_file};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Arguments of `ablate`.
+#[derive(Debug, Args)]
+pub struct AblateArgs {
+    #[command(flatten)]
+    experiment: ExperimentArgs,
+    /// Scenes to measure in: built-in names, scene RONs or model files; the experiment's own when absent.
+    #[arg(long, value_name = "SCENE,...", value_delimiter = ',', conflicts_with_all = ["scene", "steps"])]
+    scenes: Vec<String>,
+    /// Change only these parameters; all that have a plain value when absent.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "steps")]
+    only: Vec<String>,
+    /// Runs of the experiment as it is, whose spread is the noise of times.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(2..=100), conflicts_with = "steps")]
+    runs: u32,
+    /// Frames before those that are timed; on a GPU more, until it has worked for 100 ms.
+    #[arg(long, default_value_t = 10, conflicts_with = "steps")]
+    warmup: usize,
+    /// Where everything is kept; captures/ablations/NAME when absent. What is finished there is not measured again.
+    #[arg(short, long, value_name = "FOLDER", conflicts_with = "steps")]
+    output: Option<PathBuf>,
+    /// Run the graph's own steps from an ideal to the method instead, and print what each adds to the error.
+    #[arg(long)]
+    steps: bool,
+    /// Samples of every pixel of the references, if more are needed than are there.
+    #[arg(long, default_value_t = 256)]
+    spp: u64,
+    /// Bounces of the references.
+    #[arg(long, default_value_t = 1)]
+    bounces: u32,
+    /// Frames that are timed, 50 when absent; of each step 1: methods that gather over time need more.
+    #[arg(long)]
+    frames: Option<usize>,
+    /// With --steps: write the numbers to this JSON file.
+    #[arg(long, requires = "steps")]
+    json: Option<PathBuf>,
+    /// With --steps: write the picture of every step and part, as EXR, to this folder.
+    #[arg(long, value_name = "FOLDER", requires = "steps")]
+    pictures: Option<PathBuf>,
+    #[command(flatten)]
+    device: DeviceArgs,
+}
+
+/// Tells what each parameter of an experiment is worth, or what each step of its graph adds to its error.
+pub fn run(args: &AblateArgs) -> Result<(), LabError> {
+    if args.steps { steps::run(args) } else { parameters(args) }
+}
+
+fn parameters(args: &AblateArgs) -> Result<(), LabError> {
+    let experiment = args.experiment.read()?;
+    let frames = Frames { warmup: args.warmup, count: args.frames.unwrap_or(50) };
+    adapt::check_frames(frames.count, frames.warmup, 0.0)?;
+    let home = Workspace::find()?;
+    let graph = home.load(&experiment.graph).map_err(LabError::Input)?.graph;
+    let changes = changes(&params_of(&graph, &experiment)?, &args.only)?;
+    let scenes = if args.scenes.is_empty() { vec![experiment.scene.clone()] } else { args.scenes.clone() };
+    let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/ablations").join(&experiment.name));
+
+    // Points of one number have one result: repetitions are sweeps of their own.
+    let mut folders = vec![folder.clone()];
+    folders.extend((2..=args.runs).map(|run| folder.join(format!("unchanged-{run}"))));
+    let mut failed = 0;
+    for (number, folder) in folders.iter().enumerate() {
+        let settings: Vec<(String, String)> = match number {
+            0 => changes.iter().map(|c| (c.name.clone(), c.to.to_string())).collect(),
+            _ => Vec::new(),
+        };
+        let sweep = Sweep::one_at_a_time(experiment.clone(), &scenes, &settings, frames, args.bounces);
+        let shard = Shard { number: 1, of: 1 };
+        let options = Options { folder: folder.clone(), shard, frames, again: false, samples: Some(args.spp) };
+        failed += run_with_bar(&home, &args.device, &sweep, &options)?.failed;
+    }
+
+    let rows = rows(&folders, &scenes, &changes)?;
+    let table = markdown(&rows);
+    let text = format!(
+        "# {}: each parameter at its plain value\n\nScenes: {}; {} bounces; {}x{}; {} frames; {} runs.\n\n{table}",
+        experiment.name,
+        scenes.join(", "),
+        args.bounces,
+        experiment.size.0,
+        experiment.size.1,
+        frames.count,
+        args.runs
+    );
+    write_file(&folder.join("ablation.md"), text.as_bytes())?;
+    write_file(&folder.join("ablation.csv"), csv(&rows)?.as_bytes())?;
+    say!("{table}\nwrote {}", super::shown(&folder).display());
+    match failed {
+        0 => Ok(()),
+        n => Err(LabError::Request(format!("{n} points failed: their errors are in sweep.csv"))),
+    }
+}
