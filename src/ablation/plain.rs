@@ -53,15 +53,53 @@ fn change(param: &Param, value: &Value) -> Option<Change> {
     Some(Change { name: param.name.clone(), from: value.clone(), to: plain.clone() })
 }
 
-/// Whether a number lies beyond the plain one, seen from the default: a grid of 64 where 160 is usual and 128 plain.
+/// Whether a number lies beyond the plain one, seen from the default where the parameter is declared: a grid of 64 where
+/// 160 is usual and 128 plain.
 fn is_plainer(param: &Param, value: &Value, plain: &Value) -> bool {
     let number = |v: &Value| match v {
         Value::Int(v) => Some(*v as f64),
         Value::Float(v) => Some(*v),
         _ => None,
     };
-    let (Some(value), Some(plain), Some(default)) = (number(value), number(plain), number(&param.default)) else {
+    let (Some(value), Some(plain), Some(usual)) = (number(value), number(plain), number(&param.declared)) else {
         return false;
     };
-    (value - plain) * (default - plain) < 0.0
+    (value - plain) * (usual - plain) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::changes;
+    use crate::graph::param::{Decl, Params, Value};
+
+    fn params(decls: &[&str]) -> Params {
+        let param = |d: &&str| crate::graph::source::options().from_str::<Decl>(d).unwrap().param().unwrap();
+        Params::new(decls.iter().map(param).collect())
+    }
+
+    #[test]
+    fn what_is_plain_already_or_plainer_is_left_out() {
+        let mut params = params(&[
+            r#"Int(name: "grid", default: 160, plain: 128, help: "h")"#,
+            r#"Float(name: "step", default: 1.0, plain: 1.5, help: "h")"#,
+            r#"Float(name: "shift", default: 0.0, plain: 0.0, help: "h")"#,
+            r#"Bool(name: "turn", default: false, plain: false, help: "h")"#,
+            r#"Choice(name: "filter", options: ["wide", "near"], plain: "near", help: "h")"#,
+            r#"Int(name: "count", default: 3, help: "h")"#,
+        ]);
+        let named =
+            |params: &_| -> Vec<String> { changes(params, &[]).unwrap().iter().map(super::Change::setting).collect() };
+        assert_eq!(named(&params), ["grid=128", "step=1.5", "filter=near"]);
+        for (name, value) in [("grid", "64"), ("step", "2.0"), ("shift", "-1.0"), ("turn", "true"), ("filter", "near")]
+        {
+            params.set(name, value).unwrap();
+        }
+        assert_eq!(named(&params), ["shift=0.0", "turn=false"]);
+        // A graph whose own default is plainer than what is declared.
+        let grid = params.index("grid").unwrap();
+        (params.list[grid].default, params.values[grid]) = (Value::Int(32), Value::Int(32));
+        assert_eq!(named(&params), ["shift=0.0", "turn=false"]);
+        assert!(changes(&params, &["grid".into()]).unwrap_err().to_string().contains("plain value (128) already"));
+        assert!(changes(&params, &["count".into()]).unwrap_err().to_string().contains("has no plain value"));
+    }
 }

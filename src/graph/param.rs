@@ -75,6 +75,8 @@ pub struct Param {
     pub kind: Kind,
     /// Value when nothing else is said.
     pub default: Value,
+    /// Default where the parameter is declared; a graph that includes it may have another.
+    pub declared: Value,
     /// Value of a plain or cheaper method, to tell what the parameter is worth.
     pub plain: Option<Value>,
     /// Least and greatest value, of each component of a vector.
@@ -247,6 +249,7 @@ fn make<T>(fields: &Fields<T>, kind: Kind, value: impl Fn(&T) -> Value) -> Resul
     let param = Param {
         name: name.clone(),
         kind,
+        declared: default.clone(),
         default,
         plain: fields.plain.as_ref().map(value),
         range: fields.range,
