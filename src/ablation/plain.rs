@@ -56,12 +56,7 @@ fn change(param: &Param, value: &Value) -> Option<Change> {
 /// Whether a number lies beyond the plain one, seen from the default where the parameter is declared: a grid of 64 where
 /// 160 is usual and 128 plain.
 fn is_plainer(param: &Param, value: &Value, plain: &Value) -> bool {
-    let number = |v: &Value| match v {
-        Value::Int(v) => Some(*v as f64),
-        Value::Float(v) => Some(*v),
-        _ => None,
-    };
-    let (Some(value), Some(plain), Some(usual)) = (number(value), number(plain), number(&param.declared)) else {
+    let (Some(value), Some(plain), Some(usual)) = (value.number(), plain.number(), param.declared.number()) else {
         return false;
     };
     (value - plain) * (usual - plain) < 0.0

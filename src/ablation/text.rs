@@ -3,6 +3,7 @@
 use super::row::{Delta, METRICS, PARTS, Row};
 use crate::lab::LabError;
 use crate::report::short;
+use crate::sweep::csv_text;
 
 /// The tables as Markdown: costs and verdicts, then the errors of each part.
 pub fn markdown(rows: &[Row]) -> String {
@@ -109,8 +110,6 @@ fn aligned(table: &[Vec<String>]) -> String {
 /// # Errors
 /// Writing to memory gives none.
 pub fn csv(rows: &[Row]) -> Result<String, LabError> {
-    let failed = |e: String| LabError::Request(format!("cannot make the table: {e}"));
-    let mut out = csv::Writer::from_writer(Vec::new());
     let head = [
         "parameter",
         "is",
@@ -125,7 +124,7 @@ pub fn csv(rows: &[Row]) -> Result<String, LabError> {
         "its noise",
         "worst scene",
     ];
-    out.write_record(head).map_err(|e| failed(e.to_string()))?;
+    let mut lines = vec![head.map(String::from).to_vec()];
     for row in rows {
         let cost = [("ms", &row.ms), ("bytes", &row.bytes)].into_iter();
         let cost = cost.filter_map(|(quantity, delta)| Some(("", quantity, delta.as_ref()?)));
@@ -134,9 +133,8 @@ pub fn csv(rows: &[Row]) -> Result<String, LabError> {
             let names = [change.name.clone(), change.from.to_string(), change.to.to_string(), verdict];
             let numbers = [d.unchanged, d.change, d.noise, d.worst, d.worst_noise].map(|v| v.to_string());
             let line = names.into_iter().chain([part.into(), quantity.into()]).chain(numbers);
-            out.write_record(line.chain([d.worst_scene.clone()])).map_err(|e| failed(e.to_string()))?;
+            lines.push(line.chain([d.worst_scene.clone()]).collect());
         }
     }
-    let bytes = out.into_inner().map_err(|e| failed(e.to_string()))?;
-    String::from_utf8(bytes).map_err(|e| failed(e.to_string()))
+    csv_text(&lines)
 }

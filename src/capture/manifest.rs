@@ -159,6 +159,18 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
+/// 32 hexadecimal digits of SHA-256 over texts and their lengths: what names a result by all that it depends on.
+pub(crate) fn id_of<T: AsRef<str>>(facts: impl IntoIterator<Item = T>) -> String {
+    let mut hash = Sha256::new();
+    for fact in facts {
+        hash.update((fact.as_ref().len() as u64).to_le_bytes());
+        hash.update(fact.as_ref());
+    }
+    let mut id = hex(&hash.finalize());
+    id.truncate(32);
+    id
+}
+
 /// All files below a folder by their paths in it, links left out.
 pub(super) fn files_below(folder: &Path) -> std::io::Result<Vec<String>> {
     let mut list = Vec::new();

@@ -8,8 +8,8 @@ mod scene_hash;
 mod take;
 
 pub use list::{Summary, list, sweep_partials};
-pub(crate) use manifest::hex;
 pub use manifest::{Image, Manifest, SCHEMA, SceneRecord};
+pub(crate) use manifest::{hex, id_of};
 pub use parts::parts;
 pub use replay::{Difference, Replay, changes, replay};
 pub use scene_hash::scene_hash;

@@ -9,7 +9,7 @@ pub use search::{Found, Limits, Step, Stop, Trial, search};
 
 use crate::experiment::Experiment;
 use crate::graph::load::Graph;
-use crate::graph::param::{Params, Value};
+use crate::graph::param::Params;
 use crate::lab::LabError;
 
 /// A parameter that may be varied, and the values to choose from in the order in which neighbours are alike.
@@ -46,18 +46,13 @@ pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
 
 /// The place on the axes nearest to an experiment's own values; the first of an axis where there is no nearest.
 pub fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
-    let number = |value: &Value| match value {
-        Value::Int(v) => Some(*v as f64),
-        Value::Float(v) => Some(*v),
-        _ => None,
-    };
     let place = |axis: &Axis| {
         let own = params.index(&axis.name).map(|i| &params.values[i])?;
         let distance = |text: &String| {
             let mut tried = params.clone();
             tried.set(&axis.name, text).ok()?;
             let value = &tried.values[tried.index(&axis.name)?];
-            if value == own { Some(0.0) } else { Some((number(value)? - number(own)?).abs()) }
+            if value == own { Some(0.0) } else { Some((value.number()? - own.number()?).abs()) }
         };
         let near = axis.values.iter().enumerate().filter_map(|(i, v)| Some((i, distance(v)?)));
         near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i)

@@ -51,6 +51,17 @@ pub enum Value {
     Choice(String),
 }
 
+impl Value {
+    /// A whole or other number; nothing for other kinds.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Value::Int(v) => Some(*v as f64),
+            Value::Float(v) => Some(*v),
+            _ => None,
+        }
+    }
+}
+
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

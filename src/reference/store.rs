@@ -93,16 +93,8 @@ impl Sums {
 
     /// relMSE of the even samples' mean against the odd ones'.
     pub fn noise(&self, part: &str) -> Result<f64, LabError> {
-        self.between_halves(part, relmse)
-    }
-
-    fn between_halves(
-        &self,
-        part: &str,
-        metric: fn(&Linear, &Linear) -> Result<f64, MetricError>,
-    ) -> Result<f64, LabError> {
         let (even, odd) = (self.mean(part, &[0]), self.mean(part, &[1]));
-        metric(&even, &odd).map_err(|e| LabError::Request(format!("the reference's '{part}': {e}")))
+        relmse(&even, &odd).map_err(|e| wrong(part, &e))
     }
 
     /// Means of the even and of the odd samples, by part.
@@ -113,12 +105,21 @@ impl Sums {
     /// Means and noise of all parts.
     pub fn reference(&self, folder: &Path) -> Result<Reference, LabError> {
         let part = |name: &String| {
-            let noise = Noise { relmse: self.noise(name)?, structure: self.between_halves(name, structure_noise)? };
+            let (even, odd) = (self.mean(name, &[0]), self.mean(name, &[1]));
+            let failed = |e: MetricError| wrong(name, &e);
+            let noise = Noise {
+                relmse: relmse(&even, &odd).map_err(failed)?,
+                structure: structure_noise(&even, &odd).map_err(failed)?,
+            };
             Ok((name.clone(), ReferencePart { mean: self.mean(name, &[0, 1]), noise }))
         };
         let parts = self.parts.keys().map(part).collect::<Result<_, LabError>>()?;
         Ok(Reference { size: self.size, samples: self.samples, parts, folder: folder.to_path_buf() })
     }
+}
+
+fn wrong(part: &str, why: &MetricError) -> LabError {
+    LabError::Request(format!("the reference's '{part}': {why}"))
 }
 
 fn failed(path: &Path, why: impl std::fmt::Display) -> LabError {

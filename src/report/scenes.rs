@@ -5,8 +5,7 @@ use super::data::{Data, Dot};
 use super::page::{escaped, url};
 use super::scatter::short;
 use crate::lab::LabError;
-use crate::sweep::Subject;
-use std::cmp::Ordering;
+use crate::sweep::{Subject, csv_text};
 use std::fmt::Write;
 
 /// What tells rows apart; everything else that is varied tells methods apart.
@@ -74,13 +73,7 @@ impl Scenes {
         // Stable: scenes that the first method has no score of come last, in the order of the sweep.
         rows.sort_by(|a, b| match (a.worst(data), b.worst(data)) {
             (Some(a), Some(b)) => b.total_cmp(&a),
-            (a, b) => {
-                if a.is_some() == b.is_some() {
-                    Ordering::Equal
-                } else {
-                    b.is_some().cmp(&a.is_some())
-                }
-            }
+            (a, b) => b.is_some().cmp(&a.is_some()),
         });
         several.then_some(Scenes { methods, rows })
     }
@@ -122,10 +115,8 @@ impl Scenes {
     /// # Errors
     /// Writing to memory gives none, whatever the data.
     pub fn csv(&self, data: &Data) -> Result<String, LabError> {
-        let failed = |e: csv::Error| LabError::Request(format!("cannot make the table of scenes: {e}"));
-        let mut out = csv::Writer::from_writer(Vec::new());
         let head = ["scene", "camera", "width", "height", "method", "bounces", "energy_ratio", "relmse", "flip"];
-        out.write_record(head.into_iter().chain(["median ms", "error"])).map_err(failed)?;
+        let mut lines = vec![head.into_iter().chain(["median ms", "error"]).map(String::from).collect::<Vec<_>>()];
         for row in &self.rows {
             let subject = &row.key.0;
             for (method, cell) in self.methods.iter().zip(&row.cells) {
@@ -145,12 +136,11 @@ impl Scenes {
                     let (width, height) = (subject.size.0.to_string(), subject.size.1.to_string());
                     let place = [&subject.scene, &subject.camera, &width, &height, method, &bounces].map(String::clone);
                     let values = values.map(|v| v.map_or(String::new(), |v| v.to_string()));
-                    out.write_record(place.iter().chain(&values).chain([&ms, &error])).map_err(failed)?;
+                    lines.push(place.into_iter().chain(values).chain([ms.clone(), error.clone()]).collect());
                 }
             }
         }
-        let bytes = out.into_inner().map_err(|e| LabError::Request(e.to_string()))?;
-        String::from_utf8(bytes).map_err(|e| LabError::Request(e.to_string()))
+        csv_text(&lines)
     }
 }
 

@@ -4,7 +4,7 @@ use super::cameras::Cameras;
 use super::file::{Case, Method, Suite};
 use super::motion::FrameState;
 use super::param_track::ParamTrack;
-use crate::capture::{hex, scene_hash};
+use crate::capture::{id_of, scene_hash};
 use crate::experiment::{Experiment, check_size};
 use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::{LabError, Workspace, camera_of, parts_of};
@@ -13,7 +13,6 @@ use crate::reference;
 use crate::scene::Scene;
 use crate::sweep::PointBuilder;
 use crate::vulkan::DeviceInfo;
-use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -181,8 +180,8 @@ fn job(
     };
     let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
     let work =
-        number(&[point.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
-    let id = number(&[
+        id_of(&[point.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
+    let id = id_of(&[
         work.clone(),
         format!("{samples:?} {} {} {} {} {shaders}", suite.bounces, suite.seed, case.voxels, suite.pictures),
         // Two names of the same thing are two rows.
@@ -202,18 +201,6 @@ fn job(
         reference_moves,
         frames,
     })
-}
-
-/// 32 hexadecimal digits of SHA-256.
-fn number(facts: &[String]) -> String {
-    let mut sum = Sha256::new();
-    for fact in facts {
-        sum.update((fact.len() as u64).to_le_bytes());
-        sum.update(fact);
-    }
-    let mut id = hex(&sum.finalize());
-    id.truncate(32);
-    id
 }
 
 impl Job {

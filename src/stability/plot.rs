@@ -3,9 +3,10 @@
 use super::chart_spec::CostChart;
 use super::cost::Cost;
 use super::record::{Measured, PartResult, Report};
-use super::table::{mebibytes, text, write};
+use super::table::{mebibytes, text};
 use crate::lab::LabError;
 use crate::report::{COLORS, escaped, short, ticks};
+use crate::sweep::csv_text;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -78,7 +79,7 @@ impl Plot<'_> {
                 own.into_iter().chain([memory]).chain(score(r.error)).chain(score(r.change)).collect()
             }));
         }
-        write(&lines)
+        csv_text(&lines)
     }
 
     /// Chart and tables, HTML.

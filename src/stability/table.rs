@@ -3,6 +3,7 @@
 
 use super::record::{Measured, Outcome, PartResult, Report};
 use crate::lab::LabError;
+use crate::sweep::csv_text;
 
 type Column = (&'static str, fn(&PartResult) -> String);
 
@@ -112,7 +113,7 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
         }
         lines.push(row);
     }
-    write(&lines)
+    csv_text(&lines)
 }
 
 /// A row for every frame of every part.
@@ -153,13 +154,5 @@ pub(super) fn frames(report: &Report) -> Result<String, LabError> {
             }
         }
     }
-    write(&lines)
-}
-
-pub(super) fn write(lines: &[Vec<String>]) -> Result<String, LabError> {
-    let failed = |e: String| LabError::Request(format!("cannot make the table: {e}"));
-    let mut out = csv::Writer::from_writer(Vec::new());
-    lines.iter().try_for_each(|l| out.write_record(l)).map_err(|e| failed(e.to_string()))?;
-    let bytes = out.into_inner().map_err(|e| failed(e.to_string()))?;
-    String::from_utf8(bytes).map_err(|e| failed(e.to_string()))
+    csv_text(&lines)
 }

@@ -2,7 +2,7 @@
 
 use super::points::{Labels, Sweep};
 use super::record::Subject;
-use crate::capture::scene_hash;
+use crate::capture::{id_of, scene_hash};
 use crate::experiment::{Experiment, placed_text};
 use crate::graph::source::Diagnostic;
 use crate::lab::{LabError, Loaded, Workspace, camera_of};
@@ -113,17 +113,6 @@ fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoin
     let values = labels.iter().map(|(name, value)| format!("{name}={value}"));
     let id = id_of(["absent".to_string(), format!("{subject:?}")].into_iter().chain(values));
     SweepPoint { id, experiment, scene: Arc::default(), absent: Some(why.to_string()), subject, labels }
-}
-
-fn id_of(facts: impl Iterator<Item = String>) -> String {
-    let mut hash = Sha256::new();
-    for fact in facts {
-        hash.update((fact.len() as u64).to_le_bytes());
-        hash.update(fact);
-    }
-    let mut id = crate::capture::hex(&hash.finalize());
-    id.truncate(32);
-    id
 }
 
 /// All points of a sweep in order, without those that another one equals; and how many those are. A model that is not

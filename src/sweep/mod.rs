@@ -18,4 +18,5 @@ pub use record::{Collected, Manifest, ManifestPoint, Outcome, Record, Subject, c
 pub(crate) use record::{read_json, write_file};
 pub use run::{Counts, Options, Progress, Shard, run};
 pub use settings::Setting;
+pub(crate) use table::csv_text;
 pub use table::{csv, numbers, parts_of};

@@ -9,7 +9,6 @@ use crate::stats::DeviceStats;
 use indexmap::IndexMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
@@ -84,9 +83,7 @@ pub struct Subject {
 impl Subject {
     /// 32 hexadecimal digits that name it.
     fn key(&self) -> String {
-        let mut key = crate::capture::hex(&Sha256::digest(format!("{self:?}")));
-        key.truncate(32);
-        key
+        crate::capture::id_of([format!("{self:?}")])
     }
 }
 

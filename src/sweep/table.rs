@@ -39,15 +39,13 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
         scores.sort();
         scores.dedup();
     }
-    let mut out = csv::Writer::from_writer(Vec::new());
-    let failed = |e: csv::Error| LabError::Request(format!("cannot make the table: {e}"));
     let mut header: Vec<String> = vec!["id".into(), "outcome".into()];
     header.extend(collected.names.iter().cloned());
     header.extend(["graph", "scene", "width", "height", "device", "driver", "bytes", "warnings"].map(String::from));
     header.extend(["reference samples", "error", "total median ms", "total p95 ms", "total min ms"].map(String::from));
     header.extend(scores.iter().map(|(part, metric)| format!("{part} {metric}")));
     header.extend(stages.iter().map(|s| format!("{s} ms")));
-    out.write_record(&header).map_err(failed)?;
+    let mut lines = vec![header];
     for ((planned, _), record) in collected.points.iter().zip(&records) {
         let point = record.and_then(done);
         let error = record.and_then(|r| match &r.outcome {
@@ -82,10 +80,21 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
         row.extend(scores.iter().map(|s| score(s).map_or(String::new(), f64::to_string)));
         let pass = |name: &String| stats.and_then(|s| s.passes.iter().find(|p| p.name == *name));
         row.extend(stages.iter().map(|s| pass(s).map_or(String::new(), |p| p.gpu_ms.median.to_string())));
-        out.write_record(&row).map_err(failed)?;
+        lines.push(row);
     }
-    let bytes = out.into_inner().map_err(|e| LabError::Request(e.to_string()))?;
-    String::from_utf8(bytes).map_err(|e| LabError::Request(e.to_string()))
+    csv_text(&lines)
+}
+
+/// Lines of cells as comma-separated values (RFC 4180).
+///
+/// # Errors
+/// Lines of different lengths.
+pub(crate) fn csv_text(lines: &[Vec<String>]) -> Result<String, LabError> {
+    let failed = |e: String| LabError::Request(format!("cannot make the table: {e}"));
+    let mut out = csv::Writer::from_writer(Vec::new());
+    lines.iter().try_for_each(|l| out.write_record(l)).map_err(|e| failed(e.to_string()))?;
+    let bytes = out.into_inner().map_err(|e| failed(e.to_string()))?;
+    String::from_utf8(bytes).map_err(|e| failed(e.to_string()))
 }
 
 fn done(record: &Record) -> Option<&Point> {

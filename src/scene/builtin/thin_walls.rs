@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
-use super::shapes::MeshBuilder;
+use super::shapes::{MeshBuilder, STANDING};
 use super::{assemble, matte, view};
 use crate::scene::{Light, LightKind, Scene};
 
@@ -21,8 +21,7 @@ pub(super) fn build() -> Scene {
         [Vec3::new(-4.5, 0.0, 4.0), Vec3::new(4.5, 0.0, 4.0), Vec3::new(4.5, 0.0, -3.0), Vec3::new(-4.5, 0.0, -3.0)];
     ground.quad(FLOOR, level, 8, 1.0);
     let mut wall = MeshBuilder::new("bright wall");
-    let faces = [true, true, false, true, true, true];
-    wall.cuboid(BRIGHT, Vec3::new(-4.4, -0.1, -2.9), Vec3::new(4.4, 2.6, -2.5), 1.0, faces);
+    wall.cuboid(BRIGHT, Vec3::new(-4.4, -0.1, -2.9), Vec3::new(4.4, 2.6, -2.5), 1.0, STANDING);
     let mut meshes = vec![ground.finish(), wall.finish()];
     // One row per thickness, from thin and near the wall to thick and far from it.
     for (row, thickness) in [0.02f32, 0.04, 0.08].into_iter().enumerate() {
@@ -31,7 +30,7 @@ pub(super) fn build() -> Scene {
             let place = Vec3::new(-3.0 + 2.0 * column as f32, 0.0, -1.2 + 1.7 * row as f32);
             slab.transform = Mat4::from_translation(place) * Mat4::from_rotation_y(degrees.to_radians());
             let half = Vec3::new(0.7, 0.0, thickness * 0.5);
-            slab.cuboid(SLAB, Vec3::new(0.0, -0.1, 0.0) - half, Vec3::new(0.0, 1.2, 0.0) + half, 1.0, faces);
+            slab.cuboid(SLAB, Vec3::new(0.0, -0.1, 0.0) - half, Vec3::new(0.0, 1.2, 0.0) + half, 1.0, STANDING);
             meshes.push(slab.finish());
         }
     }

@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3};
 
 use super::noise::Random;
 use super::shapes::MeshBuilder;
-use super::{assemble, matte, view};
-use crate::scene::{Light, LightKind, Mesh, Scene};
+use super::{assemble, matte, sun, view};
+use crate::scene::{Mesh, Scene};
 
 pub(super) fn build() -> Scene {
     let materials = vec![
@@ -19,14 +19,7 @@ pub(super) fn build() -> Scene {
     for material in &mut scene.materials {
         material.two_sided = true;
     }
-    scene.lights.push(Light {
-        name: "sun".into(),
-        kind: LightKind::Directional,
-        color: Vec3::splat(8.0),
-        position: Vec3::ZERO,
-        direction: Vec3::new(-0.4, -0.8, -0.45).normalize(),
-        shadow: true,
-    });
+    scene.lights.push(sun(Vec3::splat(8.0), Vec3::new(-0.4, -0.8, -0.45)));
     scene.sky = Vec3::splat(0.4);
     scene.cameras.insert("default".into(), view(Vec3::new(4.2, 3.4, 5.6), Vec3::new(0.0, -0.2, 0.0), 45.0, 7.0));
     scene

@@ -7,7 +7,7 @@ use glam::{Mat4, Vec2, Vec3};
 use super::materials::{ASHLAR, MARBLE, PLASTER, TRIM};
 use super::{ARCADE_FLOOR, COURT, GALLERY_FLOOR, LOWER_SPRING, UPPER_SPRING, WALL, WALL_TOP, bays, column_places};
 use crate::scene::Mesh;
-use crate::scene::builtin::shapes::MeshBuilder;
+use crate::scene::builtin::shapes::{MeshBuilder, STANDING};
 
 /// Half the thickness of the wall over the arches.
 const HALF_WALL: f32 = 0.24;
@@ -27,7 +27,7 @@ pub(super) fn upper_column() -> Mesh {
 fn column(name: &str, height: f32, r: f32) -> Mesh {
     let mut mesh = MeshBuilder::new(name);
     let plinth = r * 1.5;
-    mesh.cuboid(TRIM, Vec3::new(-plinth, 0.0, -plinth), Vec3::new(plinth, r * 0.55, plinth), 1.0, NO_BOTTOM);
+    mesh.cuboid(TRIM, Vec3::new(-plinth, 0.0, -plinth), Vec3::new(plinth, r * 0.55, plinth), 1.0, STANDING);
     // Attic base: two rings and a hollow between them.
     let base = [
         (1.30, 0.5),
@@ -66,8 +66,6 @@ fn column(name: &str, height: f32, r: f32) -> Mesh {
     mesh.cuboid(TRIM, Vec3::new(-abacus, low, -abacus), Vec3::new(abacus, high, abacus), 1.0, [true; 6]);
     mesh.finish()
 }
-
-const NO_BOTTOM: [bool; 6] = [true, true, false, true, true, true];
 
 /// The walls over the columns of both storeys, with their arches.
 pub(super) fn arches() -> Mesh {

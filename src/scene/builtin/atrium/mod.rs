@@ -15,8 +15,8 @@ use std::f32::consts::TAU;
 
 use glam::{Mat4, Quat, Vec3};
 
-use super::{assemble, view};
-use crate::scene::{Animation, Instance, Keyframe, Light, LightKind, Scene};
+use super::{assemble, sun, view};
+use crate::scene::{Animation, Instance, Keyframe, Scene};
 
 /// Half the distance between the rows of columns along x and along z.
 const COURT: [f32; 2] = [11.0, 3.2];
@@ -64,14 +64,7 @@ pub(super) fn build() -> Scene {
     if let Some(ornament) = scene.instances.iter_mut().find(|i| i.name == "armillary sphere") {
         ornament.animation = Some(floating());
     }
-    scene.lights.push(Light {
-        name: "sun".into(),
-        kind: LightKind::Directional,
-        color: Vec3::new(14.0, 12.6, 10.4),
-        position: Vec3::ZERO,
-        direction: Vec3::new(-0.34, -0.88, 0.30).normalize(),
-        shadow: true,
-    });
+    scene.lights.push(sun(Vec3::new(14.0, 12.6, 10.4), Vec3::new(-0.34, -0.88, 0.30)));
     scene.sky = Vec3::new(0.50, 0.68, 0.95);
     let diagonal = 35.0;
     for (name, eye, target, fov) in [
