@@ -539,3 +539,16 @@ fn cones_go_by_the_cells_around_them() {
     assert!(empty > 20 && cells[empty - 1] > 1.4 * cells[0], "{empty} samples, all in cells of one size");
     assert_clean(&lab);
 }
+
+#[test]
+fn curved_cells_that_end_before_they_begin_are_refused() {
+    let lab = lab(root());
+    for (warp, refused) in [("perspective", true), ("spherical", true), ("none", false)] {
+        let settings = [("warp", warp), ("warp_near", "5"), ("warp_far", "5"), ("voxel_dim", "16")];
+        let experiment = experiment("cornell", (16, 16), &settings);
+        let error = lab.prepare(&experiment, scene("cornell"), |_| Ok(Vec::new())).err().map(|e| e.to_string());
+        let told = error.as_deref().is_some_and(|e| e.contains("passes/warps.ron:") && e.contains("above warp_near"));
+        assert_eq!(told, refused, "{warp}: {error:?}");
+        assert!(refused || error.is_none(), "{warp}: {error:?}");
+    }
+}

@@ -44,6 +44,8 @@ pub struct GraphFile {
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words of buffers that must be zero after a frame.
     pub checks: Items<CheckDecl>,
+    /// Settings that make no sense together.
+    pub refuse: Items<RefuseDecl>,
     /// The `Vec2` parameter that a click on the picture sets.
     pub pointer: Option<Loc<String>>,
     /// Buffers that may be read as tables.
@@ -94,6 +96,16 @@ pub struct CheckDecl {
     /// Index of the 32-bit word.
     pub word: Option<u32>,
     /// What it means when it is not zero, and what to do.
+    pub message: String,
+}
+
+/// Settings that make no sense together.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RefuseDecl {
+    /// When they do not.
+    pub when: Ex,
+    /// Why not, and what to do.
     pub message: String,
 }
 

@@ -3,8 +3,8 @@
 use super::alias::Alias;
 use super::check::Check;
 use super::file::{
-    BufferDecl, CheckDecl, CompareDecl, GraphFile, PassDecl, RawText, SceneNeeds, TextureDecl, ViewDecl, VoxelsDecl,
-    ungrouped,
+    BufferDecl, CheckDecl, CompareDecl, GraphFile, PassDecl, RawText, RefuseDecl, SceneNeeds, TextureDecl, ViewDecl,
+    VoxelsDecl, ungrouped,
 };
 use super::param::{Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
@@ -55,6 +55,8 @@ pub struct Graph {
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words that must be zero.
     pub checks: Vec<CheckDecl>,
+    /// Settings that make no sense together.
+    pub refuse: Vec<RefuseDecl>,
     /// The `Vec2` parameter that a click on the picture sets: pixels from the picture's top left corner, negative
     /// where nothing is pointed at.
     pub pointer: Option<String>,
@@ -118,6 +120,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         parts: Vec::new(),
         scene: None,
         checks: Vec::new(),
+        refuse: Vec::new(),
         pointer: None,
         tables: Vec::new(),
         compare: Vec::new(),
@@ -161,6 +164,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         }
         graph.scene = file.scene.or(graph.scene);
         checks.extend(file.checks.0);
+        graph.refuse.extend(file.refuse.0.into_iter().map(|r| r.value));
         graph.compare.extend(file.compare.0);
         graph.views.extend(file.views.0);
         graph.ablation.extend(file.ablation.0);
@@ -214,6 +218,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     for item in &checks {
         check.check(&item.value, item.at);
     }
+    check.exprs(graph.refuse.iter().map(|r| &r.when));
     if let Some(name) = &pointer {
         check.pointer(name);
     }

@@ -168,7 +168,7 @@ pub fn all_expressions(graph: &Graph) -> impl Iterator<Item = &Ex> {
     });
     let buffers = graph.buffers.iter().flat_map(|(_, b)| b.value.size.value.expression());
     let scene = graph.scene.iter().flat_map(|s| std::iter::once(&s.value.max_edge).chain(&s.value.when));
-    let values = graph.values.iter().map(|v| &v.expr);
+    let values = graph.values.iter().map(|v| &v.expr).chain(graph.refuse.iter().map(|r| &r.when));
     let cases = graph.aliases.iter().flat_map(|a| &a.cases);
     let aliases = cases.flat_map(|c| c.when.iter().chain(&c.bind.mip).chain(&c.bind.layer));
     textures
@@ -213,6 +213,7 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     if !planner.errors.is_empty() {
         return Err(planner.errors);
     }
+    planner.refuse();
     planner.sizes();
     if !planner.errors.is_empty() {
         return Err(planner.errors);
@@ -364,6 +365,14 @@ impl Planner<'_> {
                 let size = self.layouts.struct_size(name, count.is_some()).ok().flatten();
                 let elements = count.as_ref().map_or(0, |ex| self.count(ex, 1, "count"));
                 size.map_or(4.0, |(bytes, stride)| f64::from(bytes) + f64::from(stride) * f64::from(elements)).max(4.0)
+            }
+        }
+    }
+
+    fn refuse(&mut self) {
+        for refused in &self.graph.refuse {
+            if self.condition(&refused.when) {
+                self.error(refused.when.at, refused.message.clone());
             }
         }
     }
