@@ -621,6 +621,7 @@ fn scene_file_errors_have_a_place_and_a_hint() {
     error("(cameras: {\"a\": (eye: (0,0,0), target: (1,1,0), fov_y: 0)})", &["between 1 and 170"]);
     error("(models: [(builtin: \"cornell\", transform: (scale: (0, 1, 1)))])", &["scale above 0"]);
     error("(models: [(builtin: \"cornell\", animation: (keyframes: [(time: 1), (time: 1)]))])", &["times that rise"]);
+    error("(\n  sky: (0.5, -1, 0.5),\n)", &["x.ron:2:", "finite and 0 or more"]);
     error("(models: [", &["x.ron:1:"]);
     assert_error(open(dir.path().join("none.ron")), &["none.ron", "Check the path"]);
 }

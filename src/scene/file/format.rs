@@ -14,8 +14,25 @@ pub(super) struct SceneFile {
     pub models: Vec<ModelEntry>,
     pub lights: Vec<LightEntry>,
     /// Radiance; without it, that of the first model.
-    pub sky: Option<Vec3>,
+    pub sky: Option<Sky>,
     pub cameras: IndexMap<String, CameraEntry>,
+}
+
+/// Radiance of the sky.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(try_from = "Vec3")]
+pub(super) struct Sky(pub Vec3);
+
+impl TryFrom<Vec3> for Sky {
+    type Error = String;
+
+    fn try_from(sky: Vec3) -> Result<Self, String> {
+        if sky.is_finite() && sky.min_element() >= 0.0 {
+            Ok(Sky(sky))
+        } else {
+            Err("the sky's radiance must be finite and 0 or more".into())
+        }
+    }
 }
 
 /// A model to load and where to put it.

@@ -25,7 +25,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         sky = sky.or(Some(model.sky));
         compose::add(&mut scene, model, entry);
     }
-    scene.sky = file.sky.or(sky).unwrap_or(defaults::SKY);
+    scene.sky = file.sky.map(|s| s.0).or(sky).unwrap_or(defaults::SKY);
     for light in &file.lights {
         scene.lights.push(light.to_light(scene.lights.len()));
     }
