@@ -83,7 +83,7 @@ fn every_volume_keeps_the_energy() {
             let energy = mean(&floats(&mut furnace, "radiance", 0)) / 1.5;
             let mut sky = frames(&lab, &experiment("white-sky", (48, 48), &settings), &["occlusion", "depth"], 1);
             let (open, depth) = (floats(&mut sky, "occlusion", 0), floats(&mut sky, "depth", 0));
-            let ball: Vec<[f32; 4]> = open.iter().zip(&depth).filter(|(_, d)| d[0] < 1.0).map(|(o, _)| *o).collect();
+            let ball: Vec<[f32; 4]> = open.iter().zip(&depth).filter(|(_, d)| d[0] > 0.0).map(|(o, _)| *o).collect();
             let openness = mean(&ball);
             println!("{kind}, {voxelizer}: furnace {energy:.4}, white sky {openness:.4}");
             if (energy - 1.0).abs() > 0.02 || (openness - 1.0).abs() > 0.02 {

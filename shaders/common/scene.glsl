@@ -1,5 +1,5 @@
 // Camera, scene and geometry: the fixed resources every pass may read. World units are metres, y is up,
-// the world is right-handed; clip space is Vulkan's (y down, depth 0 at the near plane).
+// the world is right-handed; clip space is Vulkan's (y down, reversed depth: 1 at the near plane, 0 infinitely far away).
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
@@ -12,7 +12,7 @@ layout(std140) uniform Camera {
     vec3 position;
     float near;
     vec3 direction;
-    float far;
+    float far; // cuts off nothing; may be infinite
     vec3 up;
     float fov_y; // radians
     vec3 previous_position;

@@ -12,14 +12,16 @@ layout(location = 0) out vec4 inspected;
 uniform sampler2D depth;
 uniform sampler2D surfaceNormal;
 
+const float NOTHING = 1e-30; // depth of the background, but for a position that is finite
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float z = texelFetch(depth, pixel, 0).r;
+    float z = max(texelFetch(depth, pixel, 0).r, NOTHING);
     vec4 h = camera.inverse_view_projection * vec4(uv * 2.0 - 1.0, z, 1.0);
     vec3 p = h.xyz / h.w;
     vec3 n = texelFetch(surfaceNormal, pixel, 0).rgb * 2.0 - 1.0;
     float light = 0.35 + 0.65 * abs(dot(n, normalize(camera.position - p)));
     int cascade = cascadeAt(p);
     vec3 u = worldToVolume(volume.maps[cascade], p);
-    inspected = vec4(z < 1.0 && inVolume(u) ? densityColor(volume.maps[cascade], p) * light : vec3(0.0), 1.0);
+    inspected = vec4(z > NOTHING && inVolume(u) ? densityColor(volume.maps[cascade], p) * light : vec3(0.0), 1.0);
 }

@@ -9,8 +9,6 @@ layout(location = 0) out vec4 inspected;
 uniform sampler2D depth;
 
 void main() {
-    float z = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r;
-    vec4 h = camera.inverse_view_projection * vec4(uv * 2.0 - 1.0, z, 1.0);
-    float along = dot(h.xyz / h.w - camera.position, camera.direction);
+    float along = camera.near / max(texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r, 1e-30);
     inspected = vec4(vec3(clamp(along / length(sceneInfo.bounds_max - sceneInfo.bounds_min), 0.0, 1.0)), 1.0);
 }

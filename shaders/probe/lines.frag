@@ -10,6 +10,6 @@ uniform sampler2D depth;
 
 void main() {
     float cover = clamp(half_width + 0.5 - abs(across), 0.0, 1.0);
-    bool behind = gl_FragCoord.z > texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r;
+    bool behind = gl_FragCoord.z < texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r;
     display = vec4(color.rgb, color.a * cover * (behind ? 0.25 : 1.0));
 }

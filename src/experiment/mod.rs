@@ -42,7 +42,7 @@ pub struct PlacedCamera {
     /// Distance of the near plane, m; from the scene's size when absent.
     #[serde(default)]
     pub near: Option<f32>,
-    /// Distance of the far plane, m; from the scene's size when absent.
+    /// What files call the far plane, m; cuts off nothing.
     #[serde(default)]
     pub far: Option<f32>,
 }
@@ -52,7 +52,7 @@ fn y_up() -> (f32, f32, f32) {
 }
 
 impl PlacedCamera {
-    /// A camera that stands upright, with clip planes from the scene's size.
+    /// A camera that stands upright, with a near plane from the scene's size.
     pub fn new(eye: (f32, f32, f32), target: (f32, f32, f32), fov_y: f32) -> PlacedCamera {
         PlacedCamera { eye, target, up: y_up(), fov_y, near: None, far: None }
     }
@@ -82,7 +82,6 @@ impl From<&Camera> for PlacedCamera {
             up: c.up.into(),
             fov_y: c.fov_y,
             near: Some(c.near),
-            // Models may say that there is no far plane.
             far: Some(c.far).filter(|f| f.is_finite()),
         }
     }

@@ -161,7 +161,7 @@ impl Lab {
             Some(reuse) => reuse.scene_gpu.clone(),
             None => {
                 let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
-                SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene), rays)?
+                SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene), scene.origin(), rays)?
             }
         };
         // What textures and buffers hold is of their scene: of another one only the pipelines are taken.
@@ -340,7 +340,7 @@ impl Session {
     pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
         let mut updates = self.scene_gpu.updates(&self.scene, self.time, self.frame == 0)?;
         updates.append(&mut self.light_updates);
-        let camera = self.viewpoint.uniform(self.size, self.time, self.frame, delta);
+        let camera = self.viewpoint.uniform(self.scene_gpu.origin, self.size, self.time, self.frame, delta);
         updates.push((self.scene_gpu.camera.clone(), camera));
         if !self.sent_params {
             updates.push((self.program.params_buffer(), self.params.uniform_bytes(&self.values)));

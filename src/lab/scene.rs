@@ -20,7 +20,10 @@ pub struct SceneGpu {
     pub camera: Arc<Buffer>,
     /// Bytes of geometry and textures.
     pub bytes: u64,
+    /// Where the shaders' world begins in the scene's.
+    pub origin: Vec3,
     info: SceneInfoBlock,
+    bounds: (Vec3, Vec3),
     instances: Arc<Buffer>,
     sent: Vec<InstanceBlock>,
 }
@@ -29,11 +32,11 @@ pub struct SceneGpu {
 const CAMERA_BYTES: usize = size_of::<CameraBlock>();
 
 impl SceneGpu {
-    /// Uploads a scene; `rays`: with the hierarchy that rays need.
+    /// Uploads a scene into a world that begins at `origin`; `rays`: with the hierarchy that rays need.
     ///
     /// # Errors
     /// Out of memory; a hierarchy that is too deep.
-    pub fn new(gpu: &Arc<Gpu>, scene: &Scene, rays: bool) -> Result<SceneGpu> {
+    pub fn new(gpu: &Arc<Gpu>, scene: &Scene, origin: Vec3, rays: bool) -> Result<SceneGpu> {
         let mut upload = Upload::new(gpu);
         let textures = materials::upload(gpu, scene, &mut upload)?;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
@@ -44,12 +47,12 @@ impl SceneGpu {
         let commands: Vec<[u32; 5]> =
             (0u32..).zip(&draws).map(|(i, d)| [d.index_count, 1, d.first_index, 0, i]).collect();
         let (low, high) = scene.bounds();
-        let (light_blocks, shadow_blocks) = lights(&scene.lights, (low, high));
+        let (light_blocks, shadow_blocks) = lights(&scene.lights, (low, high), origin);
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let info = SceneInfoBlock {
-            bounds_min: low.to_array(),
+            bounds_min: (low - origin).to_array(),
             light_count: count(light_blocks.len()),
-            bounds_max: high.to_array(),
+            bounds_max: (high - origin).to_array(),
             shadow_views: shadow_view_count(&scene.lights),
             sky: scene.sky.to_array(),
             triangle_count: count(draws.iter().map(|d| d.index_count as usize / 3).sum()),
@@ -65,7 +68,7 @@ impl SceneGpu {
         let index_buffer = upload.buffer("indices", bytemuck::cast_slice(&indices), index)?;
         let command_buffer =
             upload.buffer("draw commands", bytemuck::cast_slice(&commands), vk::BufferUsageFlags::INDIRECT_BUFFER)?;
-        let instance_blocks = instances(scene, 0.0, None);
+        let instance_blocks = instances(scene, origin, 0.0, None);
         let instances = upload.buffer("instances", bytemuck::cast_slice(&instance_blocks), storage)?;
         let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
         let mut buffers = HashMap::from([
@@ -123,7 +126,9 @@ impl SceneGpu {
             },
             camera,
             bytes,
+            origin,
             info,
+            bounds: (low, high),
             instances,
             sent: instance_blocks,
         })
@@ -135,16 +140,16 @@ impl SceneGpu {
     /// # Errors
     /// Out of memory.
     pub fn fork(&self, gpu: &Arc<Gpu>, scene: &Scene) -> Result<SceneGpu> {
+        let (origin, bounds) = (self.origin, self.bounds);
         let mut upload = Upload::new(gpu);
         let mut resources = self.resources.clone();
-        let sent = instances(scene, 0.0, None);
+        let sent = instances(scene, origin, 0.0, None);
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let instances = upload.buffer("instances", bytemuck::cast_slice(&sent), storage)?;
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
-        let bounds = (self.info.bounds_min.into(), self.info.bounds_max.into());
         let info = SceneInfoBlock { sky: scene.sky.to_array(), ..self.info };
-        let (light_blocks, shadow_blocks) = lights(&scene.lights, bounds);
+        let (light_blocks, shadow_blocks) = lights(&scene.lights, bounds, origin);
         let own = [
             ("instances", instances.clone()),
             ("camera", camera.clone()),
@@ -159,7 +164,7 @@ impl SceneGpu {
             resources.buffers.extend(ray_buffers(&mut upload, found, &info)?);
         }
         upload.finish()?;
-        Ok(SceneGpu { resources, camera, bytes: self.bytes, info, instances, sent })
+        Ok(SceneGpu { resources, camera, bytes: self.bytes, origin, info, bounds, instances, sent })
     }
 
     /// Buffers that change with time: the poses of animated instances, when they moved.
@@ -168,7 +173,7 @@ impl SceneGpu {
     /// A pose whose hierarchy is too deep.
     pub fn updates(&mut self, scene: &Scene, time: f64, first: bool) -> Result<Vec<(Arc<Buffer>, Vec<u8>)>> {
         let previous = (!first).then_some(self.sent.as_slice());
-        let now = instances(scene, time as f32, previous);
+        let now = instances(scene, self.origin, time as f32, previous);
         if now == self.sent || now.is_empty() {
             return Ok(Vec::new());
         }
@@ -191,8 +196,7 @@ impl SceneGpu {
     /// Buffers that change with colours, directions, positions and cone angles of the lights, and with the sky. The
     /// scene has as many lights and shadow maps as the one that was uploaded, and its geometry.
     pub fn set_lights(&mut self, list: &[Light], sky: Vec3) -> Vec<(Arc<Buffer>, Vec<u8>)> {
-        let bounds = (self.info.bounds_min.into(), self.info.bounds_max.into());
-        let (light_blocks, shadow_blocks) = lights(list, bounds);
+        let (light_blocks, shadow_blocks) = lights(list, self.bounds, self.origin);
         self.info.sky = sky.to_array();
         let contents: [(&str, &[u8]); 3] = [
             ("lights", bytemuck::cast_slice(&light_blocks)),
@@ -290,10 +294,11 @@ fn material(m: &crate::scene::Material, handles: &[u32]) -> MaterialBlock {
     }
 }
 
-fn instances(scene: &Scene, time: f32, previous: Option<&[InstanceBlock]>) -> Vec<InstanceBlock> {
+fn instances(scene: &Scene, origin: Vec3, time: f32, previous: Option<&[InstanceBlock]>) -> Vec<InstanceBlock> {
     (0..scene.instances.len())
         .map(|i| {
-            let model = scene.instance_transform(i, time);
+            let mut model = scene.instance_transform(i, time);
+            model.w_axis -= origin.extend(0.0);
             let before = previous.and_then(|p| p.get(i)).map_or(model.to_cols_array(), |p| p.model);
             let normal = Mat4::from_mat3(glam::Mat3::from_mat4(model).inverse().transpose());
             InstanceBlock {

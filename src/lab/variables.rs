@@ -5,12 +5,13 @@ use crate::graph::expr::{Env, Var};
 use crate::graph::load::Graph;
 use crate::graph::param::{Params, Value};
 use crate::graph::value::fill;
-use crate::scene::Scene;
+use crate::scene::{Scene, origin_of};
 
 /// Variables of expressions that come from scene and size.
 pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
     let (low, high) = scene.bounds();
-    let extent = high - low;
+    let (origin, extent) = (origin_of((low, high)), high - low);
+    let (low, high) = (low - origin, high - origin);
     let mut env = Env::new();
     let mut put = |name: &str, value: f64| {
         env.insert(name.to_string(), Var::Number(value));

@@ -2,8 +2,8 @@
 
 use crate::experiment::PlacedCamera;
 use crate::graph::host::{CameraBlock, LightBlock, ShadowBlock};
-use crate::scene::{Camera, Light, LightKind, Scene};
-use glam::{Mat4, Vec3};
+use crate::scene::{Camera, Light, LightKind, Scene, defaults};
+use glam::{Mat4, Vec3, camera::rh::proj::vulkan};
 
 /// A camera with what it saw in the frame before.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ impl Viewpoint {
         Viewpoint { camera: *camera, previous: None }
     }
 
-    /// A camera written out in an experiment; what it leaves out of near and far is from the scene's size.
+    /// A camera written out in an experiment; a near plane that it leaves out is from the scene's size.
     pub fn placed(placed: &PlacedCamera, scene: &Scene) -> Viewpoint {
         Viewpoint::new(&camera(placed, scene.bounds()))
     }
@@ -32,31 +32,34 @@ impl Viewpoint {
     /// A camera that sees the whole of a scene that has none.
     pub fn around(scene: &Scene) -> Viewpoint {
         let (low, high) = scene.bounds();
-        let (centre, size) = ((low + high) * 0.5, (high - low).length().max(1.0));
+        let size = (high - low).length();
+        let (centre, size) = ((low + high) * 0.5, if size > 0.0 { size } else { 1.0 });
         let eye = centre + Vec3::new(0.6, 0.4, 0.8) * size;
         Viewpoint::placed(&PlacedCamera::new(eye.into(), centre.into(), 50.0), scene)
     }
 
-    /// The content of the block `camera`, and on to the next frame.
-    pub fn uniform(&mut self, size: (u32, u32), time: f64, frame: u32, delta: f64) -> Vec<u8> {
+    /// The content of the block `camera` in a world that begins at `origin`, and on to the next frame.
+    pub fn uniform(&mut self, origin: Vec3, size: (u32, u32), time: f64, frame: u32, delta: f64) -> Vec<u8> {
         let c = &self.camera;
+        let eye = c.eye - origin;
         let direction = (c.target - c.eye).try_normalize().unwrap_or(Vec3::NEG_Z);
         let side = direction.cross(c.up);
         let up =
             if side.length() < 1e-4 { direction.any_orthonormal_vector() } else { side.cross(direction).normalize() };
-        let view = glam::camera::rh::view::look_to_mat4(c.eye, direction, up);
+        let view = glam::camera::rh::view::look_to_mat4(eye, direction, up);
         let aspect = size.0 as f32 / size.1 as f32;
         let fov_y = c.fov_y.clamp(1.0, 170.0).to_radians();
-        let projection = perspective(fov_y, aspect, c.near, c.far);
+        // Reversed depth: 1 at the near plane, 0 infinitely far away. Floats are as precise near 0 as it takes.
+        let projection = vulkan::perspective_infinite_reverse(fov_y, aspect, c.near);
         let view_projection = projection * view;
-        let previous = self.previous.replace((view_projection, c.eye)).unwrap_or((view_projection, c.eye));
+        let previous = self.previous.replace((view_projection, eye)).unwrap_or((view_projection, eye));
         bytemuck::bytes_of(&CameraBlock {
             view: view.to_cols_array(),
             projection: projection.to_cols_array(),
             view_projection: view_projection.to_cols_array(),
-            inverse_view_projection: view_projection.inverse().to_cols_array(),
+            inverse_view_projection: (view.inverse() * projection.inverse()).to_cols_array(),
             previous_view_projection: previous.0.to_cols_array(),
-            position: c.eye.to_array(),
+            position: eye.to_array(),
             near: c.near,
             direction: direction.to_array(),
             far: c.far,
@@ -74,28 +77,23 @@ impl Viewpoint {
 
 /// A written-out camera in a scene of these bounds.
 fn camera(placed: &PlacedCamera, (low, high): (Vec3, Vec3)) -> Camera {
-    let diagonal = (high - low).length().max(1.0);
-    let eye = Vec3::from(placed.eye);
     Camera {
-        eye,
+        eye: placed.eye.into(),
         target: placed.target.into(),
         up: placed.up.into(),
         fov_y: placed.fov_y,
-        near: placed.near.unwrap_or((0.001 * diagonal).max(0.01)),
-        far: placed.far.unwrap_or(eye.distance((low + high) * 0.5) + diagonal),
+        near: placed.near.unwrap_or(defaults::near_plane((high - low).length())),
+        far: placed.far.unwrap_or(f32::INFINITY),
     }
 }
 
-/// Vulkan's clip space: y down, depth 0 at the near plane and 1 at the far one.
-fn perspective(fov_y: f32, aspect: f32, near: f32, far: f32) -> Mat4 {
-    let near = near.max(1e-4);
-    glam::camera::rh::proj::vulkan::perspective(fov_y, aspect, near, far.max(near * 1.001))
-}
-
-/// Lights of a scene with these bounds, and the views of their shadow maps.
-pub(super) fn lights(lights: &[Light], bounds: (Vec3, Vec3)) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
+/// Lights of a scene with these bounds, and the views of their shadow maps. Lights and bounds are in the scene's world,
+/// what comes back is in one that begins at `origin`.
+pub(super) fn lights(lights: &[Light], (low, high): (Vec3, Vec3), origin: Vec3) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
+    let bounds = (low - origin, high - origin);
     let (mut blocks, mut views) = (Vec::new(), Vec::new());
     for (number, light) in (0u32..).zip(lights) {
+        let light = &Light { position: light.position - origin, ..light.clone() };
         let first = i32::try_from(views.len()).unwrap_or(i32::MAX);
         let (kind, inner, outer) = match light.kind {
             LightKind::Directional => (0, 0.0, 0.0),
@@ -140,7 +138,9 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
         let up = if direction.y.abs() > 0.99 { Vec3::Z } else { Vec3::Y };
         glam::camera::rh::view::look_to_mat4(eye, direction, up)
     };
-    let far = || corners.iter().map(|c| c.distance(light.position)).fold(0.1, f32::max) * 1.01;
+    // Two centimetres, less in scenes below four metres. Smaller ones would cost maps of 16 bits their last digits.
+    let near = (0.005 * (high - low).length()).clamp(1e-6, 0.02);
+    let far = corners.iter().map(|c| c.distance(light.position)).fold(2.0 * near, f32::max) * 1.01;
     match light.kind {
         LightKind::Directional => {
             // Orthographic, fitted to the scene's bounds, so depth is linear and no texel is wasted on the outside.
@@ -152,23 +152,22 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
             }
             let margin = 0.005 * (most - least).max_element().max(0.01);
             let (least, most) = (least - margin, most + margin);
-            let projection =
-                glam::camera::rh::proj::vulkan::orthographic(least.x, most.x, least.y, most.y, -most.z, -least.z);
+            let projection = vulkan::orthographic(least.x, most.x, least.y, most.y, -most.z, -least.z);
             let size = most - least;
             vec![block(projection * view, [size.x.max(size.y), size.z, 0.0])]
         }
         LightKind::Spot { outer, .. } => {
             let angle = (2.0 * outer).clamp(0.02, 2.9);
-            let projection = perspective(angle, 1.0, 0.02, far());
-            vec![block(projection * look(light.position, light.direction), [2.0 * (angle * 0.5).tan(), far(), 1.0])]
+            let projection = vulkan::perspective(angle, 1.0, near, far);
+            vec![block(projection * look(light.position, light.direction), [2.0 * (angle * 0.5).tan(), far, 1.0])]
         }
         LightKind::Point => [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z]
             .into_iter()
             .map(|direction| {
                 // A little more than 90 degrees, so that filtered lookups at the seams stay inside a face.
                 let angle = std::f32::consts::FRAC_PI_2 + 0.01;
-                let matrix = perspective(angle, 1.0, 0.02, far()) * look(light.position, direction);
-                block(matrix, [2.0 * (angle * 0.5).tan(), far(), 1.0])
+                let matrix = vulkan::perspective(angle, 1.0, near, far) * look(light.position, direction);
+                block(matrix, [2.0 * (angle * 0.5).tan(), far, 1.0])
             })
             .collect(),
     }

@@ -16,12 +16,15 @@ pub struct Triangle {
     pub material: u32,
 }
 
-/// All triangles of a scene at a time (s), instance by instance. Corners are rounded to f32, as they are on the device.
+/// All triangles of a scene at a time (s), instance by instance, in the shaders' world. Corners are rounded to f32, as they
+/// are on the device.
 pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
+    let origin = scene.origin().extend(0.0);
     let mut list = Vec::with_capacity(scene.triangle_count());
     for (i, instance) in scene.instances.iter().enumerate() {
         let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
-        let model = scene.instance_transform(i, time as f32);
+        let mut model = scene.instance_transform(i, time as f32);
+        model.w_axis -= origin;
         let turn = Mat3::from_mat4(model).inverse().transpose();
         for submesh in &mesh.submeshes {
             let indices =

@@ -26,12 +26,13 @@ pub(super) fn camera(scene: &Scene) -> Camera {
     let axis = if extent.x >= extent.z { Vec3::X } else { Vec3::Z };
     let mut eye = centre + axis * (0.32 * extent.dot(axis));
     eye.y = low.y + 0.2 * extent.y;
-    let (near, far) = clip_planes(extent.length());
-    Camera { eye, target: eye - axis * extent.dot(axis).max(1.0), up: Vec3::Y, fov_y: 58.3, near, far }
+    let length = extent.dot(axis);
+    let target = eye - axis * if length > 0.0 { length } else { 1.0 };
+    Camera { eye, target, up: Vec3::Y, fov_y: 58.3, near: near_plane(extent.length()), far: f32::INFINITY }
 }
 
-/// Near and far distances that suit a scene with the given diagonal.
-pub(super) fn clip_planes(diagonal: f32) -> (f32, f32) {
-    let near = (0.001 * diagonal).max(0.01);
-    (near, (2.0 * diagonal).max(near * 100.0))
+/// Distance of the near plane in a scene with the given diagonal: so small that it hides nothing. Under reversed depth
+/// it costs no precision.
+pub(crate) fn near_plane(diagonal: f32) -> f32 {
+    (1e-5 * diagonal).clamp(1e-9, 1e-3)
 }

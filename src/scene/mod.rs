@@ -4,7 +4,7 @@
 //! are counter-clockwise, and colours are linear RGB (only base-colour and emission images are sRGB).
 
 pub mod builtin;
-mod defaults;
+pub(crate) mod defaults;
 mod error;
 mod export;
 mod file;
@@ -27,6 +27,7 @@ use indexmap::IndexMap;
 pub use error::SceneError;
 pub(crate) use shuffle::splitmix;
 pub use split::MAX_TRIANGLES;
+pub(crate) use transform::origin_of;
 
 /// Everything that is rendered, and from where.
 #[derive(Clone, Debug, Default)]
@@ -228,6 +229,8 @@ pub struct Camera {
     pub up: Vec3,
     /// Vertical field of view in degrees.
     pub fov_y: f32,
+    /// What is nearer is cut off.
     pub near: f32,
+    /// Cuts off nothing; files have it. Infinite where nobody has said it.
     pub far: f32,
 }

@@ -35,6 +35,12 @@ impl Scene {
         if low.x <= high.x { (low, high) } else { (Vec3::ZERO, Vec3::ZERO) }
     }
 
+    /// Where the world of shaders begins, seen from the scene's: at its own origin, unless the scene lies so far from it that
+    /// 32-bit coordinates would be coarse for its size. Then near its middle, in steps that round nothing of what is there.
+    pub fn origin(&self) -> Vec3 {
+        origin_of(self.bounds())
+    }
+
     /// Model to world at a time in seconds. Panics when there is no such instance.
     pub fn instance_transform(&self, instance: usize, time: f32) -> Mat4 {
         let instance = &self.instances[instance];
@@ -49,6 +55,16 @@ impl Scene {
         let of_mesh = |i: u32| self.meshes.get(i as usize).map_or(0, Mesh::triangle_count);
         self.instances.iter().map(|instance| of_mesh(instance.mesh)).sum()
     }
+}
+
+/// [`Scene::origin`] of a scene with these bounds.
+pub(crate) fn origin_of((low, high): (Vec3, Vec3)) -> Vec3 {
+    let (centre, diagonal) = ((low + high) * 0.5, (high - low).length());
+    if !(diagonal > 0.0 && centre.length() > 8.0 * diagonal) {
+        return Vec3::ZERO;
+    }
+    let step = diagonal.log2().floor().exp2();
+    (centre / step).round() * step
 }
 
 impl Mesh {

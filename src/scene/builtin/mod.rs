@@ -91,10 +91,9 @@ fn assemble(name: &str, materials: Vec<Material>, meshes: Vec<Mesh>) -> Scene {
     Scene { name: name.into(), instances: instances.collect(), meshes, materials, ..Scene::default() }
 }
 
-/// A view with clip planes for a scene of the given diagonal.
+/// A view with a near plane for a scene of the given diagonal.
 fn view(eye: Vec3, target: Vec3, fov_y: f32, diagonal: f32) -> Camera {
-    let (near, far) = defaults::clip_planes(diagonal);
-    Camera { eye, target, up: Vec3::Y, fov_y, near, far }
+    Camera { eye, target, up: Vec3::Y, fov_y, near: defaults::near_plane(diagonal), far: f32::INFINITY }
 }
 
 /// A plain dielectric material.

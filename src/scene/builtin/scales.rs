@@ -5,7 +5,7 @@ use glam::{Mat4, Vec3};
 use super::shapes::{MeshBuilder, STANDING};
 use super::solid::{Solid, lining};
 use super::{assemble, matte, sun, view};
-use crate::scene::{Camera, Light, LightKind, Scene};
+use crate::scene::{Light, LightKind, Scene};
 
 const WALL: u32 = 0;
 const FLOOR: u32 = 1;
@@ -49,9 +49,7 @@ pub(super) fn pocket() -> Scene {
     });
     scene.sky = Vec3::new(0.3, 0.4, 0.55);
     let eye = Vec3::new(0.6, 1.7, 5.6) * MILLI;
-    // The usual near plane of a centimetre lies behind the room.
-    let camera =
-        Camera { near: 0.1 * MILLI, far: 40.0 * MILLI, ..view(eye, Vec3::new(0.0, 1.1, -0.5) * MILLI, 48.0, 0.0) };
+    let camera = view(eye, Vec3::new(0.0, 1.1, -0.5) * MILLI, 48.0, 6.6 * MILLI);
     scene.cameras.insert("default".into(), camera);
     scene
 }
@@ -86,9 +84,7 @@ pub(super) fn plain() -> Scene {
         ("default", Vec3::new(4.5, 1.7, 12.0), Vec3::new(0.0, 1.9, 0.0), 55.0),
         ("inside", Vec3::new(2.9, 1.7, -2.0), Vec3::new(-1.0, 1.2, 2.5), 70.0),
     ] {
-        // The usual near plane, a thousandth of the scene, lies far behind the house.
-        let camera = Camera { near: 0.1, far: 3e5, ..view(eye, target, fov, 0.0) };
-        scene.cameras.insert(name.into(), camera);
+        scene.cameras.insert(name.into(), view(eye, target, fov, 2.8e5));
     }
     scene
 }

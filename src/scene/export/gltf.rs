@@ -271,7 +271,9 @@ fn camera_node(name: &str, index: usize, camera: &Camera) -> Value {
 }
 
 fn lens(name: &str, camera: &Camera) -> Value {
-    json!({ "name": name, "type": "perspective", "perspective": {
-        "yfov": camera.fov_y.to_radians(), "znear": camera.near, "zfar": camera.far,
-    } })
+    let mut perspective = json!({ "yfov": camera.fov_y.to_radians(), "znear": camera.near });
+    if camera.far.is_finite() {
+        perspective["zfar"] = camera.far.into();
+    }
+    json!({ "name": name, "type": "perspective", "perspective": perspective })
 }

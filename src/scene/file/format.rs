@@ -279,17 +279,17 @@ impl TryFrom<CameraFields> for CameraEntry {
 }
 
 impl CameraEntry {
-    /// The camera, with given clip planes where it has none of its own.
-    pub fn to_camera(&self, (near, far): (f32, f32)) -> Camera {
+    /// The camera, with the given near plane where it has none of its own.
+    pub fn to_camera(&self, near: f32) -> Camera {
         let CameraFields { eye, target, up, fov_y, .. } = self.0;
-        let near = self.0.near.unwrap_or(near.min(self.0.far.unwrap_or(far) * 0.5));
+        let far = self.0.far.unwrap_or(f32::INFINITY);
         Camera {
             eye,
             target,
             up: up.normalize_or(Vec3::Y),
             fov_y,
-            near,
-            far: self.0.far.unwrap_or(far.max(near * 2.0)),
+            near: self.0.near.unwrap_or(near.min(far * 0.5)),
+            far,
         }
     }
 }

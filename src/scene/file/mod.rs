@@ -30,9 +30,9 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         scene.lights.push(light.to_light(scene.lights.len()));
     }
     let (low, high) = scene.bounds();
-    let clip_planes = defaults::clip_planes((high - low).length());
+    let near = defaults::near_plane((high - low).length());
     for (name, camera) in file.cameras.into_iter().rev() {
-        scene.cameras.shift_insert(0, name, camera.to_camera(clip_planes));
+        scene.cameras.shift_insert(0, name, camera.to_camera(near));
     }
     if scene.cameras.is_empty() {
         let camera = defaults::camera(&scene);

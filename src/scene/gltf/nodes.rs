@@ -126,8 +126,8 @@ fn read_camera(projection: &Projection, world: Mat4) -> Option<Camera> {
     };
     let eye = world.w_axis.truncate();
     let fov_y = lens.yfov().to_degrees();
-    let (near, far) = (lens.znear(), lens.zfar().unwrap_or(lens.znear() * 1e5));
-    let usable = fov_y > 0.0 && fov_y < 180.0 && near > 0.0 && far > near && far.is_finite();
+    let (near, far) = (lens.znear(), lens.zfar().unwrap_or(f32::INFINITY));
+    let usable = fov_y > 0.0 && fov_y < 180.0 && near > 0.0 && near.is_finite() && far > near;
     usable.then(|| Camera {
         eye,
         target: eye + world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z),
