@@ -86,6 +86,7 @@ pub const BUILTIN_VARIABLES: &[&str] = &[
     "light_count",
     "triangle_count",
     "scene_size",
+    "seen_distance",
     "scene_min_x",
     "scene_min_y",
     "scene_min_z",

@@ -22,6 +22,7 @@ pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
     put("light_count", scene.lights.len() as f64);
     put("triangle_count", scene.triangle_count() as f64);
     put("scene_size", f64::from(extent.max_element()));
+    put("seen_distance", f64::from(scene.seen_distance));
     for (axis, (a, b)) in ["x", "y", "z"].iter().zip(low.to_array().into_iter().zip(high.to_array())) {
         put(&format!("scene_min_{axis}"), f64::from(a));
         put(&format!("scene_max_{axis}"), f64::from(b));

@@ -13,6 +13,7 @@ mod mesh;
 mod obj;
 mod open;
 mod progress;
+mod reach;
 mod resample;
 mod shuffle;
 mod split;
@@ -42,6 +43,8 @@ pub struct Scene {
     pub cameras: IndexMap<String, Camera>,
     /// Radiance of the sky, the same in every direction.
     pub sky: Vec3,
+    /// The median distance of what the scene's own camera sees, when it was opened [m]; 0: not known.
+    pub seen_distance: f32,
     /// What is not as its author meant it (missing files, dropped triangles, stand-ins); each names the file.
     pub warnings: Vec<String>,
 }

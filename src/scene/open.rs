@@ -33,7 +33,7 @@ impl Scene {
                 return Err(SceneError::Cancelled);
             }
             match result.recv_timeout(ASK) {
-                Ok(loaded) => return loaded,
+                Ok(loaded) => return loaded.map(Scene::with_seen_distance),
                 Err(mpsc::RecvTimeoutError::Timeout) => {}
                 Err(mpsc::RecvTimeoutError::Disconnected) => break,
             }
