@@ -21,7 +21,7 @@ fn home() -> TempDir {
 fn ablate(home: &Path, more: &[&str]) -> Command {
     let mut command = conelab(home);
     command.args(["ablate", "configs/default.ron", "--size", "64x36", "--spp", "32"]);
-    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256"]).args(more);
+    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256", "--set", "trace=interleaved"]).args(more);
     command
 }
 

@@ -11,12 +11,11 @@ use std::time::Duration;
 use window_driver::{WindowDriver, centre};
 
 /// Small enough for a software device to draw several a second.
-const SMALL: &str =
-    r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256 })"#;
+const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one })"#;
 
 /// Four points, one of them [`SMALL`].
 const SWEEP: &str = r#"(experiments: ["configs/opened.ron"], warmup: 1, frames: 3,
-    axes: [List(name: "voxel_dim", values: [16, 32]), List(name: "lod_offset", values: [-2, 0])])"#;
+    axes: [List(name: "voxel_dim", values: [16, 32]), List(name: "pixel_cones", values: [3, 8])])"#;
 
 fn number(event: &Value, name: &str) -> f64 {
     event[name].as_f64().unwrap_or_else(|| panic!("no {name} in {event}"))
@@ -73,10 +72,10 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     assert!(dots.iter().any(|d| d["front"] == true), "{chart}");
 
     // The dot moves with a slider.
-    driver.click("", "Tracing");
+    driver.click("", "Diffuse cones");
     let mark = driver.now();
-    let (x, y) = centre(driver.find("Slider", "lod_offset"));
-    driver.drag((x, y), (x - 20.0, y));
+    let (x, y) = centre(driver.find("Slider", "pixel_cones"));
+    driver.drag((x, y), (x + 20.0, y));
     error(&mut driver, mark, "another error", |e| !same(e, own));
     driver.resting(0);
     let picture = driver.events.iter().rev().find(|e| e["event"] == "picture").unwrap();

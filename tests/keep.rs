@@ -459,7 +459,7 @@ fn the_method_is_captured_and_replayed() {
     let mut experiment = common::experiment("cornell", (48, 32), &[("voxel_dim", "32"), ("shadow_dim", "256")]);
     experiment.lights.push((named("lamp"), LightChange { color: Some((9.0, 8.0, 7.0)), ..LightChange::default() }));
     let what = capture::What {
-        resources: vec![capture::Resource { name: "voxelRadianceAniso".into(), mip: 1, layer: 0 }],
+        resources: vec![capture::Resource { name: "voxelRadiance".into(), mip: 1, layer: 0 }],
         ..capture::What::default()
     };
     let path = capture::take(&lab, &experiment, scene("cornell"), &what, folder.path(), "box").unwrap();

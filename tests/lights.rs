@@ -9,7 +9,8 @@ use glam::Vec3;
 use std::sync::Arc;
 
 fn session(lab: &Lab, scene: &Arc<Scene>) -> Session {
-    let experiment = experiment(&scene.name, (64, 48), &[("voxel_dim", "32"), ("shadow_dim", "512")]);
+    let experiment =
+        experiment(&scene.name, (64, 48), &[("voxel_dim", "32"), ("shadow_dim", "512"), ("bounces", "one")]);
     lab.prepare(&experiment, scene.clone(), |_| Ok(vec!["radiance".into()])).unwrap().0
 }
 

@@ -77,8 +77,17 @@ fn edit(home: &Path, file: &Path, change: impl FnOnce(String) -> String) {
 
 /// A small picture of a built-in scene.
 fn small(opacity: &str) -> Experiment {
-    let experiment =
-        experiment("cornell", (48, 36), &[("voxel_dim", "32"), ("shadow_dim", "256"), ("opacity", opacity)]);
+    let experiment = experiment(
+        "cornell",
+        (48, 36),
+        &[
+            ("voxel_dim", "32"),
+            ("shadow_dim", "256"),
+            ("bounces", "one"),
+            ("trace", "interleaved"),
+            ("opacity", opacity),
+        ],
+    );
     assert_eq!(experiment.graph, "vct.ron");
     experiment
 }
@@ -87,7 +96,7 @@ fn small(opacity: &str) -> Experiment {
 fn command(home: &Path, name: &str) -> Command {
     let mut command = conelab(home);
     command.args([name, "configs/default.ron", "--scene", "cornell", "--size", "48x36"]);
-    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256"]);
+    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256", "--set", "trace=interleaved"]);
     command
 }
 

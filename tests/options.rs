@@ -36,7 +36,9 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
         "fallback" => &[("warp", "perspective"), ("warp_near", "1.0"), ("warp_far", "6.0")],
         "warp" => &[("warp_near", "1.0"), ("warp_far", "6.0")],
         "voxel_view" | "density" => &[("view", "voxels")],
-        "cone_rotate" => &[("cone_count", "5")],
+        "cone_set" => &[("trace", "cones")],
+        "opacity" | "lod_clearance" => &[("trace", "interleaved")],
+        "cone_rotate" => &[("trace", "cones"), ("cone_count", "5")],
         "trace" => &[("exact_rays", "8")],
         "tess_levels" => &[("voxelizer", "tessellated")],
         _ => &[],
@@ -91,7 +93,9 @@ fn run(
     let scene = common::scene(&e.scene);
     lab.prepare(&e, scene, |_| Ok(vec!["display".into()]))?;
     let mut session = prepare(lab, &e, wanted);
-    session.frame(0.0)?;
+    for _ in 0..2 {
+        session.frame(0.0)?; // what voxels reflect to each other is seen in the second
+    }
     session.finish()?;
     assert_clean(lab);
     let made = |name: &&&str| {

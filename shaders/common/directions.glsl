@@ -15,7 +15,7 @@ vec4 sampleDirection(sampler3D aniso, vec3 u, int direction, float level, float 
     return textureLod(aniso, vec3((float(direction) + clamp(u.x, margin, 1.0 - margin)) / 6.0, u.yz), level);
 }
 
-// What a ray finds: the three directions that it crosses, by weights `w`. `cells` along an edge of the first level.
+// What a ray finds: the three directions that it crosses, by weights `w`. `cells` along an edge of level 0.
 vec4 sampleDirections(sampler3D aniso, vec3 u, vec3 d, vec3 w, float level, float cells) {
     return w.x * sampleDirection(aniso, u, d.x < 0.0 ? 1 : 0, level, cells)
          + w.y * sampleDirection(aniso, u, d.y < 0.0 ? 3 : 2, level, cells)

@@ -1,37 +1,59 @@
-// The sparse list of voxels. A cell of `voxelIndex` holds 0, slot + 1 or CELL_FULL; a slot holds the sums
-// of what fell into the cell. The sums are integers, so their order does not matter and runs agree to the bit.
+// The sparse list of voxels. A slot holds the sums of what fell into a cell and faces along one axis, for its two sides apart
+// (modules/sides). The sums are integers, so their order does not matter and runs agree to the bit. A texel of `voxelIndex`
+// is 0, CELL_FULL, or says in its lowest three bits along which axes the cell's surfaces face and above them the first of as
+// many slots. The index and the list of cells are kept for two frames: light comes from last frame's voxels.
 #ifndef VOXELS_GLSL
 #define VOXELS_GLSL
 
-const uint SLOT_WORDS = 12; // colour 0-2, count 3, normal 4-6, emission 7-9, unused 10, cell 11
-const uint SLOT_CELL = 11;
-const uint CELL_FULL = 0xffffffffu; // occupied, but the list had no slot left
+#include "modules/sides.glsl"
 
-// Fixed point. Colour and normal do not overflow below 2^20 fragments a voxel; emission below
-// 4e6 / radiance fragments.
+const uint SIDE_WORDS = 11; // sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10
+const uint SIDE_OFFSET = 10;
+const uint SLOT_PARTS = SIDES * SIDE_WORDS; // two words: which parts of the cell are covered
+const uint SLOT_CELL = SLOT_PARTS + 2; // cell, and above it the axis + 1; 0: no slot
+const uint SLOT_WORDS = SLOT_CELL + 1;
+const uint CELL_FULL = 0xffffffffu; // occupied, but a list had no room left
+
+// Fixed point, times weights. Colour and normal do not overflow before a cell is covered a thousand times; emission before
+// 2.6e5 / radiance times.
 const float COLOR_SCALE = 4095.0;
 const float NORMAL_SCALE = 2047.0;
-const float EMISSION_SCALE = 1024.0;
+const float EMISSION_SCALE = 16.0;
 const float EMISSION_MAX = 1024.0;
 
 layout(std430) buffer VoxelSlots { uint words[]; } voxelSlots;
+// Occupied cells: this frame's in one half of the list, last frame's in the other.
+layout(std430) buffer VoxelCells { uint list[]; } voxelCells;
 layout(std430) buffer VoxelCounter {
-    uint allocated; // slots asked for, this frame: as many as occupied cells
+    uint half_used; // by this frame, 0 or 1
+    uint cells[2]; // occupied, by half
+    uint signatures[2]; // of the settings that a half was listed with; 0: it does not name every set cell
+    uint allocated; // slots asked for, this frame
     uint overflow; // fragments that were lost: the list of voxels or of fragments was full
-    uint count; // slots in the list: min(allocated, voxel_capacity)
+    uint count; // slots in the list
     uint fragments; // stored, this frame
-    uvec3 list_groups; // indirect dispatch over the list, 128 threads a group
-    uint clear_count;
-    uvec3 clear_groups; // indirect dispatch that clears last frame's list
-    uint clear_all; // 1: the list does not name every set cell, clear them all
-    uint signature; // of the settings that the list was built with
+    uvec3 cell_groups; // indirect dispatch over the cells, 128 threads a group
+    uvec3 list_groups; // over the slots
+    uvec3 side_groups; // over their sides
+    uint clear_cells; // of the half that this frame takes; all, where that does not name them
+    uint clear_slots; // last frame's
+    uvec3 clear_groups; // indirect dispatch that clears a list
+    uvec3 dim_groups; // that clears last frame's light
+    uint signature; // of this frame's settings
     uint kept; // slots that stay as they are, this frame
     uvec3 merge_groups; // indirect dispatch over the fragments
     uvec3 kept_groups; // indirect dispatch over what is kept
 } voxelCounter;
 
-// Cell, colour, normal, emission of each fragment, in no order.
+// What fell into cells, in no order: cell, colour, normal and offset, emission; and beside it how much of the cell it covers.
 layout(std430) buffer VoxelFragments { uvec4 list[]; } voxelFragments;
+
+struct FragmentArea {
+    uint parts[2]; // of the cell that are covered, seen along the axis that the normal is closest to
+    uint weight; // the area there, in sixteenths of a part
+};
+
+layout(std430) buffer VoxelAreas { FragmentArea list[]; } voxelAreas;
 
 uint packColor(vec3 c) {
     uvec3 v = uvec3(clamp(c, 0.0, 1.0) * vec3(2047.0, 2047.0, 1023.0) + 0.5);
@@ -42,24 +64,37 @@ vec3 unpackColor(uint w) {
     return vec3(w & 2047u, w >> 11 & 2047u, w >> 22) / vec3(2047.0, 2047.0, 1023.0);
 }
 
-// Octahedral (Cigolle et al. 2014); 0 is no normal.
-uint packNormal(vec3 n) {
+// Octahedral (Cigolle et al. 2014), twelve bits a coordinate; 0 is no normal.
+uint packDirection(vec3 n) {
     float sum = abs(n.x) + abs(n.y) + abs(n.z);
     if (sum == 0.0) return 0;
     n /= sum;
     vec2 fold = (1.0 - abs(n.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(n.xy, vec2(0.0)));
     vec2 o = n.z >= 0.0 ? n.xy : fold;
-    uvec2 v = uvec2(o * 32767.0 + 32768.5);
-    return v.x | v.y << 16;
+    uvec2 v = uvec2(o * 2047.0 + 2048.5);
+    return v.x | v.y << 12;
 }
 
-vec3 unpackNormal(uint w) {
+vec3 unpackDirection(uint w) {
+    w &= 0xffffffu;
     if (w == 0) return vec3(0.0);
-    vec2 o = (vec2(w & 0xffffu, w >> 16) - 32768.0) / 32767.0;
+    vec2 o = (vec2(w & 0xfffu, w >> 12) - 2048.0) / 2047.0;
     vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
     if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(n.xy, vec2(0.0)));
     return normalize(n);
 }
+
+// Where in its cell a surface is along the axis that it faces, from the middle, in cells: eight bits above the normal's.
+uint packOffset(float offset) {
+    return uint(clamp(offset, -0.5, 0.5) * 254.0 + 128.5) << 24;
+}
+
+uint unpackOffset(uint w) {
+    return w >> 24;
+}
+
+const float OFFSET_SCALE = 254.0;
+const float OFFSET_ZERO = 128.0;
 
 // Nine bits a channel and a shared exponent (EXT_texture_shared_exponent); up to 65408.
 uint packRadiance(vec3 c) {
@@ -82,17 +117,53 @@ uint packCell(ivec3 c) {
 }
 
 ivec3 unpackCell(uint word) {
-    return ivec3(word & 511u, word >> 9 & 511u, word >> 18);
+    return ivec3(word & 511u, word >> 9 & 511u, word >> 18 & 4095u);
 }
 
 ivec3 cellOfSlot(uint slot) {
     return unpackCell(voxelSlots.words[slot * SLOT_WORDS + SLOT_CELL]);
 }
 
-vec3 meanEmission(uint slot) {
-    uint base = slot * SLOT_WORDS;
-    float count = float(max(voxelSlots.words[base + 3], 1u));
-    return vec3(voxelSlots.words[base + 7], voxelSlots.words[base + 8], voxelSlots.words[base + 9]) / (EMISSION_SCALE * count);
+// Which axis a slot's surfaces face along; -1: the slot is not in use, because the list was full.
+int axisOfSlot(uint slot) {
+    return int(voxelSlots.words[slot * SLOT_WORDS + SLOT_CELL] >> 30) - 1;
+}
+
+// Of a texel of `voxelIndex`: how many slots the cell has, the first of them, and that of an axis.
+uint slotsOf(uint texel) {
+    return bitCount(texel & 7u);
+}
+
+uint firstSlot(uint texel) {
+    return texel >> 3;
+}
+
+uint slotOf(uint texel, uint axis) {
+    return firstSlot(texel) + bitCount(texel & ((1u << axis) - 1u));
+}
+
+// The first word of one side.
+uint sideBase(uint slot, uint side) {
+    return slot * SLOT_WORDS + side * SIDE_WORDS;
+}
+
+vec3 meanEmission(uint base) {
+    float weight = float(max(voxelSlots.words[base + 3], 1u));
+    return vec3(voxelSlots.words[base + 7], voxelSlots.words[base + 8], voxelSlots.words[base + 9]) / (EMISSION_SCALE * weight);
+}
+
+// Cells that a half of the list names.
+uint roomForCells() {
+    return voxelCells.list.length() / 2;
+}
+
+uint cellsListed(uint half_used) {
+    return min(voxelCounter.cells[half_used], roomForCells());
+}
+
+// Whether a half names every cell that was set, under the settings of now.
+bool namesAll(uint half_used) {
+    return voxelCounter.signatures[half_used] == params.voxel_signature;
 }
 
 #endif

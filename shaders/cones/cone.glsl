@@ -4,6 +4,7 @@
 #ifndef CONE_GLSL
 #define CONE_GLSL
 #include "modules/lookup.glsl"
+#include "cones/near.glsl"
 
 // A cone that has met more than stop_transmittance leaves: what is left would hit something too, so it is spread over what
 // was hit.
@@ -16,6 +17,16 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
     float first_cell;
     Cone cone = coneFrom(o, d, tan_half, first_cell);
     float along = params.cone_height * first_cell;
+    if (params.near_cells > 0.0 && meetsPlanes(o)) {
+        float range = params.near_cells * first_cell;
+        Met met = meetSurface(o, d, range);
+        if (met.light.a > 0.0) {
+            vec3 position = o.surface + met.distance * d;
+            CONE_SAMPLED(0, met.distance, ConeSample(position, met.distance * tan_half, 0.0, first_cell, first_cell, 0.0, met.light, false, true), 1.0, 0.0);
+            return met.light;
+        }
+        along = max(met.distance, min(along, range));
+    }
     vec3 color = vec3(0.0);
     float alpha = 0.0;
     for (int i = 0; i < steps; i++) {

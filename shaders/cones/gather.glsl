@@ -4,11 +4,6 @@
 #include "cones/light.glsl"
 #include "modules/specular_lobe.glsl"
 
-// Before each cone; number 0 is the specular one, 1 the diffuse one on the normal, then the ring.
-#ifndef CONE_BEGINS
-#define CONE_BEGINS(number)
-#endif
-
 vec4 gatherDiffuse(ConeOrigin o, vec3 n) {
     ConeSet set = diffuseConeSet();
     mat3 frame = frameOf(n);

@@ -1,6 +1,12 @@
 // What cones gather is told as.
 #ifndef CONE_LIGHT_GLSL
 #define CONE_LIGHT_GLSL
+
+// Before each cone; number 0 is the specular one, 1 the diffuse one on the normal or the first, then the others.
+#ifndef CONE_BEGINS
+#define CONE_BEGINS(number)
+#endif
+
 #include "common/scene.glsl"
 #include "common/brdf.glsl"
 #include "cones/origin.glsl"

@@ -10,7 +10,7 @@
 
 // The shading normal can point into the geometry.
 ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
-    return ConeOrigin(p + params.bias * cellLength(volume.maps[0], p, shading) * shading, geometric, 0.0, 0.0, 0, 1.0);
+    return ConeOrigin(p + params.bias * cellLength(volume.maps[0], p, shading) * shading, geometric, 0.0, 0.0, 0, vec3(0.0), 1.0);
 }
 
 // Radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.

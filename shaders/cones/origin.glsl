@@ -11,6 +11,7 @@ struct ConeOrigin {
     float height; // of position above the surface [m]
     float reach; // half the local cell's extent across the surface [m]
     int cascade; // that the surface lies in
+    vec3 surface; // a little off it
     float weight; // of it; of the next one, the rest: so that no seam shows where a cascade ends
 };
 

@@ -18,6 +18,17 @@ vec2 rayPoint(int i, vec2 shift) {
     return fract(shift + float(i) * vec2(0.7548776662, 0.5698402910));
 }
 
+// What a ray along d (unit length, in cells) finds in a cell, for each cell's length that it goes there.
+vec4 texelAlong(ivec3 cell, vec3 d) {
+    if (params.radiance_faces == 1) return texelFetch(voxelRadiance, cell, 0);
+    vec4 sum = vec4(0.0);
+    for (int axis = 0; axis < 3; axis++)
+        sum += abs(d[axis]) * texelFetch(voxelRadiance, ivec3(cell.x + (2 * axis + (d[axis] < 0.0 ? 1 : 0)) * params.voxel_dim, cell.yz), 0);
+    return sum;
+}
+
+
+
 #include "modules/rays.glsl"
 
 #endif

@@ -9,16 +9,11 @@ layout(std430) buffer VoxelCubes {
     uint cells[]; // x + size * (y + size * z)
 } voxelCubes;
 
-uniform sampler3D level; // the mip of voxelRadiance that is shown; of levels by direction, the first
-uniform sampler3D directions; // the mip of voxelRadianceAniso that is shown, if one is
-
-bool showsDirections() {
-    return params.view_directions != 0;
-}
+uniform sampler3D level; // the mip of voxelRadiance that is shown
 
 // Cells along an edge of the shown level.
 int shownCells() {
-    return showsDirections() ? textureSize(directions, 0).y : textureSize(level, 0).y;
+    return textureSize(level, 0).y;
 }
 
 // The cascade that is shown: where its cells begin along z.
@@ -29,7 +24,13 @@ int shownCascade() {
 // What rays that meet the cube's face 0 to 5 (-x, x, -y, y, -z, z) find in the cell.
 vec4 shownTexel(ivec3 cell, int face) {
     cell.z += shownCascade() * shownCells();
-    return showsDirections() ? texelFetch(directions, ivec3(cell.x + face * shownCells(), cell.yz), 0) : texelFetch(level, cell, 0);
+    return texelFetch(level, ivec3(cell.x + (params.radiance_faces > 1 ? face * shownCells() : 0), cell.yz), 0);
+}
+
+bool holdsAnything(ivec3 cell) {
+    bool any_face = false;
+    for (int face = 0; face < params.radiance_faces; face++) any_face = any_face || shownTexel(cell, face).a > 0.0;
+    return any_face;
 }
 
 #endif

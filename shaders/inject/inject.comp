@@ -1,66 +1,118 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Radiance leaving each voxel: albedo / pi * E * max(0, n.l) * visibility, summed over all lights, plus
-// emission; premultiplied by opacity. Runs over the voxel list, so each voxel is lit once.
+// Radiance leaving each voxel by direction: albedo / pi * E * max(0, n.l) * visibility, summed over all lights, plus albedo
+// times the mean radiance that the voxel has gathered, plus emission; premultiplied by opacity. Runs over the voxel list, so
+// each surface is lit once.
 #include "params.glsl"
 #include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "common/directions.glsl"
+#include "common/sides.glsl"
+#include "common/planes.glsl"
 #include "common/shadow_views.glsl"
 #include "common/scene.glsl"
 
 layout(local_size_x = 128) in;
 
-uniform sampler3D voxelColor;
-uniform sampler3D voxelNormal;
+layout(r32ui) uniform readonly uimage3D voxelIndex;
 uniform sampler2DArrayShadow shadowCompare;
 uniform writeonly image3D injected;
 
 const float PI = 3.14159265359;
 
-// Fraction of the voxel that sees the light: four lookups across the cell, moved off the surface by half a
-// cell's extent (the surface passes anywhere through the cell) and a little towards the light.
-float voxelVisibility(Light light, vec3 center, mat3 axes, vec3 n, vec3 to_light) {
+// Places on a slot's surfaces, one in each quarter of the cell that they cover, from the cell's middle [cells].
+struct Taps {
+    vec3 middle;
+    vec3 places[4];
+    int count;
+};
+
+Taps tapsOf(uint base, uint axis) {
+    uvec2 parts = partsOf(base);
+    Taps taps;
+    taps.count = 0;
+    taps.middle = planeMiddle(base, axis);
+    for (int i = 0; i < 4; i++) {
+        uint columns = parts[i / 2] & 0x0f0f0f0fu << 4 * (i & 1);
+        if (columns != 0) taps.places[taps.count++] = onPlane(base, axis, middleOf(i < 2 ? uvec2(columns, 0u) : uvec2(0u, columns)));
+    }
+    if (taps.count == 0) taps.places[taps.count++] = taps.middle;
+    return taps;
+}
+
+// Share of the surface around `center` that sees the light, each place moved off it a little.
+float voxelVisibility(Light light, vec3 center, Taps taps, mat3 axes, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
-    float side = dot(n, to_light) < 0.0 ? -1.0 : 1.0; // the lit side of a thin sheet
     float cell = pow(abs(determinant(axes)), 1.0 / 3.0);
     float texel = shadowTexel(shadowViewOf(light, center), light, center);
     vec3 extent = abs(n * axes);
-    vec3 base = center + n * side * (0.5 * (extent.x + extent.y + extent.z) + texel)
-              + to_light * (n == vec3(0.0) ? cell : 0.25 * cell);
+    vec3 base = center + n * (params.light_bias * (extent.x + extent.y + extent.z) + texel)
+              + to_light * (n == vec3(0.0) ? cell : 0.5 * params.light_bias * cell);
     float sum = 0.0;
-    for (int i = 0; i < 4; i++) {
-        vec3 tap = vec3((i & 1) != 0 ? 0.25 : -0.25, (i & 2) != 0 ? 0.25 : -0.25, i == 0 || i == 3 ? 0.25 : -0.25);
-        vec3 offset = axes * tap;
-        vec3 p = base + offset - n * dot(n, offset);
+    for (int i = 0; i < taps.count; i++) {
+        vec3 p = base + axes * taps.places[i];
         int view = shadowViewOf(light, p);
         vec3 q = shadowPosition(view, p);
         sum += texture(shadowCompare, vec4(q.xy, view, q.z));
     }
-    return 0.25 * sum;
+    return sum / float(taps.count);
+}
+
+vec3 radianceOf(Side s, vec3 gathered, vec3 center, Taps taps, mat3 axes) {
+    vec3 irradiance = vec3(0.0), middle = center + axes * taps.middle;
+    for (uint i = 0; i < sceneInfo.light_count; i++) {
+        Light light = lights.lights[i];
+        Incident incident = incidentLight(light, middle);
+        float cosine = meanCosine(s, incident.to_light);
+        if (cosine > 0.0 && incident.irradiance != vec3(0.0))
+            irradiance += incident.irradiance * cosine * voxelVisibility(light, center, taps, axes, s.normal, incident.to_light);
+    }
+    return s.color * (irradiance / PI + gathered) + s.emission;
+}
+
+// Opacity of a surface to rays along d, which cross fewer of its cells the straighter they meet it; none goes through along the
+// axis that it faces.
+float opacityTo(Side s, vec3 d) {
+    vec3 a = abs(s.normal);
+    float steepest = max(a.x, max(a.y, a.z));
+    return steepest > 0.0 ? mix(1.0, abs(dot(s.normal, d)) / steepest, params.face_opacity * s.agreement) : 1.0;
 }
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;
-    if (slot >= voxelCounter.count) return;
+    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
-    vec4 color = texelFetch(voxelColor, cell, 0);
-    vec4 packed = texelFetch(voxelNormal, cell, 0);
-    vec3 n = packed.rgb * 2.0 - 1.0;
-    n = dot(n, n) > 0.25 ? normalize(n) : vec3(0.0);
-    float agreement = packed.a;
+    uint found = imageLoad(voxelIndex, cell).r;
+    if (slot != firstSlot(found)) return;
 
     VolumeMap map = volume.maps[cascadeOf(cell)];
     vec3 center = volumeToWorld(map, cellCentre(cell));
     mat3 axes = cellAxes(map, center);
-    vec3 irradiance = vec3(0.0);
-    for (uint i = 0; i < sceneInfo.light_count; i++) {
-        Light light = lights.lights[i];
-        Incident incident = incidentLight(light, center);
-        // Normals that disagree lie on a curved or two-sided surface: what the mean does not explain is
-        // taken as spread over all directions, whose mean cosine is 1/4.
-        float cosine = max(dot(n, incident.to_light), 0.0) * agreement + 0.25 * (1.0 - agreement);
-        if (cosine > 0.0 && incident.irradiance != vec3(0.0))
-            irradiance += incident.irradiance * cosine * voxelVisibility(light, center, axes, n, incident.to_light);
+    vec3 light[6] = vec3[6](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    float seen[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0), opacity[6] = seen;
+    for (uint i = 0; i < slotsOf(found) * SIDES; i++) {
+        uint side = i % SIDES, base = planeBase(voxelCounter.half_used, slot + i / SIDES);
+        Side s = sideOfSlot(slot + i / SIDES, side);
+        uint axis = uint(axisOfSlot(slot + i / SIDES));
+        vec3 radiance = radianceOf(s, lightWords(gatheredWord(base, side)), center, tapsOf(base, axis), axes);
+        keepLight(radianceWord(base, side), radiance);
+        for (int face = 0; face < 6; face++) {
+            vec3 d = normalize(axes * mipDirection(face));
+            float area = s.count * meanCosine(s, -d);
+            light[face] += area * radiance;
+            seen[face] += area;
+            if (area > 0.0) opacity[face] = min(opacity[face] + opacityTo(s, d), 1.0);
+        }
     }
-    imageStore(injected, cell, vec4((color.rgb / PI * irradiance + meanEmission(slot)) * color.a, color.a));
+    if (params.radiance_faces == 1) {
+        vec3 sum = vec3(0.0);
+        float all = 0.0;
+        for (int face = 0; face < 6; face++) {
+            sum += light[face];
+            all += seen[face];
+        }
+        imageStore(injected, cell, vec4(sum / max(all, 1e-6), 1.0));
+        return;
+    }
+    for (int face = 0; face < 6; face++)
+        imageStore(injected, ivec3(cell.x + face * params.voxel_dim, cell.yz), vec4(light[face] / max(seen[face], 1e-6) * opacity[face], opacity[face]));
 }

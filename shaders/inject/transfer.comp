@@ -13,8 +13,8 @@ uniform writeonly image3D injected;
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;
-    if (slot >= voxelCounter.count) return;
+    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
     float opacity = texelFetch(voxelColor, cell, 0).a;
-    imageStore(injected, cell, vec4(meanEmission(slot) * opacity, opacity));
+    imageStore(injected, cell, vec4(meanEmission(sideBase(slot, 0)) * opacity, opacity));
 }

@@ -21,7 +21,7 @@ void recordSample(int number, float along, ConeSample x, float a, float transmit
 #include "modules/trace.glsl"
 
 vec2 pixelCentre() {
-    return params.probe + 0.5;
+    return floor(params.probe) + 0.5;
 }
 
 void recordCones(Surface s, vec3 p, vec3 face, vec3 v) {

@@ -7,7 +7,7 @@
 const uint SAMPLE_VERTICES = 78;
 
 struct RecordedSample {
-    uint cone; // 0 specular, 1 diffuse on the normal, then the ring
+    uint cone; // 0 specular, then the diffuse ones; of a set that has one on the normal, it is 1
     uint number; // in its cone, from 0
     float along; // distance from the cone's start [m]
     float advance; // to the next sample [m]

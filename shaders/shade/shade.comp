@@ -1,9 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Final shading of the surfaces that pixels see, a thread a pixel, each contribution to its own picture.
+// Final shading of the surfaces that pixels see, a thread a pixel, each contribution to its own picture (thesis, Algorithm 3).
+// Indirect diffuse light is albedo times the mean radiance over the hemisphere, sky included where it is open.
 #include "params.glsl"
 #include "common/gbuffer_read.glsl"
-#include "shade/shade.glsl"
+#include "common/shadow.glsl"
+#include "common/direct.glsl"
+#include "shade/filter.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -14,26 +17,28 @@ uniform writeonly image2D specularIndirect;
 uniform writeonly image2D occlusion; // 1: open
 uniform writeonly image2D surfaceNormal; // * .5 + .5
 
-vec2 pixelCentre() {
-    return vec2(gl_GlobalInvocationID.xy) + 0.5;
+float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
+    return shadowVisibility(light, p, face, to_light);
 }
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     GBufferSurface seen = gbufferAt(pixel);
-    vec3 total = sceneInfo.sky, normal = vec3(-1.0);
-    Shading light = Shading(vec3(0.0), vec3(0.0), vec3(0.0), 1.0);
+    vec3 total = sceneInfo.sky, normal = vec3(-1.0), lit = vec3(0.0), diffuse = vec3(0.0);
+    Filtered light = Filtered(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));
     if (seen.any) {
-        light = shade(seen.surface, seen.position, seen.face, seen.to_viewer);
-        total = light.direct + light.diffuse + light.specular + seen.emission;
+        light = params.pattern == 1 ? unfiltered(pixel) : filterGathered(pixel, seen, 0, 1, 2);
+        lit = directLight(seen.surface, seen.position, seen.face, seen.to_viewer);
+        diffuse = seen.surface.albedo * light.hemisphere.rgb;
+        total = lit + diffuse + light.specular + seen.emission;
         normal = seen.surface.normal;
     }
     float covered = seen.any ? 1.0 : 0.0;
     imageStore(radiance, pixel, vec4(total, 1.0));
-    imageStore(direct, pixel, vec4(light.direct, covered));
-    imageStore(diffuseIndirect, pixel, vec4(light.diffuse, covered));
+    imageStore(direct, pixel, vec4(lit, covered));
+    imageStore(diffuseIndirect, pixel, vec4(diffuse, covered));
     imageStore(specularIndirect, pixel, vec4(light.specular, covered));
-    imageStore(occlusion, pixel, vec4(vec3(light.open), 1.0));
+    imageStore(occlusion, pixel, vec4(vec3(light.hemisphere.a), 1.0));
     imageStore(surfaceNormal, pixel, vec4(normal * 0.5 + 0.5, covered));
 }

@@ -20,21 +20,24 @@ bool isCut(VolumeMap g, VolumeMap last) {
 }
 
 void main() {
-    ivec3 cell = ivec3(gl_GlobalInvocationID);
+    ivec3 texel = ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(texel, imageSize(voxelHistory)))) return;
+    int face = texel.x / params.voxel_dim;
+    ivec3 cell = ivec3(texel.x - face * params.voxel_dim, texel.yz);
     int cascade = cascadeOf(cell);
-    if (any(greaterThanEqual(cell, imageSize(voxelHistory)))) return;
-    vec4 value = texelFetch(voxelLight, cell, 0);
+    vec4 value = texelFetch(voxelLight, texel, 0);
     VolumeMap g = volume.maps[cascade], last = lastVolume.maps[cascade];
     if (lastVolume.frames > 0 && lastVolume.signature == voxelCounter.signature && !isCut(g, last)) {
         vec3 u = worldToVolume(last, volumeToWorld(g, cellCentre(cell)));
         // A volume that moved by whole voxels finds its cell's centre again, to rounding.
         if (inVolume(u)) {
             float half_cell = 0.5 / float(params.voxel_dim);
+            u.x = (float(face) + clamp(u.x, half_cell, 1.0 - half_cell)) / float(params.radiance_faces);
             u.z = (float(cascade) + clamp(u.z, half_cell, 1.0 - half_cell)) / float(CASCADE_COUNT);
             value = mix(value, textureLod(lastHistory, u, 0.0), params.temporal_factor);
         }
     }
     value = mix(vec4(0.0), value, greaterThan(value, vec4(1e-6))); // let the tail die: halves slow down near 0
-    imageStore(voxelHistory, cell, value);
-    imageStore(voxelRadiance, cell, value);
+    imageStore(voxelHistory, texel, value);
+    imageStore(voxelRadiance, texel, value);
 }

@@ -79,7 +79,14 @@ void main() {
 
     bool still = SCROLLS && voxelCounter.signature == params.voxel_signature && voxelCounter.overflow == 0 && sceneIsStill();
     for (int k = 0; k < CASCADE_COUNT; k++) {
-        VolumeMap map = k == CASCADE_COUNT - 1 ? whole : boxAround(position, whole.size * exp2(float(k - CASCADE_COUNT + 1)), g);
+        VolumeMap map = whole;
+        if (k < CASCADE_COUNT - 1) {
+            vec3 size = whole.size * pow(params.cascade_step, float(k - CASCADE_COUNT + 1));
+            vec3 middle = position + params.volume_ahead * size * camera.direction;
+            // Where the scene ends boxes end too, and are of use beyond their middle.
+            if (params.volume == VOLUME_SCENE) middle = clamp(middle, whole.minimum + 0.5 * size, whole.minimum + whole.size - 0.5 * size);
+            map = boxAround(middle, size, g);
+        }
         if (CURVED && k == 0) {
             map = g;
             map.curved = 1;

@@ -1,30 +1,34 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Clears the voxels that last frame's list names: clearing the whole volume would cost more than voxelizing.
+// Clears the copy of the index that this frame fills, and last frame's sums.
 #include "params.glsl"
-#include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "voxelize/clearing.glsl"
+#include "common/bricks.glsl"
 
 layout(local_size_x = 128) in;
 
 layout(r32ui) uniform writeonly uimage3D voxelIndex;
 uniform writeonly image3D voxelColor;
 uniform writeonly image3D voxelNormal;
-uniform writeonly image3D injected;
 
-void clearCell(ivec3 cell) {
-    imageStore(voxelIndex, cell, uvec4(0));
+void clearViews(ivec3 cell) {
     imageStore(voxelColor, cell, vec4(0));
     imageStore(voxelNormal, cell, vec4(0));
-    imageStore(injected, cell, vec4(0));
 }
 
 void main() {
-    uint dim = uint(params.voxel_dim);
+    uint now = voxelCounter.half_used, cells = voxelCounter.clear_cells, last_cells = cellsToClear(1 - now);
+    uint slots = min(voxelCounter.clear_slots, voxelSlots.words.length() / SLOT_WORDS);
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.clear_count; i += stride) {
-        clearCell(voxelCounter.clear_all != 0 ? ivec3(i % dim, i / dim % dim, i / (dim * dim)) : cellOfSlot(i));
-        if (i < uint(params.voxel_capacity))
+    for (uint i = gl_GlobalInvocationID.x; i < max(max(cells, last_cells), slots); i += stride) {
+        if (i < cells) {
+            ivec3 cell = cellToClear(now, i);
+            imageStore(voxelIndex, cell, uvec4(0));
+            uint word = brickWord(now, cell);
+            voxelBricks.masks[word] = voxelBricks.masks[word + 1] = 0;
+        }
+        if (i < last_cells) clearViews(cellToClear(1 - now, i));
+        if (i < slots)
             for (uint word = 0; word < SLOT_WORDS; word++) voxelSlots.words[i * SLOT_WORDS + word] = 0;
     }
 }

@@ -2,6 +2,7 @@
 #ifndef VOXELIZE_FRAGMENT_GLSL
 #define VOXELIZE_FRAGMENT_GLSL
 #include "common/materials.glsl"
+#include "modules/reflectance.glsl"
 #include "voxelize/raster.glsl"
 #include "voxelize/store.glsl"
 

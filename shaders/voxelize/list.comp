@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Arguments of the passes that run over the voxel list.
+// Arguments of the passes that run over cells and fragments.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
@@ -8,9 +8,11 @@
 layout(local_size_x = 1) in;
 
 void main() {
-    uint count = min(voxelCounter.allocated, uint(params.voxel_capacity));
-    voxelCounter.count = count;
-    voxelCounter.list_groups = uvec3(min((count + 127) / 128, 65535u), 1, 1);
+    uint now = voxelCounter.half_used;
+    voxelCounter.cell_groups = uvec3(min((cellsListed(now) + 127) / 128, 65535u), 1, 1);
+    voxelCounter.signatures[now] = voxelCounter.cells[now] > roomForCells() ? 0 : params.voxel_signature;
+    voxelCounter.count = 0;
+    voxelCounter.list_groups = voxelCounter.side_groups = uvec3(0, 1, 1);
     uint fragments = min(voxelCounter.fragments, voxelFragments.list.length());
     voxelCounter.overflow = voxelCounter.fragments - fragments;
     voxelCounter.merge_groups = uvec3(min((fragments + 127) / 128 + 1, 32768u), 1, 1);

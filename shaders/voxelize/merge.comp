@@ -15,11 +15,12 @@ const uint SHARES = 1u << 16;
 
 #include "modules/merge.glsl"
 
-void merge(uint base, vec3 color, vec3 normal, uint emission) {
-    mergeInto(base, color, normal);
-    atomicAdd(voxelSlots.words[base + 3], 1);
+void merge(uint base, vec3 color, vec3 normal, uint offset, uint emission, uint weight) {
+    mergeInto(base, color, normal, weight);
+    atomicAdd(voxelSlots.words[base + SIDE_OFFSET], offset * weight);
+    atomicAdd(voxelSlots.words[base + 3], weight);
     if (emission != 0) {
-        uvec3 e = uvec3(min(unpackRadiance(emission), EMISSION_MAX) * EMISSION_SCALE + 0.5);
+        uvec3 e = uvec3(min(unpackRadiance(emission), EMISSION_MAX) * EMISSION_SCALE * float(weight) + 0.5);
         for (uint i = 0; i < 3; i++) atomicAdd(voxelSlots.words[base + 7 + i], e[i]);
     }
 }
@@ -32,8 +33,17 @@ void main() {
         uint i = t % SHARES * share + t / SHARES;
         if (i >= count) continue;
         uvec4 fragment = voxelFragments.list[i];
+        FragmentArea area = voxelAreas.list[i];
         uint found = imageLoad(voxelIndex, unpackCell(fragment.x)).r;
-        if (found == CELL_FULL) atomicAdd(voxelCounter.overflow, 1);
-        else merge((found - 1) * SLOT_WORDS, unpackColor(fragment.y), unpackNormal(fragment.z), fragment.w);
+        vec3 normal = unpackDirection(fragment.z);
+        uint axis = axisOf(normal);
+        if (found == CELL_FULL) {
+            atomicAdd(voxelCounter.overflow, 1);
+            continue;
+        }
+        uint slot = slotOf(found, axis), parts = slot * SLOT_WORDS + SLOT_PARTS;
+        merge(sideBase(slot, sideOf(normal, axis)), unpackColor(fragment.y), normal, unpackOffset(fragment.z), fragment.w, area.weight);
+        for (uint k = 0; k < 2; k++)
+            if ((voxelSlots.words[parts + k] & area.parts[k]) != area.parts[k]) atomicOr(voxelSlots.words[parts + k], area.parts[k]);
     }
 }

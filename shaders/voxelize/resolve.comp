@@ -1,25 +1,39 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Sums to means: voxelColor (mean base colour, opacity) and voxelNormal (direction * .5 + .5; alpha is the
-// length of the mean normal, 1 where all agree and 0 where they cancel).
+// Sums to means over all surfaces of a cell, for who looks at the voxels: voxelColor (mean base colour, opacity) and
+// voxelNormal (direction * .5 + .5; alpha is the length of the mean normal, 1 where all agree and 0 where they cancel).
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
 
 layout(local_size_x = 128) in;
 
+layout(r32ui) uniform readonly uimage3D voxelIndex;
 uniform writeonly image3D voxelColor;
 uniform writeonly image3D voxelNormal;
 
 #include "modules/merge.glsl"
-
 void main() {
     uint slot = gl_GlobalInvocationID.x;
-    if (slot >= voxelCounter.count) return;
+    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
-    uint base = slot * SLOT_WORDS;
-    vec3 color, normal;
-    mergedMean(base, color, normal);
+    uint found = imageLoad(voxelIndex, cell).r;
+    if (slot != firstSlot(found)) return;
+    vec3 color = vec3(0.0), normal = vec3(0.0);
+    float count = 0.0;
+    for (uint i = 0; i < slotsOf(found) * SIDES; i++) {
+        uint base = sideBase(slot + i / SIDES, i % SIDES);
+        float weight = float(voxelSlots.words[base + 3]);
+        if (weight == 0.0) continue;
+        vec3 c, n;
+        mergedMean(base, c, n);
+        color += weight * c;
+        normal += weight * n;
+        count += weight;
+    }
+    count = max(count, 1.0);
+    color /= count;
+    normal /= count;
     float agreement = length(normal);
     vec3 direction = agreement > 1e-3 ? normal / agreement : vec3(0.0);
     imageStore(voxelColor, cell, vec4(color, 1.0));

@@ -1,29 +1,35 @@
 // What a fragment or a point leaves behind: an entry of the fragment list, merged into its voxel by
-// merge.comp. Sixteen bytes and at most two atomics here; the sums are made where all of the chip can help.
+// merge.comp. Seven words and at most three atomics here; the sums are made where all of the chip can help.
 #ifndef STORE_VOXEL_GLSL
 #define STORE_VOXEL_GLSL
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
+#include "voxelize/parts.glsl"
 
 layout(r32ui) coherent uniform uimage3D voxelIndex;
 
-// Gives a cell its slot. Only the first invocation that comes does so, and none waits for it.
-void occupy(ivec3 cell) {
-    if (imageLoad(voxelIndex, cell).r != 0 || imageAtomicCompSwap(voxelIndex, cell, 0, CELL_FULL) != 0) return;
-    uint slot = atomicAdd(voxelCounter.allocated, 1);
-    if (slot >= uint(params.voxel_capacity)) return; // stays marked as full
-    voxelSlots.words[slot * SLOT_WORDS + SLOT_CELL] = packCell(cell);
-    imageStore(voxelIndex, cell, uvec4(slot + 1));
+// Notes that a cell has surfaces along an axis. Only the first invocation that comes lists the cell, and none waits for it.
+void occupy(ivec3 cell, uint axis) {
+    uint bit = 1u << axis;
+    if ((imageLoad(voxelIndex, cell).r & bit) != 0) return;
+    if (imageAtomicOr(voxelIndex, cell, bit) != 0) return;
+    uint p = voxelCounter.half_used, i = atomicAdd(voxelCounter.cells[p], 1);
+    if (i < roomForCells()) voxelCells.list[p * roomForCells() + i] = packCell(cell);
+    else imageAtomicOr(voxelIndex, cell, CELL_FULL);
 }
 
-// color in [0,1], normal unit, emission radiance. `cascade`: of the volume.
-void storeVoxel(ivec3 cell, int cascade, vec3 color, vec3 normal, vec3 emission) {
+// color in [0,1], normal unit, emission radiance. `cascade`: of the volume. `at`: a point of the surface near the cell's
+// middle, in cells. `covered`: of the cell.
+void storeVoxel(ivec3 cell, int cascade, vec3 color, vec3 normal, vec3 emission, vec3 at, Covered covered) {
     if (isKept(volume.maps[cascade], vec3(cell) + 0.5)) return;
-    cell = storedCell(cell, cascade);
-    occupy(cell);
+    ivec3 stored = storedCell(cell, cascade);
+    uint packed = packDirection(normal), axis = axisOf(unpackDirection(packed)); // as merge.comp will read it
+    packed |= packOffset(at[axis] - float(cell[axis]) - 0.5);
+    occupy(stored, axis);
     uint i = atomicAdd(voxelCounter.fragments, 1);
-    if (i < voxelFragments.list.length())
-        voxelFragments.list[i] = uvec4(packCell(cell), packColor(color), packNormal(normal), packRadiance(emission));
+    if (i >= voxelFragments.list.length()) return;
+    voxelFragments.list[i] = uvec4(packCell(stored), packColor(color), packed, packRadiance(emission));
+    voxelAreas.list[i] = FragmentArea(uint[2](covered.parts.x, covered.parts.y), covered.weight);
 }
 
 #endif

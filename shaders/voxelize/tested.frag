@@ -25,6 +25,15 @@ bool overlapsCell(ivec3 cell, vec3 c[3], vec3 low, vec3 high) {
     return triangleOverlapsCell((c[0] - low) / size, (c[1] - low) / size, (c[2] - low) / size, ivec3(0));
 }
 
+// Where the triangle's plane passes a cell's middle, along the axis that its surface faces.
+vec3 pointNear(vec3 middle, vec3 n) {
+    vec3 face = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    uint axis = axisOf(n);
+    float away = dot(face, corner[0] - middle);
+    middle[axis] += clamp(away / (abs(face[axis]) > 1e-12 ? face[axis] : 1e-12), -0.5, 0.5);
+    return middle;
+}
+
 void main() {
     int cascade = rasterCascade();
     float dim = float(params.voxel_dim);
@@ -41,11 +50,12 @@ void main() {
     bool each = !whole;
     Material m = materials.materials[material];
     vec4 base;
-    vec3 n, light;
+    vec3 color, n, light;
     if (!each) {
         base = baseColor(m, uv, g);
         if (base.a < m.alpha_cutoff) return;
         n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
+        color = reflectanceOf(m, base.rgb, uv, g);
         light = emission(m, uv, g);
     }
 
@@ -103,11 +113,13 @@ void main() {
                     vec2 there = uv + uv_across * shift.x + uv_down * shift.y;
                     base = baseColor(m, there, g);
                     if (base.a < m.alpha_cutoff) continue;
+                    color = reflectanceOf(m, base.rgb, there, g);
                     light = emission(m, there, g);
                     n = normal + normal_across * shift.x + normal_down * shift.y;
                     n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0);
                 }
-                storeVoxel(ivec3(x, y, z), cascade, base.rgb, n, light);
+                Covered covered = EVEN ? coveredParts(corner[0], corner[1], corner[2], ivec3(x, y, z), axisOf(n)) : WHOLE_CELL;
+                storeVoxel(ivec3(x, y, z), cascade, color, n, light, pointNear(vec3(x, y, z) + 0.5, n), covered);
             }
         }
     }

@@ -3,6 +3,7 @@
 // One point a tessellated vertex, stored without any rasterisation (thesis, Section 4.1.2).
 #include "params.glsl"
 #include "common/materials.glsl"
+#include "modules/reflectance.glsl"
 #include "common/volume.glsl"
 #include "voxelize/tessellated.glsl"
 #include "voxelize/store.glsl"
@@ -47,9 +48,10 @@ void main() {
     if (base.a < m.alpha_cutoff) return;
     vec3 n = mat3(normal[0], normal[1], normal[2]) * b;
     n = dot(n, n) > 0.0 ? normalize(n) : n;
-    vec3 light = emission(m, at, g);
+    vec3 color = reflectanceOf(m, base.rgb, at, g), light = emission(m, at, g);
     for (int k = 0; k < tessellatedCascades(); k++) {
-        ivec3 cell = ivec3(floor(worldToVolume(volume.maps[k], p) * float(params.voxel_dim)));
-        if (inGrid(cell) && (single != 0 || chosen(volume.maps[k], p))) storeVoxel(cell, k, base.rgb, n, light);
+        vec3 in_cells = worldToVolume(volume.maps[k], p) * float(params.voxel_dim);
+        ivec3 cell = ivec3(floor(in_cells));
+        if (inGrid(cell) && (single != 0 || chosen(volume.maps[k], p))) storeVoxel(cell, k, color, n, light, in_cells, WHOLE_CELL);
     }
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 /// Most frames of one point.
 const MAX_FRAMES: usize = 100_000;
 /// Frames when nothing is said.
-const DEFAULT_FRAMES: Frames = Frames { warmup: 10, count: 50 };
+const DEFAULT_FRAMES: Frames = Frames { warmup: 40, count: 20 };
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

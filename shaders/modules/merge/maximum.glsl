@@ -1,5 +1,5 @@
 // The largest packed word wins: blue is compared first.
-void mergeInto(uint base, vec3 color, vec3 normal) {
+void mergeInto(uint base, vec3 color, vec3 normal, uint weight) {
     atomicMax(voxelSlots.words[base], packUnorm4x8(vec4(color, 1.0)));
     atomicMax(voxelSlots.words[base + 4], packUnorm4x8(vec4(normal * 0.5 + 0.5, 1.0)));
 }

@@ -16,7 +16,7 @@ void runningAverage(uint word, vec3 value) {
     }
 }
 
-void mergeInto(uint base, vec3 color, vec3 normal) {
+void mergeInto(uint base, vec3 color, vec3 normal, uint weight) {
     runningAverage(base, color);
     runningAverage(base + 4, normal * 0.5 + 0.5);
 }

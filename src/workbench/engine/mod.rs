@@ -13,6 +13,7 @@ use super::builder::{self, Done, Job, Key};
 use super::error_worker::{self, ErrorQuery, ErrorRequest};
 use super::report::{DeviceReport, Report};
 use super::request::{InspectTarget, RenderRequest};
+use crate::graph::usage::Res;
 use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
@@ -370,9 +371,9 @@ const LONG: f64 = 4.0;
 const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Frames until what is gathered over time has settled.
-const SETTLE: u32 = 16;
+const SETTLE: u32 = 48;
 
 /// Whether a frame uses what the frame before left.
 fn has_history(session: &Session) -> bool {
-    session.program.plan.textures.iter().any(|t| t.history && !t.usage.is_empty())
+    session.program.plan.steps.iter().flat_map(|s| &s.uses).any(|u| matches!(u.res, Res::Texture(_, true)))
 }

@@ -1,0 +1,27 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The second bounce alone: each side of a voxel gathers what injection has put into the others, this frame. Nothing is kept,
+// so nothing is late.
+#include "params.glsl"
+#include "modules/lookup.glsl"
+#include "cones/rays.glsl"
+#include "cones/near.glsl"
+#include "bounce/gather.glsl"
+
+layout(local_size_x = 128) in;
+
+vec4 traceBounce(ConeOrigin o, vec3 d) {
+    return traceVoxels(o, d);
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x, slot = i / SIDES, side = i % SIDES;
+    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
+    ivec3 cell = cellOfSlot(slot);
+    uint base = planeBase(voxelCounter.half_used, slot);
+    VolumeMap map = volume.maps[cascadeOf(cell)];
+    Side s = sideOfSlot(slot, side);
+    if (s.normal == vec3(0.0)) return;
+    vec3 p = slotPosition(map, cell, base, uint(axisOfSlot(slot)));
+    keepLight(gatheredWord(base, side), gatherAt(p, s.normal, patternOf(uvec3(cell))));
+}

@@ -1,0 +1,77 @@
+// What rays need of a slot: its surfaces as one plane, in cells, and the radiance that leaves each side; beside them what its
+// cones have gathered. A few words, because rays read many. As the list of cells, this frame's in one half of the buffer and
+// last frame's in the other.
+#ifndef PLANES_GLSL
+#define PLANES_GLSL
+#include "common/voxels.glsl"
+#include "common/parts.glsl"
+
+layout(std430) buffer VoxelPlanes { uint words[]; } voxelPlanes;
+
+const uint PLANE_WORDS = 3 + 4 * SIDES; // the plane; which parts are covered, two words; by side radiance, two words; by side gathered light, two words
+
+struct Plane {
+    vec3 normal; // of side 0; not unit length: 1 along its axis
+    float offset; // from the cell's middle, along its axis
+    uint sides; // bit 0, 1: side 0, 1 has surfaces of its own
+};
+
+uint planeBase(uint half_used, uint slot) {
+    return (half_used * (voxelPlanes.words.length() / (2 * PLANE_WORDS)) + slot) * PLANE_WORDS;
+}
+
+// A unit vector along an axis; and a vector of its part along the axis and the others.
+vec3 axisVector(uint axis) {
+    return vec3(equal(uvec3(axis), uvec3(0, 1, 2)));
+}
+
+vec3 besideAxis(uint axis, float along, vec2 beside) {
+    return axis == 0 ? vec3(along, beside) : axis == 1 ? vec3(beside.y, along, beside.x) : vec3(beside, along);
+}
+
+// normal: along its axis positive.
+void keepPlane(uint base, vec3 normal, uint axis, float offset, uint sides) {
+    vec2 beside = besideOf(normal, axis);
+    uvec2 s = uvec2(clamp(beside / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 1023.0 + 1024.5);
+    voxelPlanes.words[base] = s.x | s.y << 11 | uint(clamp(offset, -0.5, 0.5) * 254.0 + 128.5) << 22 | sides << 30;
+}
+
+Plane planeOf(uint base, uint axis) {
+    uint w = voxelPlanes.words[base];
+    vec2 beside = (vec2(w & 0x7ffu, w >> 11 & 0x7ffu) - 1024.0) / 1023.0;
+    return Plane(besideAxis(axis, 1.0, beside), (float(w >> 22 & 0xffu) - 128.0) / 254.0, w >> 30);
+}
+
+uvec2 partsOf(uint base) {
+    return uvec2(voxelPlanes.words[base + 1], voxelPlanes.words[base + 2]);
+}
+
+// A place on a slot's plane, by the coordinates beside its axis, and the middle of its surfaces; from the cell's middle [cells].
+vec3 onPlane(uint base, uint axis, vec2 beside) {
+    Plane plane = planeOf(base, axis);
+    return besideAxis(axis, plane.offset - dot(besideOf(plane.normal, axis), beside), beside);
+}
+
+vec3 planeMiddle(uint base, uint axis) {
+    return onPlane(base, axis, middleOf(partsOf(base)));
+}
+
+vec3 lightWords(uint word) {
+    return vec3(unpackHalf2x16(voxelPlanes.words[word]), unpackHalf2x16(voxelPlanes.words[word + 1]).x);
+}
+
+void keepLight(uint word, vec3 light) {
+    light = min(light, 65504.0);
+    voxelPlanes.words[word] = packHalf2x16(light.rg);
+    voxelPlanes.words[word + 1] = packHalf2x16(vec2(light.b, 0.0));
+}
+
+uint radianceWord(uint base, uint side) {
+    return base + 3 + 2 * side;
+}
+
+uint gatheredWord(uint base, uint side) {
+    return base + 3 + 2 * (SIDES + side);
+}
+
+#endif

@@ -1,0 +1,48 @@
+// What the slots of a cell say of its surfaces, side by side.
+#ifndef SIDES_GLSL
+#define SIDES_GLSL
+#include "common/volume.glsl"
+#include "common/voxels.glsl"
+#include "modules/merge.glsl"
+
+struct Side {
+    vec3 color; // mean reflectance
+    vec3 normal; // unit; 0: none
+    float agreement; // of the normals, 1: all are the same
+    vec3 emission; // radiance
+    float count; // fragments
+};
+
+// How many layers of surfaces cover each other, where the voxelizer measures it: a lamp before a ceiling, in one cell, hides it,
+// and must not be dimmed by the mean of both.
+float layersOf(uint slot, float weight) {
+    bool measured = !WARPED && params.voxelizer == VOXELIZER_RASTER
+        && (params.conservative == CONSERVATIVE_DILATE || params.conservative == CONSERVATIVE_HARDWARE);
+    uint parts = slot * SLOT_WORDS + SLOT_PARTS;
+    float covered = 16.0 * float(bitCount(voxelSlots.words[parts]) + bitCount(voxelSlots.words[parts + 1]));
+    return measured && covered > 0.0 ? max(weight / covered, 1.0) : 1.0;
+}
+
+// A side without surfaces of its own is the back of the other: a sheet reflects on both sides.
+Side sideOfSlot(uint slot, uint side) {
+    uint base = sideBase(slot, side);
+    bool mirrored = SIDES > 1 && voxelSlots.words[base + 3] == 0;
+    if (mirrored) base = sideBase(slot, 1 - side);
+    Side s;
+    vec3 mean;
+    mergedMean(base, s.color, mean);
+    s.agreement = min(length(mean), 1.0);
+    s.normal = s.agreement > 1e-3 ? mean / s.agreement * (mirrored ? -1.0 : 1.0) : vec3(0.0);
+    s.emission = meanEmission(base) * layersOf(slot, float(voxelSlots.words[base + 3]));
+    s.count = float(voxelSlots.words[base + 3]);
+    return s;
+}
+
+// Mean cosine between the surfaces' normals and the direction to something, none below 0. Where all normals lean towards it,
+// that of their mean; normals that disagree are taken as spread over all directions, whose mean cosine is 1/4.
+float meanCosine(Side s, vec3 to) {
+    float cosine = dot(s.normal, to);
+    return max(s.agreement * cosine, 0.25 * (1.0 - s.agreement) * clamp(1.0 + cosine, 0.0, 1.0));
+}
+
+#endif

@@ -1,0 +1,53 @@
+// A few narrow cones or rays a pixel, other ones in each pixel of a block of 8x8: shading filters over the block, so that each
+// surface sees 64 times as many (Segovia et al. 2006). What traces one is in modules/trace, which includes this after
+// saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps).
+#include "cones/light.glsl"
+#include "common/ggx.glsl"
+#include "common/pattern.glsl"
+
+// Point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
+vec2 pixelPoint(int i) {
+    uvec2 at = uvec2(pixelCentre()) & 7u;
+    uint turn = (at.x ^ at.y) & 1u | (at.y & 1u) << 1 | ((at.x ^ at.y) & 2u) << 1 | (at.y & 2u) << 2 | ((at.x ^ at.y) & 4u) << 2 | (at.y & 4u) << 3;
+    return evenPoint(uint(i) * 64u + (bitfieldReverse(turn) >> 26));
+}
+
+// The same, other ones in each block: what few directions cannot tell becomes noise and not a bias.
+vec2 blockPoint(int i) {
+    uvec2 block = uvec2(pixelCentre()) >> 3;
+    return fract(pixelPoint(i) + evenPoint(block.x * 37u + block.y * 101u));
+}
+
+// A cone has the share of the hemisphere that it has among those of 4x4 pixels, unless diffuse_aperture says otherwise: narrower
+// ones would take more steps and tell no more.
+float tanOfShare(int cones) {
+    if (params.diffuse_aperture > 0.0) return tan(radians(0.5 * params.diffuse_aperture));
+    float cosine = 1.0 - 1.0 / float(16 * cones);
+    return sqrt(1.0 - cosine * cosine) / cosine;
+}
+
+vec4 gatherDiffuse(ConeOrigin o, vec3 n, vec3 face) {
+    mat3 frame = frameOf(n);
+    float tan_half = tanOfShare(params.pixel_cones);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < params.pixel_cones; i++) {
+        vec3 d = frame * cosineSample(pixelPoint(i));
+        if (dot(d, face) <= 0.0) continue; // mapped normals lean
+        CONE_BEGINS(uint(i) + 1u);
+        vec4 cone = traceAny(o, d, tan_half, params.diffuse_steps);
+        sum += vec4(coneRadiance(cone), 1.0 - cone.a);
+    }
+    return sum / float(params.pixel_cones);
+}
+
+// One direction of the lobe; the cone has a sixteenth of it.
+vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    LobeSample l = specularSample(s, face, v, blockPoint(0));
+    if (l.weight == vec3(0.0)) return vec3(0.0);
+    CONE_BEGINS(0u);
+    return l.weight * coneRadiance(traceAny(o, l.direction, 0.5 * ggxAlpha(s.roughness), params.specular_steps));
+}
+
+Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    return Gathered(gatherDiffuse(o, s.normal, face), params.specular_cone ? gatherSpecular(o, s, face, v) : vec3(0.0));
+}

@@ -1,0 +1,97 @@
+// What a ray meets among the voxels: the planes of their surfaces, exact where filtered levels know too little.
+#ifndef CONE_NEAR_GLSL
+#define CONE_NEAR_GLSL
+#include "cones/origin.glsl"
+#include "common/planes.glsl"
+#include "common/bricks.glsl"
+
+uniform usampler3D voxelIndex;
+
+// The voxels that rays meet: this frame's, unless the shader says last frame's.
+#ifndef LISTED_HALF
+#define LISTED_HALF voxelCounter.half_used
+#endif
+
+// How far planes reach beyond their cell, so that rays find no gaps where neighbours lean differently [voxels].
+const float NEAR_MARGIN = 0.05;
+
+struct Met {
+    float distance; // of what is met, or so far nothing is [m]
+    vec4 light; // radiance of what is met, and 1; or 0
+};
+
+// Which surface of a cell a ray from `at` along `dir` meets between `enter` and `leave`: its distance, less than `end`, or `end`
+// [cells]. `facing`: the normal of the surface that the ray leaves. `word`: of the radiance.
+float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float enter, float leave, float end, out uint word) {
+    uint slot = firstSlot(found);
+    float nearest = end;
+    word = 0;
+    for (uint axis = 0; axis < 3; axis++) {
+        if ((found >> axis & 1u) == 0) continue;
+        uint base = planeBase(LISTED_HALF, slot++);
+        Plane plane = planeOf(base, axis);
+        vec3 middle = vec3(cell) + 0.5 + plane.offset * axisVector(axis);
+        float slope = dot(plane.normal, dir), t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
+        if (t < 0.0 || t < enter - NEAR_MARGIN || t > leave + NEAR_MARGIN || t >= nearest) continue;
+        if (!isCovered(partsOf(base), besideOf(at + t * dir - vec3(cell), axis))) continue;
+        // Not the back of the surface that is left: within a voxel or two its plane may lie before it.
+        uint side = slope < 0.0 ? 0 : 1;
+        if ((plane.sides >> side & 1u) == 0 && t < 1.5 && dot(plane.normal, facing) * slope > 0.0) continue;
+        nearest = t;
+        word = radianceWord(base, side);
+    }
+    return nearest;
+}
+
+// Whether the voxels around have planes that rays can meet: straight rays are not straight in curved cells.
+bool meetsPlanes(ConeOrigin o) {
+    return !CURVED || volume.maps[o.cascade].curved == 0;
+}
+
+// The first surface between `from` and `range` [m] along d that a cascade has. Cells one by one (Amanatides and Woo 1987), empty
+// bricks at once.
+Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
+    VolumeMap map = volume.maps[cascade];
+    float voxel;
+    vec3 dir;
+    cellAlong(map, o.surface, d, voxel, dir);
+    dir = mix(dir, vec3(1e-9), lessThan(abs(dir), vec3(1e-9)));
+    vec3 at = worldToVolume(map, o.surface) * float(params.voxel_dim), facing = o.normal * cellAxes(map, o.surface);
+    vec3 inverse = 1.0 / dir, ahead = vec3(greaterThan(dir, vec3(0.0)));
+    float enter = from / voxel, end = range / voxel;
+    ivec3 cell = ivec3(floor(at + enter * dir)), brick = ivec3(-1);
+    uvec2 mask = uvec2(0);
+    for (int i = 0; i < 3 * params.voxel_dim && enter < end && inGrid(cell); i++) {
+        ivec3 stored = storedCell(cell, cascade);
+        if (cell >> 2 != brick) {
+            brick = cell >> 2;
+            uint word = brickWord(LISTED_HALF, stored);
+            mask = uvec2(voxelBricks.masks[word], voxelBricks.masks[word + 1]);
+        }
+        bool empty = mask == uvec2(0);
+        // Borders that are crossed next, of the cell or of an empty brick.
+        vec3 borders = ((empty ? vec3(brick * 4) + 4.0 * ahead : vec3(cell) + ahead) - at) * inverse;
+        float leave = min(borders.x, min(borders.y, borders.z));
+        if (!empty && (mask[wordOfCell(cell)] & bitOfCell(cell)) != 0) {
+            uint word;
+            float t = meetCell(texelFetch(voxelIndex, stored, 0).r, cell, at, dir, facing, enter, leave, end, word);
+            if (t < end) return Met(t * voxel, vec4(lightWords(word), 1.0));
+        }
+        bvec3 crossed = equal(borders, vec3(leave));
+        ivec3 next = empty ? clamp(ivec3(floor(at + leave * dir)), brick * 4, brick * 4 + 3) : cell;
+        ivec3 beyond = (empty ? brick * 4 + 3 * ivec3(ahead) : cell) + 2 * ivec3(ahead) - 1;
+        cell = mix(next, beyond, crossed);
+        enter = leave;
+    }
+    return Met(min(enter, end) * voxel, vec4(0.0)); // what lies behind the grid's border is not known here
+}
+
+// The first surface within `range` [m] along d, from one cascade into the next coarser.
+Met meetSurface(ConeOrigin o, vec3 d, float range) {
+    Met met = Met(0.0, vec4(0.0));
+    for (int k = o.cascade; k < CASCADE_COUNT && met.light.a == 0.0 && met.distance < range; k++)
+        met = meetInCascade(k, o, d, met.distance, range);
+    return met;
+}
+
+#endif

@@ -1,0 +1,10 @@
+// A volume of several cascades, some of whose cells may be kept from frame to frame.
+#define CASCADE_COUNT params.cascade_count
+#define SCROLLS VOLUME_SCROLL
+
+#include "common/cascades.glsl"
+
+// Whether a place in cells is one whose content stays as it was.
+bool isKept(VolumeMap map, vec3 at) {
+    return SCROLLS && all(greaterThan(at, vec3(map.kept_from))) && all(lessThan(at, vec3(map.kept_to)));
+}
