@@ -540,3 +540,54 @@ fn cascades_meet_without_a_seam() {
     assert!(seam < 1.6 * rest && seam < 0.03, "a seam of {seam}");
     assert_clean(&lab);
 }
+
+/// The boxes of a scene with the default settings, finest first: corner and edge [m].
+fn boxes(lab: &Lab, name: &str) -> Vec<(Vec3, f32)> {
+    let e = experiment(name, (32, 18), &[("voxel_dim", "32"), NO_BOUNCES, QUICK]);
+    let mut session = frames(lab, &e, &["volume"], 1);
+    let bytes = session.buffer("volume").unwrap();
+    let words: Vec<f32> = bytes.as_chunks::<4>().0.iter().map(|b| f32::from_ne_bytes(*b)).collect();
+    // shaders/common/volume.glsl: six maps, each begins with its corner, a word, its edges.
+    words.chunks(words.len() / 6).map(|m| (Vec3::new(m[0], m[1], m[2]), m[4])).take_while(|m| m.1 > 0.0).collect()
+}
+
+/// The volume places itself: a room on a ground of 220 m, or of 200 km, has cells of its own, the scene is inside the last box,
+/// and a scene that is no larger than what is seen of it has one.
+#[test]
+fn the_volume_places_itself() {
+    let lab = lab(root());
+    for (name, room, many) in [("cornell", 5.6, 1), ("huge-ground", 12.0, 3), ("plain", 20.0, 4)] {
+        let scene = scene(name);
+        let (low, high) = scene.bounds();
+        let found = boxes(&lab, name);
+        println!("{name}: {found:?}");
+        assert_eq!(found.len(), many, "{name}");
+        assert!(found[0].1 < 2.0 * room, "{name}: cells of {} m", found[0].1 / 32.0);
+        let origin = scene.origin();
+        for (i, (corner, edge)) in found.iter().enumerate() {
+            let is_last = i + 1 == many;
+            let (a, b) = (*corner + origin, *corner + origin + *edge);
+            assert!(!is_last || a.cmple(low).all() && b.cmpge(high).all(), "{name}: the scene is not inside");
+            let eye = scene.cameras["default"].eye;
+            assert!(
+                name == "cornell" || a.cmple(eye).all() && b.cmpge(eye).all(),
+                "{name}: the camera is not in box {i}"
+            );
+        }
+    }
+    assert_clean(&lab);
+}
+
+/// A lamp that is smaller than a voxel is as bright as it is: the same light from coarse voxels and from fine ones.
+#[test]
+fn a_small_lamp_stays_small() {
+    let lab = lab(root());
+    let light = |dim: &str| {
+        let e = experiment("small-quad", (64, 48), &[("voxel_dim", dim), NO_BOUNCES, QUICK]);
+        mean(&floats(&mut frames(&lab, &e, &["diffuseIndirect"], 1), "diffuseIndirect", 0))
+    };
+    let (coarse, fine) = (light("16"), light("128"));
+    println!("light of a small lamp: {coarse:.4} with voxels of 15 cm, {fine:.4} with 2 cm");
+    assert!((coarse / fine - 1.0).abs() < 0.2, "{coarse} against {fine}");
+    assert_clean(&lab);
+}
