@@ -45,15 +45,12 @@ layout(std430) buffer VoxelCounter {
     uvec3 kept_groups; // indirect dispatch over what is kept
 } voxelCounter;
 
-// What fell into cells, in no order: cell, colour, normal and offset, emission; and beside it how much of the cell it covers.
+// What fell into cells, in no order: cell, colour, normal and offset, emission; and beside it the triangle that it is of: its
+// draw, and where its three vertices begin in `indices`.
 layout(std430) buffer VoxelFragments { uvec4 list[]; } voxelFragments;
+layout(std430) buffer VoxelTriangles { uvec2 list[]; } voxelTriangles;
 
-struct FragmentArea {
-    uint parts[2]; // of the cell that are covered, seen along the axis that the normal is closest to
-    uint weight; // the area there, in sixteenths of a part
-};
-
-layout(std430) buffer VoxelAreas { FragmentArea list[]; } voxelAreas;
+const uvec2 NO_TRIANGLE = uvec2(0xffffffffu); // the fragment stands for all of its cell
 
 uint packColor(vec3 c) {
     uvec3 v = uvec3(clamp(c, 0.0, 1.0) * vec3(2047.0, 2047.0, 1023.0) + 0.5);

@@ -4,10 +4,13 @@
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
+#include "common/scene.glsl"
+#include "voxelize/parts.glsl"
 
 layout(local_size_x = 128) in;
 
 layout(r32ui) uniform readonly uimage3D voxelIndex;
+layout(std430) readonly buffer Indices { uint indices[]; } indices;
 
 // Neighbours in the list mostly hit the same voxel: neighbouring threads take fragments that lie far apart, so that
 // their atomics do not queue.
@@ -25,6 +28,20 @@ void merge(uint base, vec3 color, vec3 normal, uint offset, uint emission, uint 
     }
 }
 
+// The triangle's corners in cells of a cascade.
+vec3 cornerOf(VolumeMap map, uvec2 triangle, uint i) {
+    vec3 p = toWorld(draws.draws[triangle.x].instance, loadPosition(indices.indices[triangle.y + i]));
+    return worldToVolume(map, p) * float(params.voxel_dim);
+}
+
+// Which parts of a stored cell the triangle of a fragment covers. Here and not where fragments are made: all of the chip helps.
+Covered coveredBy(uvec2 triangle, ivec3 stored, uint axis) {
+    if (triangle == NO_TRIANGLE) return WHOLE_CELL;
+    VolumeMap map = volume.maps[cascadeOf(stored)];
+    ivec3 cell = ivec3(cellCentre(stored) * float(params.voxel_dim));
+    return coveredParts(cornerOf(map, triangle, 0), cornerOf(map, triangle, 1), cornerOf(map, triangle, 2), cell, axis);
+}
+
 void main() {
     uint count = min(voxelCounter.fragments, voxelFragments.list.length());
     uint share = (count + SHARES - 1) / SHARES;
@@ -33,8 +50,8 @@ void main() {
         uint i = t % SHARES * share + t / SHARES;
         if (i >= count) continue;
         uvec4 fragment = voxelFragments.list[i];
-        FragmentArea area = voxelAreas.list[i];
-        uint found = imageLoad(voxelIndex, unpackCell(fragment.x)).r;
+        ivec3 stored = unpackCell(fragment.x);
+        uint found = imageLoad(voxelIndex, stored).r;
         vec3 normal = unpackDirection(fragment.z);
         uint axis = axisOf(normal);
         if (found == CELL_FULL) {
@@ -42,8 +59,9 @@ void main() {
             continue;
         }
         uint slot = slotOf(found, axis), parts = slot * SLOT_WORDS + SLOT_PARTS;
-        merge(sideBase(slot, sideOf(normal, axis)), unpackColor(fragment.y), normal, unpackOffset(fragment.z), fragment.w, area.weight);
+        Covered covered = coveredBy(voxelTriangles.list[i], stored, axis);
+        merge(sideBase(slot, sideOf(normal, axis)), unpackColor(fragment.y), normal, unpackOffset(fragment.z), fragment.w, covered.weight);
         for (uint k = 0; k < 2; k++)
-            if ((voxelSlots.words[parts + k] & area.parts[k]) != area.parts[k]) atomicOr(voxelSlots.words[parts + k], area.parts[k]);
+            if ((voxelSlots.words[parts + k] & covered.parts[k]) != covered.parts[k]) atomicOr(voxelSlots.words[parts + k], covered.parts[k]);
     }
 }

@@ -3,6 +3,7 @@
 #ifndef VOXELIZE_PROJECT_GLSL
 #define VOXELIZE_PROJECT_GLSL
 #include "voxelize/raster.glsl"
+#include "common/scene.glsl"
 
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 4) out;
@@ -11,13 +12,15 @@ layout(location = 0) in vec3 in_position[];
 layout(location = 1) in vec3 in_normal[];
 layout(location = 2) in vec2 in_uv[];
 layout(location = 3) flat in uint in_material[];
+layout(location = 4) flat in uint in_drawn[];
 
 layout(location = 0) out vec3 position;
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec2 uv;
 layout(location = 3) flat out uint material;
 layout(location = 4) flat out uint axis;
-layout(location = 5) flat out vec3 corner[3]; // in cells
+layout(location = 5) flat out uvec2 triangle; // draw, first of its indices
+layout(location = 6) flat out vec3 corner[3]; // in cells
 
 uint dominantAxis(VolumeMap map) {
     vec3 face = cross(in_position[1] - in_position[0], in_position[2] - in_position[0]);
@@ -26,11 +29,17 @@ uint dominantAxis(VolumeMap map) {
     return a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u; // >=: triangles at 45 degrees belong somewhere
 }
 
+// What fragments say of their triangle.
+void nameTriangle() {
+    material = in_material[0];
+    triangle = uvec2(in_drawn[0], draws.draws[in_drawn[0]].first_index + 3 * gl_PrimitiveIDIn);
+}
+
 void emit(vec4 clip, vec3 b, uint flags, vec3 corners[3]) {
     position = mat3(in_position[0], in_position[1], in_position[2]) * b;
     normal = mat3(in_normal[0], in_normal[1], in_normal[2]) * b;
     uv = mat3x2(in_uv[0], in_uv[1], in_uv[2]) * b;
-    material = in_material[0];
+    nameTriangle();
     axis = flags;
     corner = corners;
     gl_Position = clip;

@@ -17,5 +17,5 @@ void main() {
     vec3 lo = min(corner[0], min(corner[1], corner[2])), hi = max(corner[0], max(corner[1], corner[2]));
     ivec3 cell = ivec3(floor(clamp(at, lo, hi)));
     vec3 n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
-    if (inGrid(cell)) storeVoxel(cell, cascade, reflectanceOf(m, base.rgb, uv, g), n, emission(m, uv, g), at, WHOLE_CELL);
+    if (inGrid(cell)) storeVoxel(cell, cascade, reflectanceOf(m, base.rgb, uv, g), n, emission(m, uv, g), at, NO_TRIANGLE);
 }

@@ -1,10 +1,9 @@
 // What a fragment or a point leaves behind: an entry of the fragment list, merged into its voxel by
-// merge.comp. Seven words and at most three atomics here; the sums are made where all of the chip can help.
+// merge.comp. Six words and at most three atomics here; the sums are made where all of the chip can help.
 #ifndef STORE_VOXEL_GLSL
 #define STORE_VOXEL_GLSL
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
-#include "voxelize/parts.glsl"
 
 layout(r32ui) coherent uniform uimage3D voxelIndex;
 
@@ -19,8 +18,8 @@ void occupy(ivec3 cell, uint axis) {
 }
 
 // color in [0,1], normal unit, emission radiance. `cascade`: of the volume. `at`: a point of the surface near the cell's
-// middle, in cells. `covered`: of the cell.
-void storeVoxel(ivec3 cell, int cascade, vec3 color, vec3 normal, vec3 emission, vec3 at, Covered covered) {
+// middle, in cells. `triangle`: that may cover a part of the cell alone.
+void storeVoxel(ivec3 cell, int cascade, vec3 color, vec3 normal, vec3 emission, vec3 at, uvec2 triangle) {
     if (isKept(volume.maps[cascade], vec3(cell) + 0.5)) return;
     ivec3 stored = storedCell(cell, cascade);
     uint packed = packDirection(normal), axis = axisOf(unpackDirection(packed)); // as merge.comp will read it
@@ -29,7 +28,7 @@ void storeVoxel(ivec3 cell, int cascade, vec3 color, vec3 normal, vec3 emission,
     uint i = atomicAdd(voxelCounter.fragments, 1);
     if (i >= voxelFragments.list.length()) return;
     voxelFragments.list[i] = uvec4(packCell(stored), packColor(color), packed, packRadiance(emission));
-    voxelAreas.list[i] = FragmentArea(uint[2](covered.parts.x, covered.parts.y), covered.weight);
+    voxelTriangles.list[i] = triangle;
 }
 
 #endif

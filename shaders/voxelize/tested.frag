@@ -118,8 +118,7 @@ void main() {
                     n = normal + normal_across * shift.x + normal_down * shift.y;
                     n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0);
                 }
-                Covered covered = EVEN ? coveredParts(corner[0], corner[1], corner[2], ivec3(x, y, z), axisOf(n)) : WHOLE_CELL;
-                storeVoxel(ivec3(x, y, z), cascade, color, n, light, pointNear(vec3(x, y, z) + 0.5, n), covered);
+                storeVoxel(ivec3(x, y, z), cascade, color, n, light, pointNear(vec3(x, y, z) + 0.5, n), EVEN ? triangle : NO_TRIANGLE);
             }
         }
     }

@@ -52,6 +52,6 @@ void main() {
     for (int k = 0; k < tessellatedCascades(); k++) {
         vec3 in_cells = worldToVolume(volume.maps[k], p) * float(params.voxel_dim);
         ivec3 cell = ivec3(floor(in_cells));
-        if (inGrid(cell) && (single != 0 || chosen(volume.maps[k], p))) storeVoxel(cell, k, color, n, light, in_cells, WHOLE_CELL);
+        if (inGrid(cell) && (single != 0 || chosen(volume.maps[k], p))) storeVoxel(cell, k, color, n, light, in_cells, NO_TRIANGLE);
     }
 }

@@ -7,6 +7,7 @@ layout(location = 0) out vec3 position;
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec2 uv;
 layout(location = 3) flat out uint material;
+layout(location = 4) flat out uint drawn;
 
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];
@@ -15,4 +16,5 @@ void main() {
     normal = normalize(normalToWorld(draw.instance, a.normal));
     uv = a.uv;
     material = draw.material;
+    drawn = gl_InstanceIndex;
 }
