@@ -11,11 +11,11 @@ use std::time::Duration;
 use window_driver::{WindowDriver, centre};
 
 /// Small enough for a software device to draw several a second.
-const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one })"#;
+const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1 })"#;
 
 /// Four points, one of them [`SMALL`].
 const SWEEP: &str = r#"(experiments: ["configs/opened.ron"], warmup: 1, frames: 3,
-    axes: [List(name: "voxel_dim", values: [16, 32]), List(name: "pixel_cones", values: [3, 8])])"#;
+    axes: [List(name: "voxel_dim", values: [16, 32]), List(name: "pixel_cones", values: [2, 8])])"#;
 
 fn number(event: &Value, name: &str) -> f64 {
     event[name].as_f64().unwrap_or_else(|| panic!("no {name} in {event}"))

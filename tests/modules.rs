@@ -85,6 +85,7 @@ fn small(opacity: &str) -> Experiment {
             ("shadow_dim", "256"),
             ("bounces", "one"),
             ("trace", "interleaved"),
+            ("gather_frames", "1"),
             ("opacity", opacity),
         ],
     );

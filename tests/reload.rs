@@ -209,7 +209,13 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
 fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
     let lab = lab(root());
     let cornell = scene("cornell");
-    let small = [("voxel_dim", "32"), ("shadow_dim", "256"), ("diffuse_steps", "16"), ("specular_steps", "16")];
+    let small = [
+        ("voxel_dim", "32"),
+        ("shadow_dim", "256"),
+        ("diffuse_steps", "16"),
+        ("specular_steps", "16"),
+        ("gather_frames", "1"), // nothing of the step before is kept
+    ];
     let steps: [&[(&str, &str)]; 7] = [
         &[],
         &[("voxel_dim", "48")],

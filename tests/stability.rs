@@ -90,7 +90,7 @@ fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
     let path = home.join("small.ron");
     let text = format!(
         "(experiment: \"configs/default.ron\", warmup: 3, frames: 4, samples: 32,\n\
-         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\" }},\n\
+         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\", \"gather_frames\": 1 }},\n\
          methods: {{\n{methods}\n}},\ncases: {{\n{cases}\n}})"
     );
     std::fs::write(&path, text).unwrap();
@@ -121,11 +121,11 @@ fn value(table: &[BTreeMap<String, String>], case: &str, method: &str, column: &
 fn a_still_scene_is_still() {
     let home = home();
     let methods = "\"uniform\": {}, \"temporal\": { \"graph\": \"temporal.ron\" }, \"tracking\": { \"volume\": \"camera\", \
-                   \"volume_size\": (10, 10, 10) }, \"tessellated\": { \"voxelizer\": \"tessellated\" }";
+                   \"volume_size\": (10, 10, 10) }, \"tessellated\": { \"voxelizer\": \"tessellated\" }, \"turns\": { \"gather_frames\": 4 }";
     let file = suite(home.path(), methods, "\"still\": (), \"yaw\": (motion: Camera(yaw: 1))");
     succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
     let table = table(&home.path().join("out/stability.csv"));
-    for method in ["uniform", "temporal", "tracking", "tessellated"] {
+    for method in ["uniform", "temporal", "tracking", "tessellated", "turns"] {
         for part in ["total", "direct", "diffuse", "specular", "occlusion"] {
             for column in ["E_t", "pops", "peak jump /255", "flicker mean", "flicker p99"] {
                 assert_eq!(value(&table, "still", method, &format!("{part} {column}")), Some(0.0), "{method} {part}");
@@ -168,7 +168,7 @@ fn the_reference_as_a_method_is_at_its_own_noise() {
 #[test]
 fn a_switched_light_arrives_as_late_as_the_filter_says() {
     let home = home();
-    let methods = "\"none\": {}, \"half\": { \"graph\": \"temporal.ron\", \"temporal_factor\": 0.5 }, \"slow\": { \"graph\": \"temporal.ron\", \"temporal_factor\": 0.8 }";
+    let methods = "\"none\": {}, \"turns\": { \"gather_frames\": 8 }, \"half\": { \"graph\": \"temporal.ron\", \"temporal_factor\": 0.5 }, \"slow\": { \"graph\": \"temporal.ron\", \"temporal_factor\": 0.8 }";
     let cases = "\"on\": (frames: 40, motion: Switch(name: \"lamp\", at: 1, from: 0, to: 1)), \
                  \"off\": (frames: 40, motion: Switch(name: \"lamp\", at: 1, from: 1, to: 0.2))";
     let file = suite(home.path(), methods, cases);
@@ -181,6 +181,8 @@ fn a_switched_light_arrives_as_late_as_the_filter_says() {
             assert!(value(&table, case, method, "diffuse overshoot").unwrap() < 0.01);
             assert_eq!(value(&table, case, method, "direct convergence frames"), Some(1.0), "the filter is for voxels");
         }
+        // In turns of eight frames an eighth of the pixels follows each frame: seven leave more than 5 %.
+        assert_eq!(value(&table, case, "turns", "diffuse convergence frames"), Some(8.0), "{case} in turns");
     }
 }
 

@@ -85,7 +85,9 @@ fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Li
         Ok(wanted)
     });
     let (mut session, _) = prepared.unwrap_or_else(|e| panic!("{e}"));
-    session.frame(0.0).unwrap();
+    for _ in 0..TURNS {
+        session.frame(0.0).unwrap();
+    }
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
     let parts = session.parts().unwrap();
@@ -133,8 +135,12 @@ fn sides(material: &'static str, low: [f64; 3], high: [f64; 3], inside: bool) ->
         .collect()
 }
 
+/// Frames until every pixel has gathered with all its rays.
+const TURNS: usize = 8;
 const ANY: f64 = f64::INFINITY;
 const QUICK: (&str, &str) = ("shadow_dim", "1024");
+/// What the references have.
+const ONE_BOUNCE: (&str, &str) = ("bounces", "one");
 
 /// T1. A closed box with albedo 0.5 and emission 1: one bounce adds a half, at every voxel size.
 #[test]
@@ -142,7 +148,7 @@ fn furnace() {
     let lab = lab(root());
     let mut rows = Vec::new();
     for dim in ["32", "64", "128"] {
-        let (parts, _) = run(&lab, &experiment("furnace", (64, 48), &[("voxel_dim", dim), QUICK]), 32);
+        let (parts, _) = run(&lab, &experiment("furnace", (64, 48), &[("voxel_dim", dim), QUICK, ONE_BOUNCE]), 32);
         rows.push(row(format!("{dim} voxels"), "diffuse / exact", parts["diffuse"].mean() / 0.5, (0.98, 1.02)));
     }
     check("T1 furnace", &rows);
@@ -154,7 +160,8 @@ fn white_sky() {
     let lab = lab(root());
     let mut rows = Vec::new();
     for dim in ["32", "64"] {
-        let (parts, reference) = run(&lab, &experiment("white-sky", (64, 64), &[("voxel_dim", dim), QUICK]), 32);
+        let (parts, reference) =
+            run(&lab, &experiment("white-sky", (64, 64), &[("voxel_dim", dim), QUICK, ONE_BOUNCE]), 32);
         let ratio = parts["occlusion"].mean() / reference.parts["occlusion"].mean.mean();
         rows.push(row(format!("{dim} voxels"), "openness / exact", ratio, (0.99, 1.01)));
     }
@@ -169,7 +176,7 @@ fn resolution() {
     let finer: &[&str] = if device() == "llvmpipe" { &[] } else { &["256", "512"] };
     let mut rows = Vec::new();
     for dim in ["32", "64", "128"].iter().chain(finer) {
-        let mut set = vec![("voxel_dim", *dim), QUICK];
+        let mut set = vec![("voxel_dim", *dim), QUICK, ONE_BOUNCE];
         if finer.contains(dim) {
             set.extend([("voxel_capacity", "2700000"), ("fragment_capacity", "64000000")]);
         }
@@ -215,7 +222,7 @@ fn walls() {
                 camera(-1.0)
             );
             let file = quads(&name, "newmtl wall\nKd 0.8 0.8 0.8\nPr 1\n", &list, &scene);
-            let set = [("voxel_dim", "64"), ("volume", "box"), ("volume_size", "(6.4, 6.4, 6.4)"), QUICK];
+            let set = [("voxel_dim", "64"), ("volume", "box"), ("volume_size", "(6.4, 6.4, 6.4)"), QUICK, ONE_BOUNCE];
             let of = |camera: &str| {
                 let mut e = experiment(&file, (48, 36), &set);
                 e.camera = conelab::experiment::CameraChoice::Named(camera.into());
@@ -290,7 +297,7 @@ fn edge() {
         ("thesis set", &[("trace", "cones"), ("cone_set", "thesis")]),
     ];
     for (cones, set) in sets {
-        let settings = [&[("voxel_dim", "64"), QUICK], set].concat();
+        let settings = [&[("voxel_dim", "64"), QUICK, ONE_BOUNCE], set].concat();
         let (parts, reference) = run(&lab, &experiment(&file, (width, height), &settings), 512);
         if cones == "default" {
             rows.push(row(
@@ -309,7 +316,8 @@ fn edge() {
 #[test]
 fn colour_bleed() {
     let lab = lab(root());
-    let (parts, reference) = run(&lab, &experiment("cornell", (96, 72), &[("voxel_dim", "64"), QUICK]), 512);
+    let (parts, reference) =
+        run(&lab, &experiment("cornell", (96, 72), &[("voxel_dim", "64"), QUICK, ONE_BOUNCE]), 512);
     let expected = &reference.parts["diffuse"].mean;
     let light = &parts["diffuse"];
     let s = scores(light, expected).unwrap();
@@ -346,12 +354,13 @@ fn specular_lobe() {
         let name = format!("strip-{roughness}");
         let scene = scene.replace("NAME", &name);
         let file = quads(&name, &materials, &[("metal", floor), ("strip", strip)], &scene);
-        let (parts, reference) = run(&lab, &experiment(&file, (64, 48), &[("voxel_dim", "128"), QUICK]), 256);
+        let (parts, reference) =
+            run(&lab, &experiment(&file, (64, 48), &[("voxel_dim", "128"), QUICK, ONE_BOUNCE]), 256);
         let s = scores(&parts["specular"], &reference.parts["specular"].mean).unwrap();
         let setting = format!("roughness {roughness}");
         rows.push(row(setting.clone(), "specular / reference", s.energy_ratio, (0.8, 1.2)));
         rows.push(row(setting.clone(), "relMSE of specular", s.relmse, (-ANY, 0.1)));
-        let rays = experiment(&file, (64, 48), &[("voxel_dim", "128"), ("trace", "lobe_rays"), QUICK]);
+        let rays = experiment(&file, (64, 48), &[("voxel_dim", "128"), ("trace", "lobe_rays"), QUICK, ONE_BOUNCE]);
         let (parts, reference) = run(&lab, &rays, 256);
         let s = scores(&parts["specular"], &reference.parts["specular"].mean).unwrap();
         rows.push(row(format!("{setting}, rays"), "specular / reference", s.energy_ratio, (0.8, 1.2)));

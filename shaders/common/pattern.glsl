@@ -7,4 +7,17 @@ vec2 evenPoint(uint i) {
     return fract(vec2(0.5) + float(i) * vec2(0.7548776662, 0.5698402910));
 }
 
+// Number of a pixel in its block of 8x8, 0 to 63: numbers that follow each other lie far apart.
+uint pixelNumber(uvec2 pixel) {
+    uvec2 at = pixel & 7u;
+    uint turn = (at.x ^ at.y) & 1u | (at.y & 1u) << 1 | ((at.x ^ at.y) & 2u) << 1 | (at.y & 2u) << 2 | ((at.x ^ at.y) & 4u) << 2 | (at.y & 4u) << 3;
+    return bitfieldReverse(turn) >> 26;
+}
+
+uvec2 pixelOfNumber(uint number) {
+    uint turn = bitfieldReverse(number) >> 26;
+    uint x = turn & 1u | turn >> 1 & 2u | turn >> 2 & 4u, y = turn >> 1 & 1u | turn >> 2 & 2u | turn >> 3 & 4u;
+    return uvec2(x ^ y, y);
+}
+
 #endif

@@ -7,9 +7,7 @@
 
 // Point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
 vec2 pixelPoint(int i) {
-    uvec2 at = uvec2(pixelCentre()) & 7u;
-    uint turn = (at.x ^ at.y) & 1u | (at.y & 1u) << 1 | ((at.x ^ at.y) & 2u) << 1 | (at.y & 2u) << 2 | ((at.x ^ at.y) & 4u) << 2 | (at.y & 4u) << 3;
-    return evenPoint(uint(i) * 64u + (bitfieldReverse(turn) >> 26));
+    return evenPoint(uint(i) * 64u + pixelNumber(uvec2(pixelCentre())));
 }
 
 // The same, other ones in each block: what few directions cannot tell becomes noise and not a bias.
@@ -28,24 +26,29 @@ float tanOfShare(int cones) {
 
 vec4 gatherDiffuse(ConeOrigin o, vec3 n, vec3 face) {
     mat3 frame = frameOf(n);
+    int cones = params.pixel_cones * gatherTimes;
     float tan_half = tanOfShare(params.pixel_cones);
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < params.pixel_cones; i++) {
+    for (int i = 0; i < cones; i++) {
         vec3 d = frame * cosineSample(pixelPoint(i));
         if (dot(d, face) <= 0.0) continue; // mapped normals lean
         CONE_BEGINS(uint(i) + 1u);
         vec4 cone = traceAny(o, d, tan_half, params.diffuse_steps);
         sum += vec4(coneRadiance(cone), 1.0 - cone.a);
     }
-    return sum / float(params.pixel_cones);
+    return sum / float(cones);
 }
 
-// One direction of the lobe; the cone has a sixteenth of it.
+// Some directions of the lobe; a cone has a sixteenth of it.
 vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
-    LobeSample l = specularSample(s, face, v, blockPoint(0));
-    if (l.weight == vec3(0.0)) return vec3(0.0);
-    CONE_BEGINS(0u);
-    return l.weight * coneRadiance(traceAny(o, l.direction, 0.5 * ggxAlpha(s.roughness), params.specular_steps));
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < gatherTimes; i++) {
+        LobeSample l = specularSample(s, face, v, blockPoint(i));
+        if (l.weight == vec3(0.0)) continue;
+        CONE_BEGINS(0u);
+        sum += l.weight * coneRadiance(traceAny(o, l.direction, 0.5 * ggxAlpha(s.roughness), params.specular_steps));
+    }
+    return sum / float(gatherTimes);
 }
 
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {

@@ -18,6 +18,9 @@ struct Gathered {
     vec3 specular; // radiance towards the viewer
 };
 
+// So many times the rays of a frame, where a surface gathers for several frames at once.
+int gatherTimes = 1;
+
 // Centre of the pixel that is shaded: defined by the shader.
 vec2 pixelCentre();
 

@@ -1,0 +1,153 @@
+//! Pixels that gather in turns: what they add up to, how late light is, and what a moving camera keeps.
+
+mod common;
+
+use common::{assert_clean, experiment, floats, lab, root, scene};
+use conelab::experiment::PlacedCamera;
+use conelab::lab::{Lab, Session};
+use conelab::scene::Scene;
+use glam::Vec3;
+use std::sync::Arc;
+
+const SIZE: (u32, u32) = (72, 50); // no multiple of the pattern's eight
+const TURNS: usize = 8;
+
+/// Rays of one bounce: nothing else takes more than a frame to settle.
+fn session(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Session {
+    let base = [("voxel_dim", "48"), ("shadow_dim", "512"), ("bounces", "one"), ("pixel_cones", "2")];
+    let base: Vec<_> = base.into_iter().filter(|(name, _)| settings.iter().all(|(n, _)| n != name)).collect();
+    let e = experiment(&scene.name, SIZE, &[&base[..], settings].concat());
+    lab.prepare(&e, scene.clone(), |_| Ok(vec!["radiance".into(), "gatheredDiffuse".into()])).unwrap().0
+}
+
+/// Runs frames, and gives what pixels have gathered in the last one.
+fn gathered(lab: &Lab, session: &mut Session, frames: usize) -> Vec<[f32; 4]> {
+    for _ in 0..frames {
+        session.frame(0.0).unwrap();
+    }
+    session.finish().unwrap();
+    assert_clean(lab);
+    floats(session, "gatheredDiffuse", 0)
+}
+
+fn radiance(session: &mut Session) -> Vec<u8> {
+    session.texels("radiance", 0, 0).unwrap().bytes
+}
+
+/// Mean of the light.
+fn light(gathered: &[[f32; 4]]) -> f64 {
+    gathered.iter().map(|g| f64::from(g[0] + g[1] + g[2])).sum::<f64>() / gathered.len() as f64
+}
+
+/// Mean square error, relative to the mean.
+fn error(gathered: &[[f32; 4]], truth: &[[f32; 4]]) -> f64 {
+    let squares = gathered.iter().zip(truth).map(|(a, b)| (0..3).map(|k| f64::from(a[k] - b[k]).powi(2)).sum::<f64>());
+    squares.sum::<f64>() / truth.len() as f64 / light(truth).powi(2)
+}
+
+#[test]
+fn turns_add_up_to_all_rays_and_settle_to_the_bit() {
+    let lab = lab(root());
+    let cornell = scene("cornell");
+    let mut turns = session(&lab, &cornell, &[]);
+    let first = gathered(&lab, &mut turns, 1);
+    let after = gathered(&lab, &mut turns, TURNS - 1);
+    let few = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1")]), 1);
+    let all = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1"), ("pixel_cones", "16")]), 1);
+    // In the first frame an eighth has all rays and the others those of a frame, later every pixel has all.
+    assert!(first.iter().zip(&few).zip(&all).all(|((f, few), all)| f == few || f == all));
+    let differ: Vec<_> = first.iter().zip(&few).zip(&all).filter(|((_, few), all)| few != all).collect();
+    let with_all = differ.iter().filter(|((f, _), all)| f == all).count();
+    assert!(with_all.abs_diff(differ.len() / TURNS) < differ.len() / 50, "{with_all} of {}", differ.len());
+    assert!(after == all, "the turns do not add up");
+    let settled = radiance(&mut turns);
+    for frame in 0..2 * TURNS {
+        gathered(&lab, &mut turns, 1);
+        assert!(radiance(&mut turns) == settled, "a still picture changes in frame {frame}");
+    }
+}
+
+#[test]
+fn old_light_is_forgotten_after_all_turns() {
+    let lab = lab(root());
+    let before = scene("cornell");
+    let mut after = Scene::clone(&before);
+    after.lights[0].color *= Vec3::new(0.2, 2.0, 1.0);
+    let after = Arc::new(after);
+    let mut fresh = session(&lab, &after, &[]);
+    let expected = gathered(&lab, &mut fresh, TURNS);
+    // Whenever the light changes.
+    for frame in [5, TURNS, 11] {
+        let mut live = session(&lab, &before, &[]);
+        gathered(&lab, &mut live, frame);
+        assert!(live.set_lights(&after.lights, after.sky));
+        let late = gathered(&lab, &mut live, TURNS - 1);
+        assert!(late != expected, "nothing was kept");
+        assert!(gathered(&lab, &mut live, 1) == expected, "after {TURNS} frames there is old light");
+        assert!(radiance(&mut live) == radiance(&mut fresh));
+    }
+}
+
+#[test]
+fn a_cut_takes_no_light_along() {
+    let lab = lab(root());
+    let atrium = scene("atrium");
+    let there = PlacedCamera::new((-6.0, 6.5, 1.0), (4.0, 4.0, -2.0), 60.0);
+    let mut live = session(&lab, &atrium, &[]);
+    gathered(&lab, &mut live, TURNS + 3);
+    live.place_camera(&there);
+    let cut = gathered(&lab, &mut live, 1);
+    let settled = gathered(&lab, &mut live, TURNS);
+    let mut fresh = session(&lab, &atrium, &[]);
+    fresh.place_camera(&there);
+    let first = gathered(&lab, &mut fresh, 1);
+    assert!(gathered(&lab, &mut fresh, TURNS) == settled);
+    let (cut_error, first_error) = (error(&cut, &settled), error(&first, &settled));
+    println!("error of the first frame after a cut {cut_error:.4}, of a first frame {first_error:.4}");
+    assert!(cut_error < 1.5 * first_error + 1e-6, "the first frame after a cut is worse than a first frame");
+}
+
+/// A camera that moves by half a pixel a frame: what is kept stays on its surface, and old light is forgotten all the same.
+#[test]
+fn a_moving_camera_keeps_light_where_it_belongs() {
+    let lab = lab(root());
+    let before = scene("cornell");
+    let mut after = Scene::clone(&before);
+    after.lights[0].color *= 3.0;
+    let after = Arc::new(after);
+    let camera = |i: usize| {
+        let x = 2.78 + 0.06 * i as f32;
+        PlacedCamera::new((x, 2.73, 0.02 * i as f32 - 8.0), (x - 0.3, 2.5, 2.8), 39.3)
+    };
+    let follow = |live: &mut Session, frames: std::ops::Range<usize>| {
+        let mut last = Vec::new();
+        for i in frames {
+            live.place_camera(&camera(i));
+            last = gathered(&lab, live, 1);
+        }
+        last
+    };
+    let truth = |scene: &Arc<Scene>, i: usize| {
+        let mut session = session(&lab, scene, &[("gather_frames", "1"), ("pixel_cones", "64")]);
+        session.place_camera(&camera(i));
+        gathered(&lab, &mut session, 1)
+    };
+    let (first_truth, changed_truth) = (truth(&before, 23), truth(&after, 23 + TURNS + 1));
+    let mut errors = Vec::new();
+    for settings in [&[][..], &[("gather_frames", "1")], &[("gather_frames", "4")]] {
+        let mut live = session(&lab, &before, settings);
+        let kept = follow(&mut live, 0..24);
+        assert!(live.set_lights(&after.lights, after.sky));
+        let changed = follow(&mut live, 24..24 + TURNS + 1);
+        let energies = [light(&kept) / light(&first_truth), light(&changed) / light(&changed_truth)];
+        errors.push(error(&kept, &first_truth));
+        println!("{settings:?}: energy {energies:.4?}, error {:.4}", error(&kept, &first_truth));
+        // Two rays a pixel are too few to say so of those of one frame.
+        let sure = settings != [("gather_frames", "1")];
+        assert!(
+            !sure || energies.iter().all(|e| (e - 1.0).abs() < 0.03),
+            "{settings:?}: light is lost or made: {energies:?}"
+        );
+    }
+    assert!(errors[0] < 0.6 * errors[1] && errors[2] < 0.8 * errors[1], "in motion turns gain little: {errors:?}");
+}
