@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::triangles::{meets, world};
 use common::{assert_clean, experiment, floats, lab, mean, root, scene};
 use conelab::experiment::Experiment;
 use conelab::lab::{Lab, Session};
@@ -40,8 +41,7 @@ fn placed(scene: &Scene, offset: Vec3, scale: f32) -> Arc<Scene> {
     Arc::new(scene)
 }
 
-/// Where each pixel's ray meets the scene, along the view direction; infinite where it does not. In 64 bits, so that
-/// neither 4 mm nor 200 km lose what matters.
+/// Where each pixel's ray meets the scene, along the view direction; infinite where it does not.
 fn distances(scene: &Scene, (width, height): (u32, u32)) -> Vec<f64> {
     let camera = &scene.cameras["default"];
     let eye = camera.eye.as_dvec3();
@@ -49,13 +49,7 @@ fn distances(scene: &Scene, (width, height): (u32, u32)) -> Vec<f64> {
     let right = ahead.cross(camera.up.as_dvec3()).normalize();
     let up = right.cross(ahead);
     let tan = (0.5 * f64::from(camera.fov_y)).to_radians().tan();
-    let mut triangles: Vec<[DVec3; 3]> = Vec::new();
-    for (i, instance) in scene.instances.iter().enumerate() {
-        let place = scene.instance_transform(i, 0.0).as_dmat4();
-        let mesh = &scene.meshes[instance.mesh as usize];
-        let corner = |i: &u32| place.transform_point3(Vec3::from(mesh.vertices[*i as usize].position).as_dvec3());
-        triangles.extend(mesh.indices.as_chunks::<3>().0.iter().map(|t| t.each_ref().map(corner)));
-    }
+    let triangles = world(scene);
     let rays = (0..width * height).map(|i| {
         let x = (2.0 * (f64::from(i % width) + 0.5) / f64::from(width) - 1.0) * f64::from(width) / f64::from(height);
         let y = 1.0 - 2.0 * (f64::from(i / width) + 0.5) / f64::from(height);
@@ -63,15 +57,6 @@ fn distances(scene: &Scene, (width, height): (u32, u32)) -> Vec<f64> {
     });
     let met = |d: DVec3| triangles.iter().filter_map(|t| meets(eye, d, *t)).fold(f64::INFINITY, f64::min);
     rays.map(met).collect()
-}
-
-fn meets(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
-    let (ab, ac) = (b - a, c - a);
-    let p = direction.cross(ac);
-    let determinant = ab.dot(p);
-    let (t, q) = (origin - a, (origin - a).cross(ab));
-    let (u, v) = (t.dot(p) / determinant, direction.dot(q) / determinant);
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then_some(ac.dot(q) / determinant).filter(|d| *d > 0.0)
 }
 
 #[test]

@@ -3,16 +3,11 @@
 // The second bounce alone: each side of a voxel gathers what injection has put into the others, this frame. Nothing is kept,
 // so nothing is late.
 #include "params.glsl"
-#include "modules/lookup.glsl"
-#include "cones/rays.glsl"
+#include "modules/bounce_trace/rays.glsl"
 #include "cones/near.glsl"
 #include "bounce/gather.glsl"
 
 layout(local_size_x = 128) in;
-
-vec4 traceBounce(ConeOrigin o, vec3 d) {
-    return traceVoxels(o, d);
-}
 
 void main() {
     uint i = gl_GlobalInvocationID.x, slot = i / SIDES, side = i % SIDES;

@@ -1,7 +1,8 @@
 //! How far a camera sees: what tells a volume of voxels where a scene needs small ones.
 
 use super::{Camera, Scene};
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
+use obvhs::{ray::Ray, triangle::Triangle};
 
 /// Rays across a picture of 16:9, by row and column.
 const RAYS: (usize, usize) = (6, 10);
@@ -30,13 +31,14 @@ impl Scene {
                 if number % stride != 0 {
                     continue;
                 }
-                let Some([a, b, c]) =
-                    corners_of(mesh, corners).map(|t| t.map(|p| world.transform_point3(p) - camera.eye))
+                let Some([v0, v1, v2]) = corners_of(mesh, corners)
+                    .map(|t| t.map(|p| Vec3A::from(world.transform_point3(p) - camera.eye)))
                 else {
                     continue;
                 };
+                let triangle = Triangle { v0, v1, v2 };
                 for (ray, nearest) in rays.iter().zip(&mut nearest) {
-                    *nearest = nearest.min(distance(*ray, a, b, c).unwrap_or(f32::INFINITY));
+                    *nearest = nearest.min(triangle.intersect(ray));
                 }
             }
         }
@@ -51,8 +53,8 @@ fn corners_of(mesh: &super::Mesh, indices: &[u32]) -> Option<[Vec3; 3]> {
     Some([corner(0)?, corner(1)?, corner(2)?])
 }
 
-/// Unit directions.
-fn rays(camera: &Camera) -> Vec<Vec3> {
+/// From the camera, which is the origin.
+fn rays(camera: &Camera) -> Vec<Ray> {
     let ahead = (camera.target - camera.eye).try_normalize().unwrap_or(Vec3::NEG_Z);
     let right = ahead.cross(camera.up).try_normalize().unwrap_or_else(|| ahead.any_orthonormal_vector());
     let half = (0.5 * camera.fov_y.clamp(1.0, 170.0).to_radians()).tan();
@@ -60,17 +62,6 @@ fn rays(camera: &Camera) -> Vec<Vec3> {
     let middle = |i: usize, n: usize| (2 * i + 1) as f32 / n as f32 - 1.0;
     (0..RAYS.0 * RAYS.1)
         .map(|i| (ahead + up * middle(i / RAYS.1, RAYS.0) + right * middle(i % RAYS.1, RAYS.1)).normalize())
+        .map(|d| Ray::new_inf(Vec3A::ZERO, Vec3A::from(d)))
         .collect()
-}
-
-/// Where a ray from the origin meets a triangle (Moeller and Trumbore 1997).
-fn distance(d: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Option<f32> {
-    let (ab, ac) = (b - a, c - a);
-    let p = d.cross(ac);
-    let volume = ab.dot(p);
-    let u = -a.dot(p) / volume;
-    let q = -a.cross(ab);
-    let (v, t) = (d.dot(q) / volume, ac.dot(q) / volume);
-    // Of a triangle without area, no number.
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
 }
