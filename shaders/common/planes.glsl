@@ -32,14 +32,14 @@ vec3 besideAxis(uint axis, float along, vec2 beside) {
 // normal: along its axis positive.
 void keepPlane(uint base, vec3 normal, uint axis, float offset, uint sides) {
     vec2 beside = besideOf(normal, axis);
-    uvec2 s = uvec2(clamp(beside / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 1023.0 + 1024.5);
-    voxelPlanes.words[base] = s.x | s.y << 11 | uint(clamp(offset, -0.5, 0.5) * 254.0 + 128.5) << 22 | sides << 30;
+    uvec2 s = uvec2(clamp(beside / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
+    voxelPlanes.words[base] = s.x | s.y << 10 | storedOffset(offset) << 20 | sides << 30;
 }
 
 Plane planeOf(uint base, uint axis) {
     uint w = voxelPlanes.words[base];
-    vec2 beside = (vec2(w & 0x7ffu, w >> 11 & 0x7ffu) - 1024.0) / 1023.0;
-    return Plane(besideAxis(axis, 1.0, beside), (float(w >> 22 & 0xffu) - 128.0) / 254.0, w >> 30);
+    vec2 beside = (vec2(w & 0x3ffu, w >> 10 & 0x3ffu) - 512.0) / 511.0;
+    return Plane(besideAxis(axis, 1.0, beside), offsetOfSum(float(w >> 20 & 0x3ffu), 1.0), w >> 30);
 }
 
 uvec2 partsOf(uint base) {

@@ -13,14 +13,14 @@ struct Side {
     float count; // fragments
 };
 
-// How many layers of surfaces cover each other, where the voxelizer measures it: a lamp before a ceiling, in one cell, hides it,
-// and must not be dimmed by the mean of both.
+// Area of a side's surfaces for each area that rays meet of it, where the voxelizer measures both. More than one: a lamp before a
+// ceiling, in one cell, hides it, and must not be dimmed by the mean of both. Less: the parts of a small lamp are larger than it.
 float layersOf(uint slot, float weight) {
     bool measured = !WARPED && params.voxelizer == VOXELIZER_RASTER
         && (params.conservative == CONSERVATIVE_DILATE || params.conservative == CONSERVATIVE_HARDWARE);
     uint parts = slot * SLOT_WORDS + SLOT_PARTS;
     float covered = 16.0 * float(bitCount(voxelSlots.words[parts]) + bitCount(voxelSlots.words[parts + 1]));
-    return measured && covered > 0.0 ? max(weight / covered, 1.0) : 1.0;
+    return measured && covered > 0.0 ? weight / covered : 1.0;
 }
 
 // A side without surfaces of its own is the back of the other: a sheet reflects on both sides.

@@ -86,12 +86,21 @@ uint packOffset(float offset) {
     return uint(clamp(offset, -0.5, 0.5) * 254.0 + 128.5) << 24;
 }
 
-uint unpackOffset(uint w) {
-    return w >> 24;
+float unpackOffset(uint w) {
+    return (float(w >> 24) - 128.0) / 254.0;
 }
 
-const float OFFSET_SCALE = 254.0;
-const float OFFSET_ZERO = 128.0;
+// A plane that touches its cell in a corner alone passes the cell's middle by so much along its axis [cells].
+const float OFFSET_REACH = 1.5;
+
+// Offsets as integers of ten bits, for sums.
+uint storedOffset(float offset) {
+    return uint(clamp(offset / OFFSET_REACH, -1.0, 1.0) * 511.0 + 512.5);
+}
+
+float offsetOfSum(float sum, float weight) {
+    return (sum / max(weight, 1.0) - 512.0) / 511.0 * OFFSET_REACH;
+}
 
 // Nine bits a channel and a shared exponent (EXT_texture_shared_exponent); up to 65408.
 uint packRadiance(vec3 c) {

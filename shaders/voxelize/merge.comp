@@ -18,9 +18,9 @@ const uint SHARES = 1u << 16;
 
 #include "modules/merge.glsl"
 
-void merge(uint base, vec3 color, vec3 normal, uint offset, uint emission, uint weight) {
+void merge(uint base, vec3 color, vec3 normal, float offset, uint emission, uint weight) {
     mergeInto(base, color, normal, weight);
-    atomicAdd(voxelSlots.words[base + SIDE_OFFSET], offset * weight);
+    atomicAdd(voxelSlots.words[base + SIDE_OFFSET], storedOffset(offset) * weight);
     atomicAdd(voxelSlots.words[base + 3], weight);
     if (emission != 0) {
         uvec3 e = uvec3(min(unpackRadiance(emission), EMISSION_MAX) * EMISSION_SCALE * float(weight) + 0.5);
@@ -34,12 +34,13 @@ vec3 cornerOf(VolumeMap map, uvec2 triangle, uint i) {
     return worldToVolume(map, p) * float(params.voxel_dim);
 }
 
-// Which parts of a stored cell the triangle of a fragment covers. Here and not where fragments are made: all of the chip helps.
-Covered coveredBy(uvec2 triangle, ivec3 stored, uint axis) {
-    if (triangle == NO_TRIANGLE) return WHOLE_CELL;
+// Which parts of a stored cell the triangle of a fragment covers, and where. Here and not where fragments are made: all of the
+// chip helps.
+Covered coveredBy(uvec2 triangle, ivec3 stored, uint axis, float offset) {
+    if (triangle == NO_TRIANGLE) return wholeCell(offset);
     VolumeMap map = volume.maps[cascadeOf(stored)];
     ivec3 cell = ivec3(cellCentre(stored) * float(params.voxel_dim));
-    return coveredParts(cornerOf(map, triangle, 0), cornerOf(map, triangle, 1), cornerOf(map, triangle, 2), cell, axis);
+    return coveredParts(cornerOf(map, triangle, 0), cornerOf(map, triangle, 1), cornerOf(map, triangle, 2), cell, axis, offset);
 }
 
 void main() {
@@ -59,8 +60,8 @@ void main() {
             continue;
         }
         uint slot = slotOf(found, axis), parts = slot * SLOT_WORDS + SLOT_PARTS;
-        Covered covered = coveredBy(voxelTriangles.list[i], stored, axis);
-        merge(sideBase(slot, sideOf(normal, axis)), unpackColor(fragment.y), normal, unpackOffset(fragment.z), fragment.w, covered.weight);
+        Covered covered = coveredBy(voxelTriangles.list[i], stored, axis, unpackOffset(fragment.z));
+        merge(sideBase(slot, sideOf(normal, axis)), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
         for (uint k = 0; k < 2; k++)
             if ((voxelSlots.words[parts + k] & covered.parts[k]) != covered.parts[k]) atomicOr(voxelSlots.words[parts + k], covered.parts[k]);
     }

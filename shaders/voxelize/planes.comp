@@ -30,7 +30,7 @@ void main() {
     VolumeMap map = volume.maps[cascadeOf(cell)];
     vec3 in_cells = normal * cellAxes(map, volumeToWorld(map, cellCentre(cell)));
     uint base = planeBase(voxelCounter.half_used, slot);
-    keepPlane(base, in_cells, axis, (offset / max(count, 1.0) - OFFSET_ZERO) / OFFSET_SCALE, sides);
+    keepPlane(base, in_cells, axis, offsetOfSum(offset, count), sides);
     for (uint k = 0; k < 2; k++) voxelPlanes.words[base + 1 + k] = voxelSlots.words[slot * SLOT_WORDS + SLOT_PARTS + k];
     for (uint side = 0; side < SIDES; side++) keepLight(gatheredWord(base, side), vec3(0.0));
 }
