@@ -2,13 +2,14 @@
 
 mod common;
 
+use common::closed_meshes::cube;
 use common::triangles::{meets, world};
 use common::{assert_clean, experiment, floats, lab, mean, root, scene};
-use conelab::experiment::Experiment;
+use conelab::experiment::{Experiment, PlacedCamera};
 use conelab::lab::{Lab, Session};
 use conelab::reference::{Goal, gather};
-use conelab::scene::{Camera, LightKind, Scene};
-use glam::{DVec3, Mat4, Vec3};
+use conelab::scene::{Camera, Instance, LightKind, Mesh, Scene, Submesh, Vertex};
+use glam::{DVec3, EulerRot, Mat4, Quat, Vec3};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -109,12 +110,81 @@ fn a_room_far_from_the_origin_looks_as_one_at_it() {
     assert_alike("far-away", &placed(&scene("far-away"), Vec3::new(-80_000.0, 0.0, 60_000.0), 1.0));
 }
 
-#[test]
-fn paths_see_what_is_small_or_far_away_too() {
+/// A place for references of this test alone.
+fn own_home() -> tempfile::TempDir {
     let home = tempfile::tempdir().unwrap();
     for folder in ["passes", "shaders"] {
         common::copy(&root().join(folder), &home.path().join(folder));
     }
+    home
+}
+
+/// One map over 200 km has texels of 50 m, in which a house casts no shadow.
+#[test]
+fn what_is_small_in_a_huge_scene_casts_its_shadow() {
+    let home = own_home();
+    let lab = lab(home.path());
+    for (name, least) in [("plain", 0.05), ("huge-ground", 0.0)] {
+        let with = |maps: &str| experiment(name, (120, 68), &[("shadow_maps", maps), ("voxel_dim", "32")]);
+        let keep_on = &mut |_| ControlFlow::Continue(());
+        let truth = gather(&lab, &with("0"), &scene(name), 1, Goal::Samples(32), keep_on).unwrap();
+        let truth = &truth.parts["direct"].mean.rgb;
+        let wrong = |maps: &str| {
+            let found = floats(&mut frame(&lab, &with(maps), &scene(name), &["direct"]), "direct", 0);
+            // Where all of a pixel is lit or in shadow, and a lamp of one direction leaves no noise.
+            let differ = found.iter().zip(truth).filter(|(f, t)| (f[1] - t[1]).abs() > 0.2 * f[1].max(t[1]) + 0.02);
+            differ.count() as f64 / truth.len() as f64
+        };
+        let (one, nested) = (wrong("1"), wrong("0"));
+        println!(
+            "{name}: {:.1} % of the pixels have the wrong direct light, {:.1} % with one map",
+            100.0 * nested,
+            100.0 * one
+        );
+        assert!(nested < 0.01 && one >= least, "{name}: {nested}, with one map {one}");
+    }
+    assert_clean(&lab);
+}
+
+/// Maps around the camera move by whole texels, so that the shadows of what stands still do.
+#[test]
+fn shadow_maps_move_by_whole_texels() {
+    let lab = lab(root());
+    let scene = scene("plain");
+    let dim = 512;
+    let params = [("shadow_dim", "512"), ("voxel_dim", "32")];
+    let mut session = frame(&lab, &experiment("plain", (64, 36), &params), &scene, &["shadowLayers"]);
+    let camera = &scene.cameras["default"];
+    let mut layers = |by: Vec3| -> Vec<Vec<f32>> {
+        let (eye, target) = ((camera.eye + by).to_array(), (camera.target + by).to_array());
+        session.place_camera(&PlacedCamera::new(eye.into(), target.into(), camera.fov_y));
+        session.frame(0.0).unwrap();
+        session.finish().unwrap();
+        let words: Vec<f32> = bytemuck::pod_collect_to_vec(&session.buffer("shadowLayers").unwrap());
+        words.chunks(20).map(<[f32]>::to_vec).collect()
+    };
+    let first = layers(Vec3::ZERO);
+    assert_eq!(first.len(), 4, "200 km need four maps");
+    let mut moved = [0; 4];
+    for i in 1..20 {
+        let there = layers(Vec3::new(0.07, 0.01, -0.11) * i as f32);
+        for (k, (a, b)) in first.iter().zip(&there).enumerate() {
+            // The matrix's last column: x and y in half widths of the map.
+            for row in [12, 13] {
+                let texels = (b[row] - a[row]) * 0.5 * dim as f32;
+                assert!((texels - texels.round()).abs() < 0.01, "map {k} moved by {texels} texels");
+                moved[k] += texels.round().abs() as i32;
+            }
+        }
+    }
+    println!("texels that the maps moved by, in all: {moved:?}");
+    assert!(moved[0] == 0 && moved[3] > 100, "{moved:?}");
+    assert_clean(&lab);
+}
+
+#[test]
+fn paths_see_what_is_small_or_far_away_too() {
+    let home = own_home();
     let lab = lab(home.path());
     for (name, offset, scale) in
         [("pocket", Vec3::ZERO, 1000.0), ("far-away", Vec3::new(-80_000.0, 0.0, 60_000.0), 1.0)]
@@ -130,6 +200,55 @@ fn paths_see_what_is_small_or_far_away_too() {
             let [a, b] = [&a, &b].map(|r| r.parts[part].mean.mean());
             println!("{name}, {part}: {a:.5} and {b:.5}");
             assert!((a / b - 1.0).abs() < 0.03, "{name}, {part}: {a} is not {b}");
+        }
+    }
+    assert_clean(&lab);
+}
+
+/// The room of `emitters` with lamps of one kind and size alone.
+fn lamps(mesh: &Mesh, size: f32) -> Arc<Scene> {
+    let mut scene = Scene::clone(&scene("emitters"));
+    scene.instances.retain(|i| scene.meshes[i.mesh as usize].name == "room");
+    let glowing = scene.materials.iter().position(|m| m.emission != Vec3::ZERO).unwrap() as u32;
+    let submeshes = vec![Submesh { material: glowing, ..mesh.submeshes[0].clone() }];
+    scene.meshes.push(Mesh { submeshes, ..mesh.clone() });
+    let mesh = scene.meshes.len() as u32 - 1;
+    scene.instances.extend((0..24).map(|i| {
+        // Spread evenly (Roberts 2018, R3), each turned another way.
+        let [x, y, z] = [0.819_172_5, 0.671_043_6, 0.549_700_5].map(|step: f32| (step * i as f32).fract());
+        let turn = Quat::from_euler(EulerRot::XYZ, 7.0 * x, 7.0 * y, 7.0 * z);
+        let place = Vec3::new(-2.0 + 4.0 * x, 0.5 + 1.8 * y, -2.0 + 3.0 * z);
+        let transform = Mat4::from_scale_rotation_translation(Vec3::splat(size), turn, place);
+        Instance { name: format!("lamp {i}"), mesh, transform, animation: None }
+    }));
+    Arc::new(scene)
+}
+
+/// Lamps of a voxel or so are as bright as they are: what voxels keep of them is neither their cells nor nothing.
+#[test]
+fn small_lamps_shine_as_bright_as_they_are() {
+    let home = own_home();
+    let lab = lab(home.path());
+    const CELL: f32 = 5.4 / 59.0; // of 64 across the scene, five of them beside it
+    let ball = cube(3, 1.0);
+    let leaf = {
+        let at = |x: f32, y: f32| Vertex { position: [x, y, 0.0], normal: [0.0, 0.0, 1.0], ..Vertex::default() };
+        let vertices = vec![at(-0.5, -0.5), at(0.5, -0.5), at(0.5, 0.5), at(-0.5, 0.5)];
+        Mesh { vertices, indices: vec![0, 1, 2, 0, 2, 3], ..ball.clone() }
+    };
+    let leaf = Mesh { submeshes: vec![Submesh { first_index: 0, index_count: 6, material: 0 }], ..leaf };
+    for (name, mesh, across) in [("balls", &ball, 1.4), ("leaves", &leaf, 1.0)] {
+        for cells in [0.7, 1.5, 3.0] {
+            let scene = lamps(mesh, cells * CELL / across);
+            let settings = [("voxel_dim", "64"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_cones", "32")];
+            let experiment = experiment("emitters", (64, 36), &settings);
+            let keep_on = &mut |_| ControlFlow::Continue(());
+            let truth = gather(&lab, &experiment, &scene, 1, Goal::Samples(256), keep_on).unwrap();
+            let truth = truth.parts["diffuse"].mean.mean();
+            let found =
+                mean(&floats(&mut frame(&lab, &experiment, &scene, &["diffuseIndirect"]), "diffuseIndirect", 0));
+            println!("{name} of {cells} cells: {:.3} of the light", found / truth);
+            assert!((0.8..1.25).contains(&(found / truth)), "{name} of {cells} cells: {found}, not {truth}");
         }
     }
     assert_clean(&lab);

@@ -1,19 +1,19 @@
 // Shadow lookup for surfaces. The bias is a distance in shadow texels, never in metres.
 #ifndef SHADOW_GLSL
 #define SHADOW_GLSL
-#include "common/shadow_views.glsl"
+#include "common/shadow_layers.glsl"
 
 uniform sampler2DArrayShadow shadowCompare;
 
 // Mean of the taps around `at`. `slope`: how depth changes over the receiver [depth a map's width].
-float shadowTaps(int view, vec3 at, vec2 slope) {
+float shadowTaps(int layer, vec3 at, vec2 slope) {
     float texel = 1.0 / float(params.shadow_dim);
     int r = SHADOW_FILTER == SHADOW_FILTER_NEAREST ? 0 : SHADOW_FILTER == SHADOW_FILTER_PCF3 ? 1 : 2;
     float sum = 0.0;
     for (int y = -r; y <= r; y++)
         for (int x = -r; x <= r; x++) {
             vec2 offset = vec2(x, y) * texel;
-            sum += textureGrad(shadowCompare, vec4(at.xy + offset, view, at.z + dot(slope, offset)), vec2(0.0), vec2(0.0));
+            sum += textureGrad(shadowCompare, vec4(at.xy + offset, layer, at.z + dot(slope, offset)), vec2(0.0), vec2(0.0));
         }
     return sum / float((2 * r + 1) * (2 * r + 1));
 }

@@ -8,7 +8,7 @@
 #include "common/directions.glsl"
 #include "common/sides.glsl"
 #include "common/planes.glsl"
-#include "common/shadow_views.glsl"
+#include "common/shadow_layers.glsl"
 #include "common/scene.glsl"
 
 layout(local_size_x = 128) in;
@@ -43,16 +43,16 @@ Taps tapsOf(uint base, uint axis) {
 float voxelVisibility(Light light, vec3 center, Taps taps, mat3 axes, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
     float cell = pow(abs(determinant(axes)), 1.0 / 3.0);
-    float texel = shadowTexel(shadowViewOf(light, center), light, center);
+    float texel = shadowTexel(shadowLayerOf(light, center), light, center);
     vec3 extent = abs(n * axes);
     vec3 base = center + n * (params.light_bias * (extent.x + extent.y + extent.z) + texel)
               + to_light * (n == vec3(0.0) ? cell : 0.5 * params.light_bias * cell);
     float sum = 0.0;
     for (int i = 0; i < taps.count; i++) {
         vec3 p = base + axes * taps.places[i];
-        int view = shadowViewOf(light, p);
-        vec3 q = shadowPosition(view, p);
-        sum += texture(shadowCompare, vec4(q.xy, view, q.z));
+        int layer = shadowLayerOf(light, p);
+        vec3 q = shadowPosition(layer, p);
+        sum += texture(shadowCompare, vec4(q.xy, layer, q.z));
     }
     return sum / float(taps.count);
 }

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Depth from a light (thesis, Section 4.2); pass.index is the shadow view.
+// Depth from a light (thesis, Section 4.2); pass.index is the layer.
 #include "params.glsl"
 #include "common/scene.glsl"
-#include "common/shadow_views.glsl"
+#include "common/shadow_layers.glsl"
 
 layout(location = 0) out vec2 uv;
 layout(location = 1) flat out uint material;
@@ -11,7 +11,7 @@ layout(location = 1) flat out uint material;
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];
     vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
-    gl_Position = shadowViews.views[pass.index].view_projection * vec4(p, 1.0);
+    gl_Position = shadowLayers.layers[pass.index].view_projection * vec4(p, 1.0);
     uv = loadAttributes(gl_VertexIndex).uv;
     material = draw.material;
 }

@@ -83,6 +83,7 @@ pub const BUILTIN_VARIABLES: &[&str] = &[
     "mip",
     "index",
     "shadow_views",
+    "directional_views",
     "light_count",
     "triangle_count",
     "scene_size",

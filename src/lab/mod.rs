@@ -355,7 +355,8 @@ impl Session {
     /// nothing changes, with another number of lights or shadow maps: that needs a new session.
     pub fn set_lights(&mut self, lights: &[Light], sky: Vec3) -> bool {
         let same = lights.len() == self.scene.lights.len()
-            && view::shadow_view_count(lights) == view::shadow_view_count(&self.scene.lights);
+            && view::shadow_view_count(lights) == view::shadow_view_count(&self.scene.lights)
+            && view::directional_view_count(lights) == view::directional_view_count(&self.scene.lights);
         if same {
             self.light_updates = self.scene_gpu.set_lights(lights, sky);
         }

@@ -1,6 +1,6 @@
 //! Variables that expressions may read besides parameters.
 
-use super::view::shadow_view_count;
+use super::view::{directional_view_count, shadow_view_count};
 use crate::graph::expr::{Env, Var};
 use crate::graph::load::Graph;
 use crate::graph::param::{Params, Value};
@@ -19,6 +19,7 @@ pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
     put("width", f64::from(size.0));
     put("height", f64::from(size.1));
     put("shadow_views", f64::from(shadow_view_count(&scene.lights)));
+    put("directional_views", f64::from(directional_view_count(&scene.lights)));
     put("light_count", scene.lights.len() as f64);
     put("triangle_count", scene.triangle_count() as f64);
     put("scene_size", f64::from(extent.max_element()));

@@ -173,6 +173,11 @@ fn shadow_views(light: &Light, (low, high): (Vec3, Vec3), number: u32) -> Vec<Sh
     }
 }
 
+/// How many directional lights cast shadows.
+pub fn directional_view_count(lights: &[Light]) -> u32 {
+    lights.iter().filter(|l| l.shadow && l.kind == LightKind::Directional).map(|_| 1).sum()
+}
+
 /// How many shadow maps a scene needs: one a directional or spot light, six a point light.
 pub fn shadow_view_count(lights: &[Light]) -> u32 {
     lights.iter().filter(|l| l.shadow).map(|l| if matches!(l.kind, LightKind::Point) { 6 } else { 1 }).sum()

@@ -31,8 +31,8 @@ impl Scene {
                 if number % stride != 0 {
                     continue;
                 }
-                let Some([v0, v1, v2]) = corners_of(mesh, corners)
-                    .map(|t| t.map(|p| Vec3A::from(world.transform_point3(p) - camera.eye)))
+                let Some([v0, v1, v2]) =
+                    corners_of(mesh, corners).map(|t| t.map(|p| Vec3A::from(world.transform_point3(p) - camera.eye)))
                 else {
                     continue;
                 };

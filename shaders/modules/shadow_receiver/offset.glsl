@@ -2,7 +2,7 @@
 // meet.
 float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
-    int view = shadowViewOf(light, p);
-    vec3 q = shadowPosition(view, offSurface(p, n, to_light, params.shadow_bias * shadowTexel(view, light, p)));
-    return shadowTaps(view, q, vec2(0.0));
+    int layer = shadowLayerOf(light, p);
+    vec3 q = shadowPosition(layer, offSurface(p, n, to_light, params.shadow_bias * shadowTexel(layer, light, p)));
+    return shadowTaps(layer, q, vec2(0.0));
 }

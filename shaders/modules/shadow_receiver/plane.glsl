@@ -3,26 +3,26 @@
 
 // How fast depth in the map grows over the plane through p [a map's width]. It is linear over a plane, in perspective too,
 // so it is taken from points far apart, which keeps digits. q: where p is in the map.
-vec2 planeSlope(int view, vec3 p, vec3 q, vec3 n, vec3 to_light, float reach) {
+vec2 planeSlope(int layer, vec3 p, vec3 q, vec3 n, vec3 to_light, float reach) {
     mat3 frame = frameOf(n);
-    vec3 a = shadowPositionBeyond(view, p + reach * frame[0]) - q, b = shadowPositionBeyond(view, p + reach * frame[1]) - q;
+    vec3 a = shadowPositionBeyond(layer, p + reach * frame[0]) - q, b = shadowPositionBeyond(layer, p + reach * frame[1]) - q;
     float area = a.x * b.y - a.y * b.x;
     vec2 slope = vec2(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / (abs(area) > 1e-20 ? area : 1e-20);
     // A plane seen edge on has no depth of its own: at most 64 texels deep a texel.
-    float towards = abs(shadowPositionBeyond(view, p + reach * to_light).z - q.z) * 64.0;
+    float towards = abs(shadowPositionBeyond(layer, p + reach * to_light).z - q.z) * 64.0;
     return slope * min(1.0, 64.0 * towards / max(length(slope), 1e-20));
 }
 
 float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
-    int view = shadowViewOf(light, p);
-    float texel = shadowTexel(view, light, p);
+    int layer = shadowLayerOf(light, p);
+    float texel = shadowTexel(layer, light, p);
     vec3 from = offSurface(p, n, to_light, params.shadow_bias * texel);
-    vec3 q = shadowPositionBeyond(view, from);
+    vec3 q = shadowPositionBeyond(layer, from);
     // 1/64 of the map's width.
-    vec2 slope = planeSlope(view, from, q, n, to_light, texel * float(params.shadow_dim) / 64.0);
+    vec2 slope = planeSlope(layer, from, q, n, to_light, texel * float(params.shadow_dim) / 64.0);
     q.z = clamp(q.z, 0.0, 1.0) - (params.shadow_format == SHADOW_FORMAT_D16 ? 1.0 / 65535.0 : 1e-6);
     // Taps at texels' centres, which a bilinear lookup gives alone.
     vec2 centre = (floor(q.xy * float(params.shadow_dim)) + 0.5) * (1.0 / float(params.shadow_dim));
-    return shadowTaps(view, vec3(centre, q.z + dot(slope, centre - q.xy)), slope);
+    return shadowTaps(layer, vec3(centre, q.z + dot(slope, centre - q.xy)), slope);
 }

@@ -1,0 +1,58 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// What each layer of the shadow map shows this frame: the lights' views, and of directional lights `nested_maps` - 1 cubes around
+// the camera, each `shadow_step` times smaller than the one before (nested as in Zhang et al. 2006, "Parallel-Split Shadow Maps
+// for Large-scale Virtual Environments", but around the eye: turning it moves no map).
+#include "params.glsl"
+#include "common/scene.glsl"
+#include "common/shadow_views.glsl"
+#include "common/shadow_layers.glsl"
+
+layout(local_size_x = 1) in;
+
+// Row i of a matrix as a direction and a length.
+vec4 axisOf(mat4 m, int i) {
+    vec3 row = vec3(m[0][i], m[1][i], m[2][i]);
+    float scale = length(row);
+    return vec4(row / scale, scale);
+}
+
+// A cube of this width around the camera, along the axes of a directional light's view. It moves by whole texels, so that what
+// stands still keeps its shadow.
+mat4 around(mat4 whole, float width) {
+    float texel = width / float(params.shadow_dim);
+    mat4 m = mat4(1.0);
+    for (int i = 0; i < 3; i++) {
+        vec3 axis = axisOf(whole, i).xyz;
+        float middle = floor(dot(axis, camera.position) / texel) * texel;
+        float scale = (i < 2 ? 2.0 : 1.0) / width; // x, y in [-1,1], depth in [0,1]
+        m[0][i] = axis.x * scale;
+        m[1][i] = axis.y * scale;
+        m[2][i] = axis.z * scale;
+        m[3][i] = (i < 2 ? 0.0 : 0.5) - middle * scale;
+    }
+    return m;
+}
+
+void main() {
+    int next = int(sceneInfo.shadow_views);
+    for (uint i = 0; i < sceneInfo.light_count; i++) {
+        Light light = lights.lights[i];
+        if (light.shadow_view < 0) continue;
+        int views = light.kind == LIGHT_POINT ? 6 : 1;
+        for (int layer = light.shadow_view; layer < light.shadow_view + views; layer++) {
+            ShadowView view = shadowViews.views[layer];
+            shadowLayers.layers[layer] = ShadowLayer(view.view_projection, view.texel_size_and_depth.x, view.texel_size_and_depth.z, -1, 0.0);
+        }
+        if (light.kind != LIGHT_DIRECTIONAL) continue;
+        ShadowView whole = shadowViews.views[light.shadow_view];
+        int layer = light.shadow_view;
+        float width = whole.texel_size_and_depth.x;
+        for (int k = 1; k < params.nested_maps; k++) {
+            width /= params.shadow_step;
+            shadowLayers.layers[layer].finer = next;
+            shadowLayers.layers[next] = ShadowLayer(around(whole.view_projection, width), width, 0.0, -1, 0.0);
+            layer = next++;
+        }
+    }
+}
