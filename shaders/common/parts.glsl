@@ -13,6 +13,12 @@ bool isCovered(uvec2 parts, vec2 place) {
     return ((at.y < 4 ? parts.x : parts.y) >> (8 * (at.y & 3) + at.x) & 1u) != 0;
 }
 
+// What is covered of a quarter: two of columns in each of two of rows.
+uvec2 quarterOf(uvec2 parts, uint quarter) {
+    uint columns = parts[quarter / 2] & 0x0f0f0f0fu << 4 * (quarter & 1);
+    return quarter < 2 ? uvec2(columns, 0u) : uvec2(0u, columns);
+}
+
 // The middle of what is covered, from that of the cell [cells].
 vec2 middleOf(uvec2 parts) {
     vec2 sum = vec2(0.0);

@@ -8,7 +8,7 @@ struct ShadowLayer {
     float width; // of the map in the world [m], at unit distance if perspective
     float perspective; // 1, or 0
     int finer; // the layer that shows a part of this one, -1: none
-    float pad;
+    float rounding; // of depth, beyond what its format rounds
 };
 
 layout(std430) buffer ShadowLayers { ShadowLayer layers[]; } shadowLayers;

@@ -15,7 +15,7 @@ struct Side {
 
 // Area of a side's surfaces for each area that rays meet of it, where the voxelizer measures both. More than one: a lamp before a
 // ceiling, in one cell, hides it, and must not be dimmed by the mean of both. Less: the parts of a small lamp are larger than it.
-float layersOf(uint slot, float weight) {
+float areaRatio(uint slot, float weight) {
     bool measured = !WARPED && params.voxelizer == VOXELIZER_RASTER
         && (params.conservative == CONSERVATIVE_DILATE || params.conservative == CONSERVATIVE_HARDWARE);
     uint parts = slot * SLOT_WORDS + SLOT_PARTS;
@@ -33,7 +33,7 @@ Side sideOfSlot(uint slot, uint side) {
     mergedMean(base, s.color, mean);
     s.agreement = min(length(mean), 1.0);
     s.normal = s.agreement > 1e-3 ? mean / s.agreement * (mirrored ? -1.0 : 1.0) : vec3(0.0);
-    s.emission = meanEmission(base) * layersOf(slot, float(voxelSlots.words[base + 3]));
+    s.emission = meanEmission(base) * areaRatio(slot, float(voxelSlots.words[base + 3]));
     s.count = float(voxelSlots.words[base + 3]);
     return s;
 }

@@ -7,8 +7,9 @@
 
 #include "modules/sides.glsl"
 
-const uint SIDE_WORDS = 11; // sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10
+const uint SIDE_WORDS = 12; // sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10; what is outermost in each quarter 11
 const uint SIDE_OFFSET = 10;
+const uint SIDE_OUTERMOST = 11;
 const uint SLOT_PARTS = SIDES * SIDE_WORDS; // two words: which parts of the cell are covered
 const uint SLOT_CELL = SLOT_PARTS + 2; // cell, and above it the axis + 1; 0: no slot
 const uint SLOT_WORDS = SLOT_CELL + 1;
@@ -96,6 +97,35 @@ const float OFFSET_REACH = 1.5;
 // Offsets as integers of ten bits, for sums.
 uint storedOffset(float offset) {
     return uint(clamp(offset / OFFSET_REACH, -1.0, 1.0) * 511.0 + 512.5);
+}
+
+// What is outermost of a side in a quarter of its cell: where, five bits that grow outwards, 0 is nothing; and how much of the
+// quarter it covers, in sevenths.
+struct Outermost {
+    float offset; // along the axis from the cell's middle [cells]
+    float covers; // 0 to 1
+};
+
+// `covered`: of the quarter's 16 parts.
+uint packOutermost(float offset, uint side, int covered) {
+    uint level = uint(clamp(side == 0 ? offset : -offset, -0.5, 0.5) * 30.0 + 16.5);
+    return level << 3 | uint(min((covered + 1) / 2, 7));
+}
+
+Outermost outermostOf(uint word, uint side, uint quarter) {
+    uint w = word >> 8 * quarter & 255u;
+    float offset = (float(w >> 3) - 16.0) / 30.0;
+    return Outermost(side == 0 ? offset : -offset, float(w & 7u) / 7.0);
+}
+
+// Both of one, for four quarters: who lies farther out, or of the same level all. The order does not matter.
+uint outerOf(uint a, uint b) {
+    uint both = 0;
+    for (uint i = 0; i < 32; i += 8) {
+        uint x = a >> i & 255u, y = b >> i & 255u;
+        both |= (x >> 3 == y >> 3 ? x & 248u | min((x & 7u) + (y & 7u), 7u) : max(x, y)) << i;
+    }
+    return both;
 }
 
 float offsetOfSum(float sum, float weight) {

@@ -18,25 +18,47 @@ uniform sampler2DArrayShadow shadowCompare;
 uniform writeonly image3D injected;
 
 const float PI = 3.14159265359;
+// Surfaces that lie nearer to each other are one [cells]: the levels of what is outermost are as far apart.
+const float LAYER = 0.12;
 
-// Places on a slot's surfaces, one in each quarter of the cell that they cover, from the cell's middle [cells].
+// Places on a slot's surfaces in each quarter of the cell that they cover, from the cell's middle [cells]: on their mean, and as far
+// out as its outermost surface lies. Of two layers in one cell the outer one is lit, and the mean lies in its shadow.
 struct Taps {
     vec3 middle;
     vec3 places[4];
+    vec3 outer[4];
+    float share[4]; // of the outer place
     int count;
 };
 
-Taps tapsOf(uint base, uint axis) {
+Taps tapsOf(uint slot, uint side, uint base, uint axis) {
     uvec2 parts = partsOf(base);
+    uint outermost = voxelSlots.words[sideBase(slot, side) + SIDE_OUTERMOST];
+    float mean = planeOf(base, axis).offset;
     Taps taps;
     taps.count = 0;
     taps.middle = planeMiddle(base, axis);
-    for (int i = 0; i < 4; i++) {
-        uint columns = parts[i / 2] & 0x0f0f0f0fu << 4 * (i & 1);
-        if (columns != 0) taps.places[taps.count++] = onPlane(base, axis, middleOf(i < 2 ? uvec2(columns, 0u) : uvec2(0u, columns)));
+    for (uint i = 0; i < 4; i++) {
+        uvec2 quarter = quarterOf(parts, i);
+        if (quarter == uvec2(0)) continue;
+        Outermost o = outermostOf(outermost, side, i);
+        float lift = side == 0 ? o.offset - mean : mean - o.offset;
+        int k = taps.count++;
+        taps.places[k] = onPlane(base, axis, middleOf(quarter));
+        taps.outer[k] = taps.places[k] + (side == 0 ? lift : -lift) * axisVector(axis);
+        taps.share[k] = lift > LAYER ? o.covers : 0.0;
     }
-    if (taps.count == 0) taps.places[taps.count++] = taps.middle;
+    if (taps.count == 0) {
+        taps.share[0] = 0.0;
+        taps.places[taps.count++] = taps.middle;
+    }
     return taps;
+}
+
+float lookUp(Light light, vec3 p) {
+    int layer = shadowLayerOf(light, p);
+    vec3 q = shadowPosition(layer, p);
+    return texture(shadowCompare, vec4(q.xy, layer, q.z));
 }
 
 // Share of the surface around `center` that sees the light, each place moved off it a little.
@@ -49,10 +71,9 @@ float voxelVisibility(Light light, vec3 center, Taps taps, mat3 axes, vec3 n, ve
               + to_light * (n == vec3(0.0) ? cell : 0.5 * params.light_bias * cell);
     float sum = 0.0;
     for (int i = 0; i < taps.count; i++) {
-        vec3 p = base + axes * taps.places[i];
-        int layer = shadowLayerOf(light, p);
-        vec3 q = shadowPosition(layer, p);
-        sum += texture(shadowCompare, vec4(q.xy, layer, q.z));
+        float share = taps.share[i];
+        if (share < 1.0) sum += (1.0 - share) * lookUp(light, base + axes * taps.places[i]);
+        if (share > 0.0) sum += share * lookUp(light, base + axes * taps.outer[i]);
     }
     return sum / float(taps.count);
 }
@@ -93,7 +114,7 @@ void main() {
         uint side = i % SIDES, base = planeBase(voxelCounter.half_used, slot + i / SIDES);
         Side s = sideOfSlot(slot + i / SIDES, side);
         uint axis = uint(axisOfSlot(slot + i / SIDES));
-        vec3 radiance = radianceOf(s, lightWords(gatheredWord(base, side)), center, tapsOf(base, axis), axes);
+        vec3 radiance = radianceOf(s, lightWords(gatheredWord(base, side)), center, tapsOf(slot + i / SIDES, side, base, axis), axes);
         keepLight(radianceWord(base, side), radiance);
         for (int face = 0; face < 6; face++) {
             vec3 d = normalize(axes * mipDirection(face));

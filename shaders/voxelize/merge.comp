@@ -18,6 +18,22 @@ const uint SHARES = 1u << 16;
 
 #include "modules/merge.glsl"
 
+// Notes what lies outermost in each quarter. Mostly one surface is first and last, and the loop runs once.
+void noteOutermost(uint at, uint side, Covered covered) {
+    uint mine = 0;
+    for (uint i = 0; i < 4; i++) {
+        uvec2 quarter = quarterOf(covered.parts, i);
+        int count = bitCount(quarter.x) + bitCount(quarter.y);
+        if (count > 0) mine |= packOutermost(covered.offset, side, count) << 8 * i;
+    }
+    uint found = voxelSlots.words[at];
+    for (;;) {
+        uint seen = atomicCompSwap(voxelSlots.words[at], found, outerOf(found, mine));
+        if (seen == found) return;
+        found = seen;
+    }
+}
+
 void merge(uint base, vec3 color, vec3 normal, float offset, uint emission, uint weight) {
     mergeInto(base, color, normal, weight);
     atomicAdd(voxelSlots.words[base + SIDE_OFFSET], storedOffset(offset) * weight);
@@ -61,7 +77,9 @@ void main() {
         }
         uint slot = slotOf(found, axis), parts = slot * SLOT_WORDS + SLOT_PARTS;
         Covered covered = coveredBy(voxelTriangles.list[i], stored, axis, unpackOffset(fragment.z));
-        merge(sideBase(slot, sideOf(normal, axis)), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
+        uint side = sideOf(normal, axis);
+        merge(sideBase(slot, side), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
+        noteOutermost(sideBase(slot, side) + SIDE_OUTERMOST, side, covered);
         for (uint k = 0; k < 2; k++)
             if ((voxelSlots.words[parts + k] & covered.parts[k]) != covered.parts[k]) atomicOr(voxelSlots.words[parts + k], covered.parts[k]);
     }
