@@ -210,7 +210,7 @@ fn lamps(mesh: &Mesh, size: f32) -> Arc<Scene> {
     let mut scene = Scene::clone(&scene("emitters"));
     scene.instances.retain(|i| scene.meshes[i.mesh as usize].name == "room");
     let glowing = scene.materials.iter().position(|m| m.emission != Vec3::ZERO).unwrap() as u32;
-    let submeshes = vec![Submesh { material: glowing, ..mesh.submeshes[0].clone() }];
+    let submeshes = vec![Submesh { material: glowing, ..mesh.submeshes[0] }];
     scene.meshes.push(Mesh { submeshes, ..mesh.clone() });
     let mesh = scene.meshes.len() as u32 - 1;
     scene.instances.extend((0..24).map(|i| {
