@@ -18,7 +18,7 @@ uniform sampler2DArrayShadow shadowCompare;
 uniform writeonly image3D injected;
 
 const float PI = 3.14159265359;
-// Surfaces that lie nearer to each other are one [cells]: the levels of what is outermost are as far apart.
+// Surfaces that lie nearer to each other are one [cells].
 const float LAYER = 0.12;
 
 // Places on a slot's surfaces in each quarter of the cell that they cover, from the cell's middle [cells]: on their mean, and as far

@@ -76,10 +76,12 @@ void main() {
             continue;
         }
         uint slot = slotOf(found, axis), parts = slot * SLOT_WORDS + SLOT_PARTS;
-        Covered covered = coveredBy(voxelTriangles.list[i], stored, axis, unpackOffset(fragment.z));
+        uvec2 triangle = voxelTriangles.list[i];
+        Covered covered = coveredBy(triangle, stored, axis, unpackOffset(fragment.z));
         uint side = sideOf(normal, axis);
         merge(sideBase(slot, side), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
-        noteOutermost(sideBase(slot, side) + SIDE_OUTERMOST, side, covered);
+        // Of points and samples nobody knows where their plane passes the cell's middle.
+        if (triangle != NO_TRIANGLE) noteOutermost(sideBase(slot, side) + SIDE_OUTERMOST, side, covered);
         for (uint k = 0; k < 2; k++)
             if ((voxelSlots.words[parts + k] & covered.parts[k]) != covered.parts[k]) atomicOr(voxelSlots.words[parts + k], covered.parts[k]);
     }
