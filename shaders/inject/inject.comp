@@ -26,8 +26,9 @@ const float LAYER = 0.12;
 struct Taps {
     vec3 middle;
     vec3 places[4];
-    vec3 outer[4];
-    float share[4]; // of the outer place
+    float lift[4]; // of the outermost surface over the mean, along the axis [cells]
+    float share[4]; // of the outermost surface
+    vec3 outwards;
     int count;
 };
 
@@ -38,15 +39,15 @@ Taps tapsOf(uint slot, uint side, uint base, uint axis) {
     Taps taps;
     taps.count = 0;
     taps.middle = planeMiddle(base, axis);
+    taps.outwards = (side == 0 ? 1.0 : -1.0) * axisVector(axis);
     for (uint i = 0; i < 4; i++) {
         uvec2 quarter = quarterOf(parts, i);
         if (quarter == uvec2(0)) continue;
         Outermost o = outermostOf(outermost, side, i);
-        float lift = side == 0 ? o.offset - mean : mean - o.offset;
         int k = taps.count++;
         taps.places[k] = onPlane(base, axis, middleOf(quarter));
-        taps.outer[k] = taps.places[k] + (side == 0 ? lift : -lift) * axisVector(axis);
-        taps.share[k] = lift > LAYER ? o.covers : 0.0;
+        taps.lift[k] = side == 0 ? o.offset - mean : mean - o.offset;
+        taps.share[k] = taps.lift[k] > LAYER ? o.covers : 0.0;
     }
     if (taps.count == 0) {
         taps.share[0] = 0.0;
@@ -73,7 +74,7 @@ float voxelVisibility(Light light, vec3 center, Taps taps, mat3 axes, vec3 n, ve
     for (int i = 0; i < taps.count; i++) {
         float share = taps.share[i];
         if (share < 1.0) sum += (1.0 - share) * lookUp(light, base + axes * taps.places[i]);
-        if (share > 0.0) sum += share * lookUp(light, base + axes * taps.outer[i]);
+        if (share > 0.0) sum += share * lookUp(light, base + axes * (taps.places[i] + taps.lift[i] * taps.outwards));
     }
     return sum / float(taps.count);
 }

@@ -10,11 +10,9 @@
 
 layout(local_size_x = 1) in;
 
-// Row i of a matrix as a direction and a length.
-vec4 axisOf(mat4 m, int i) {
-    vec3 row = vec3(m[0][i], m[1][i], m[2][i]);
-    float scale = length(row);
-    return vec4(row / scale, scale);
+// The direction that row i of a matrix measures along.
+vec3 directionOf(mat4 m, int i) {
+    return normalize(vec3(m[0][i], m[1][i], m[2][i]));
 }
 
 // A cube of this width around the camera, along the axes of a directional light's view. It moves by whole texels, so that what
@@ -23,7 +21,7 @@ mat4 around(mat4 whole, float width) {
     float texel = width / float(params.shadow_dim);
     mat4 m = mat4(1.0);
     for (int i = 0; i < 3; i++) {
-        vec3 axis = axisOf(whole, i).xyz;
+        vec3 axis = directionOf(whole, i);
         float middle = floor(dot(axis, camera.position) / texel) * texel;
         float scale = (i < 2 ? 2.0 : 1.0) / width; // x, y in [-1,1], depth in [0,1]
         m[0][i] = axis.x * scale;
