@@ -33,15 +33,15 @@ void main() {
     int cascade = cascadeOf(cell);
     VolumeMap map = placed.maps[cascade];
 
-    // A part of the voxels each frame; the others keep what they have.
-    uint frames = uint(params.bounce_frames);
-    if (pattern % frames != camera.frame % frames) {
-        uint before = gatheredBefore(volumeToWorld(map, cellCentre(cell)), cascade, axis, side);
-        if (before != 0) {
-            keepLight(gatheredWord(base, side), lightWords(before));
-            return;
-        }
+    // A part of the voxels each frame, and the others keep what they have; but all of them in every frame at first, so that light
+    // goes round before the first pictures are seen.
+    uint frames = uint(params.bounce_frames), before = gatheredBefore(volumeToWorld(map, cellCentre(cell)), cascade, axis, side);
+    float times = before == 0 ? 0.0 : timesGathered(before);
+    if (times >= float(frames) && pattern % frames != camera.frame % frames) {
+        keepLight(gatheredWord(base, side), lightWords(before), times);
+        return;
     }
     Side s = sideOfSlot(slot, side);
-    if (s.normal != vec3(0.0)) keepLight(gatheredWord(base, side), gatherAt(slotPosition(map, cell, base, axis), s.normal, pattern));
+    if (s.normal == vec3(0.0)) return;
+    keepLight(gatheredWord(base, side), gatherAt(slotPosition(map, cell, base, axis), s.normal, pattern), min(times + 1.0, float(frames)));
 }

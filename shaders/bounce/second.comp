@@ -18,5 +18,5 @@ void main() {
     Side s = sideOfSlot(slot, side);
     if (s.normal == vec3(0.0)) return;
     vec3 p = slotPosition(map, cell, base, uint(axisOfSlot(slot)));
-    keepLight(gatheredWord(base, side), gatherAt(p, s.normal, patternOf(uvec3(cell))));
+    keepLight(gatheredWord(base, side), gatherAt(p, s.normal, patternOf(uvec3(cell))), 1.0);
 }

@@ -60,10 +60,15 @@ vec3 lightWords(uint word) {
     return vec3(unpackHalf2x16(voxelPlanes.words[word]), unpackHalf2x16(voxelPlanes.words[word + 1]).x);
 }
 
-void keepLight(uint word, vec3 light) {
+// times: how often it was gathered.
+void keepLight(uint word, vec3 light, float times) {
     light = min(light, 65504.0);
     voxelPlanes.words[word] = packHalf2x16(light.rg);
-    voxelPlanes.words[word + 1] = packHalf2x16(vec2(light.b, 0.0));
+    voxelPlanes.words[word + 1] = packHalf2x16(vec2(light.b, times));
+}
+
+float timesGathered(uint word) {
+    return unpackHalf2x16(voxelPlanes.words[word + 1]).y;
 }
 
 uint radianceWord(uint base, uint side) {

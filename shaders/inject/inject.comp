@@ -116,7 +116,7 @@ void main() {
         Side s = sideOfSlot(slot + i / SIDES, side);
         uint axis = uint(axisOfSlot(slot + i / SIDES));
         vec3 radiance = radianceOf(s, lightWords(gatheredWord(base, side)), center, tapsOf(slot + i / SIDES, side, base, axis), axes);
-        keepLight(radianceWord(base, side), radiance);
+        keepLight(radianceWord(base, side), radiance, 0.0);
         for (int face = 0; face < 6; face++) {
             vec3 d = normalize(axes * mipDirection(face));
             float area = s.count * meanCosine(s, -d);

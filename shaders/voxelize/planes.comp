@@ -32,5 +32,5 @@ void main() {
     uint base = planeBase(voxelCounter.half_used, slot);
     keepPlane(base, in_cells, axis, offsetOfSum(offset, count), sides);
     for (uint k = 0; k < 2; k++) voxelPlanes.words[base + 1 + k] = voxelSlots.words[slot * SLOT_WORDS + SLOT_PARTS + k];
-    for (uint side = 0; side < SIDES; side++) keepLight(gatheredWord(base, side), vec3(0.0));
+    for (uint side = 0; side < SIDES; side++) keepLight(gatheredWord(base, side), vec3(0.0), 0.0);
 }
