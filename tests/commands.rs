@@ -157,6 +157,23 @@ fn the_same_command_gives_the_same_bytes() {
     }
 }
 
+/// Light that goes from voxel to voxel takes frames: what nobody counts is rendered until it is there.
+#[test]
+fn a_picture_is_of_settled_light() {
+    let home = tempfile::tempdir().unwrap();
+    let path = |name: &str| home.path().join(name);
+    let mean = |name: &str| {
+        let (_, _, texels) = read_exr(&path(name));
+        texels.iter().map(|t| f64::from(t[0] + t[1] + t[2])).sum::<f64>() / texels.len() as f64
+    };
+    succeeds(&mut render("cornell", &path("settled.exr")));
+    succeeds(render("cornell", &path("first.exr")).args(["--frames", "1"]));
+    succeeds(render("cornell", &path("late.exr")).args(["--frames", "100"]));
+    let (settled, first, late) = (mean("settled.exr"), mean("first.exr"), mean("late.exr"));
+    println!("first frame {:.4}, settled {:.4} of the light after 100 frames", first / late, settled / late);
+    assert!(first < 0.97 * late && (settled / late - 1.0).abs() < 0.01);
+}
+
 #[test]
 fn resources_come_as_they_are() {
     let out = Out::new();

@@ -19,12 +19,12 @@ pub struct RenderArgs {
     /// Time from frame to frame, s.
     #[arg(long, default_value_t = 0.0)]
     step: f64,
-    /// Frames to run and time.
-    #[arg(long, default_value_t = 1)]
-    frames: usize,
-    /// Frames to run before timing starts.
-    #[arg(long, default_value_t = 0)]
-    warmup: usize,
+    /// Frames to run and time; 1 when absent.
+    #[arg(long)]
+    frames: Option<usize>,
+    /// Frames to run before timing starts. Where neither is given: as many as a graph that gathers over frames takes to settle.
+    #[arg(long)]
+    warmup: Option<usize>,
     /// Move the camera along this path (configs/paths) by each frame's time.
     #[arg(long, value_name = "FILE")]
     path: Option<PathBuf>,
@@ -50,7 +50,8 @@ pub struct RenderArgs {
 /// Renders.
 pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
-    adapt::check_frames(args.frames, args.warmup, args.step)?;
+    let (frames, given) = (args.frames.unwrap_or(1), args.warmup.unwrap_or(0));
+    adapt::check_frames(frames, given, args.step)?;
     let exr = match &args.output {
         Some(output) => writable(output, &["png", "exr"])? == "exr",
         None => false,
@@ -84,13 +85,15 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         eprintln!("{warning}");
     }
     let mut times = Vec::new();
-    let bar = indicatif::ProgressBar::new((args.warmup + args.frames) as u64);
-    for number in 0..args.warmup + args.frames {
+    let alone = args.frames.is_none() && args.sequence.is_none() && args.path.is_none() && args.step == 0.0;
+    let warmup = args.warmup.unwrap_or(if alone { session.settling_frames() as usize - 1 } else { 0 });
+    let bar = indicatif::ProgressBar::new((warmup + frames) as u64);
+    for number in 0..warmup + frames {
         if let Some(path) = &path {
             session.place_camera(&path.at(experiment.time + number as f64 * args.step));
         }
         times.extend(session.frame(args.step)?);
-        if let (Some((folder, shown)), Some(frame)) = (&frames_of, number.checked_sub(args.warmup)) {
+        if let (Some((folder, shown)), Some(frame)) = (&frames_of, number.checked_sub(warmup)) {
             times.extend(session.finish()?);
             write_texture(&mut session, &folder.join(format!("frame-{frame:05}.png")), shown)?;
         }
@@ -98,7 +101,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     }
     times.extend(session.finish()?);
     bar.finish_and_clear();
-    let times: Vec<FrameTimes> = times.split_off(times.len().saturating_sub(args.frames));
+    let times: Vec<FrameTimes> = times.split_off(times.len().saturating_sub(frames));
     let failed = session.failed_checks()?;
     for message in &failed {
         eprintln!("warning: {message}");
@@ -106,10 +109,10 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     if let Some((path, shown)) = &shown {
         write_texture(&mut session, path, shown)?;
     }
-    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, args.warmup, failed);
+    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, warmup, failed);
     say_part!("{}", stats::table(&stats));
     if let Some((folder, _)) = &frames_of {
-        say!("wrote {} frames to {}", args.frames, folder.display());
+        say!("wrote {} frames to {}", frames, folder.display());
     }
     if let Some((path, _)) = &shown {
         say!("wrote {}", path.display());

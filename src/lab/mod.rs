@@ -26,6 +26,7 @@ use crate::graph::run::{FrameTimes, Program};
 use crate::graph::runs::runs;
 use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::table::Table;
+use crate::graph::usage::Res;
 use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
 use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
@@ -259,7 +260,17 @@ pub fn no_texture(graph: &Graph, name: &str) -> LabError {
     LabError::Request(format!("no texture '{name}'{}", hint.map_or(String::new(), |h| format!(" ({h})"))))
 }
 
+/// Frames until what graphs gather over frames has settled, near enough to be looked at.
+const SETTLE: u32 = 48;
+
 impl Session {
+    /// Frames until a picture has settled: 1 where no frame uses what the frame before left.
+    pub fn settling_frames(&self) -> u32 {
+        let history =
+            self.program.plan.steps.iter().flat_map(|s| &s.uses).any(|u| matches!(u.res, Res::Texture(_, true)));
+        if history { SETTLE } else { 1 }
+    }
+
     /// Parts for the session that will replace this one; this one runs on until then.
     pub fn reusable_parts(&self) -> ReusableParts {
         ReusableParts {

@@ -3,7 +3,7 @@
 use super::super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
 use super::super::report::Report;
 use super::super::save;
-use super::{Run, SETTLE, has_history};
+use super::Run;
 
 impl Run<'_> {
     /// Sends what a side shows to the error worker. A picture that is not there yet is asked for again.
@@ -27,7 +27,7 @@ impl Run<'_> {
             experiment: save::still(&self.desired, desired, "error", self.clock.now, scene),
             scene: scene.clone(),
             lights: self.desired.lights.clone(),
-            frames: if has_history(session) { SETTLE } else { 1 },
+            frames: session.settling_frames(),
         };
         let _ = self.error_requests.send(request);
     }
@@ -36,8 +36,7 @@ impl Run<'_> {
     pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
         let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone()) else { return };
         let experiment = save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
-        let settle = self.sides[number].session.as_ref().is_some_and(|s| has_history(s));
-        let frames = if settle { SETTLE as usize } else { 1 };
+        let frames = self.sides[number].session.as_ref().map_or(1, |s| s.settling_frames()) as usize;
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");
         std::thread::spawn(move || {

@@ -13,7 +13,6 @@ use super::builder::{self, Done, Job, Key};
 use super::error_worker::{self, ErrorQuery, ErrorRequest};
 use super::report::{DeviceReport, Report};
 use super::request::{InspectTarget, RenderRequest};
-use crate::graph::usage::Res;
 use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
@@ -358,7 +357,7 @@ impl Run<'_> {
     /// Asks for frames: as many as it takes until graphs with history have settled.
     fn request_frames(&mut self, least: u32) {
         for side in &mut self.sides {
-            let settle = if side.session.as_ref().is_some_and(|s| has_history(s)) { SETTLE } else { 1 };
+            let settle = side.session.as_ref().map_or(1, |s| s.settling_frames());
             side.frames_left = side.frames_left.max(least.max(settle));
         }
     }
@@ -369,11 +368,3 @@ const LONG: f64 = 4.0;
 
 /// How long frames wait for a build.
 const PATIENCE: Duration = Duration::from_millis(300);
-
-/// Frames until what is gathered over time has settled.
-const SETTLE: u32 = 48;
-
-/// Whether a frame uses what the frame before left.
-fn has_history(session: &Session) -> bool {
-    session.program.plan.steps.iter().flat_map(|s| &s.uses).any(|u| matches!(u.res, Res::Texture(_, true)))
-}
