@@ -24,7 +24,7 @@ demo: ## Render the built-in atrium, lit by voxel cones, on any Vulkan device
 	@scripts/setup.sh build run
 	@cargo build --release --locked
 	@$(CONELAB) devices
-	@$(CONELAB) render configs/default.ron --scene atrium --size $(SIZE) --warmup 15 $(ARGS) \
+	@$(CONELAB) render configs/default.ron --scene atrium --size $(SIZE) $(ARGS) \
 		--json $(OUT)/stats.json -o $(OUT)/atrium.png
 	@$(CONELAB) render configs/default.ron --scene atrium --size $(SIZE) $(ARGS) \
 		--set view=voxels --set voxel_view=color -o $(OUT)/voxels.png

@@ -159,14 +159,14 @@ fn experiments_are_compared_by_part_with_each_other_or_with_the_cached_reference
     // With one: both against it.
     run(&["reference", "configs/default.ron", "--spp", "128"]);
     let said = run(&pair);
-    assert!(said.contains("reference: path traced, 128 samples a pixel, bounces 1"), "{said}");
+    assert!(said.contains("reference: path traced, 128 samples a pixel, bounces 64"), "{said}");
     let both = json(&home.path().join("c.json"));
     let total = &both["parts"][0];
     assert!(total["noise"].as_f64().unwrap() > 0.0);
     let energy = |i: usize| score(&both, "frame", i)["energy_ratio"].as_f64().unwrap();
     // Voxels as coarse as these are too bright (docs/trials.md).
     assert!((energy(0) - 1.0).abs() < 0.2, "default: {}", energy(0));
-    assert!(energy(1) > 1.4, "the thesis is known to be too bright: {}", energy(1));
+    assert!(energy(1) > 1.05, "the thesis is known to be too bright: {}", energy(1));
     assert_eq!(total["regions"][0]["better"]["energy_ratio"], "A");
     assert!(total["regions"].as_array().unwrap().iter().any(|r| r["region"] == "concave corners"));
 }

@@ -51,9 +51,9 @@ fn render(
     folder: &Path,
     experiment: &Experiment,
     scene: Arc<Scene>,
-    (frames, step): (usize, f64),
+    (frames, step): (Option<usize>, f64),
     images: impl FnOnce(&Graph) -> Result<Vec<Image>, LabError>,
-) -> Result<(Vec<(Image, Texels)>, Stats), LabError> {
+) -> Result<(Vec<(Image, Texels)>, usize, Stats), LabError> {
     let home = Workspace { root: folder.join(SOURCES), cache: lab.home.cache.clone() };
     let lab = Lab { home, gpu: lab.gpu.clone() };
     let mut chosen = Vec::new();
@@ -61,6 +61,7 @@ fn render(
         chosen = images(graph)?;
         Ok(chosen.iter().map(|i| i.texture.clone()).collect())
     })?;
+    let frames = frames.unwrap_or(session.settling_frames());
     let mut times = Vec::new();
     for _ in 0..frames {
         times.extend(session.frame(step)?);
@@ -72,5 +73,5 @@ fn render(
         let texels = session.texels(&image.texture, image.mip, image.layer)?;
         out.push((image, texels));
     }
-    Ok((out, stats::collect(&lab.gpu.info, &experiment.name, &session, &times, 0, warnings)))
+    Ok((out, frames, stats::collect(&lab.gpu.info, &experiment.name, &session, &times, 0, warnings)))
 }

@@ -81,8 +81,8 @@ pub fn replay(
             result.changes.push(format!("{what}: was {was}, is {is}"));
         }
     }
-    let frames = (manifest.frames, manifest.step);
-    let (images, _) = render(lab, folder, &experiment, scene, frames, |_| Ok(manifest.images.clone()))?;
+    let frames = (Some(manifest.frames), manifest.step);
+    let (images, ..) = render(lab, folder, &experiment, scene, frames, |_| Ok(manifest.images.clone()))?;
     for (image, texels) in &images {
         result.images += 1;
         result.texels += texels.extent.iter().product::<u32>() as usize;

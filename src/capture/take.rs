@@ -32,15 +32,15 @@ pub struct Resource {
 pub struct What {
     /// Further textures.
     pub resources: Vec<Resource>,
-    /// Frames to run, at least 1; methods that gather over time need more.
-    pub frames: usize,
+    /// Frames to run, at least 1; as many as the graph takes to settle when `None`.
+    pub frames: Option<usize>,
     /// Time from frame to frame, s.
     pub step: f64,
 }
 
 impl Default for What {
     fn default() -> What {
-        What { resources: Vec::new(), frames: 1, step: 0.0 }
+        What { resources: Vec::new(), frames: None, step: 0.0 }
     }
 }
 
@@ -65,7 +65,7 @@ pub fn take(
     name: &str,
 ) -> Result<PathBuf, LabError> {
     let name = checked_name(name)?;
-    check_frames(what.frames, what.step).map_err(LabError::Request)?;
+    check_frames(what.frames.unwrap_or(1), what.step).map_err(LabError::Request)?;
     let target = folder.join(&name);
     if target.exists() {
         return Err(exists(&target));
@@ -90,7 +90,7 @@ pub fn take(
     let scene = resolved.adapted(scene)?;
     let sha256 = scene_hash(&scene);
     let scene_name = scene.name.clone();
-    let (images, stats) =
+    let (images, frames, stats) =
         render(lab, path, &resolved, scene, (what.frames, what.step), |graph| images_of(graph, &what.resources))?;
     for (image, texels) in &images {
         let file = path.join(&image.file);
@@ -114,7 +114,7 @@ pub fn take(
         graph: graph_file,
         scene: SceneRecord { spec: experiment.scene.clone(), name: scene_name, sha256 },
         size: [experiment.size.0, experiment.size.1],
-        frames: what.frames,
+        frames,
         step: what.step,
         images: images.into_iter().map(|i| i.0).collect(),
         files,

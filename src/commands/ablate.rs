@@ -8,6 +8,7 @@ use super::sweep::run_with_bar;
 use crate::ablation::{changes, csv, markdown, rows};
 use crate::lab::{LabError, Workspace, params_of};
 use crate::measure::Frames;
+use crate::reference::ALL_BOUNCES;
 use crate::sweep::{Options, Shard, Sweep, write_file};
 use clap::Args;
 use std::path::PathBuf;
@@ -39,7 +40,7 @@ pub struct AblateArgs {
     #[arg(long, default_value_t = 256)]
     spp: u64,
     /// Bounces of the references.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
     /// Frames that are timed, 50 when absent; of each step 1: methods that gather over time need more.
     #[arg(long)]

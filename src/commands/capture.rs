@@ -19,9 +19,9 @@ pub struct CaptureArgs {
     /// Keep this texture too; may be given many times.
     #[arg(long, value_name = "NAME[:MIP[:LAYER]]")]
     resource: Vec<String>,
-    /// Frames to run; the last is kept.
-    #[arg(long, default_value_t = 1)]
-    frames: usize,
+    /// Frames to run, of which the last is kept; as many as the graph takes to settle when absent.
+    #[arg(long)]
+    frames: Option<usize>,
     /// Time from frame to frame, s.
     #[arg(long, default_value_t = 0.0)]
     step: f64,
@@ -32,7 +32,7 @@ pub struct CaptureArgs {
 /// Takes a capture.
 pub fn run(args: &CaptureArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
-    adapt::check_frames(args.frames, 0, args.step)?;
+    adapt::check_frames(args.frames.unwrap_or(1), 0, args.step)?;
     let resources = args.resource.iter().map(|text| {
         let (name, mip, layer) = parse_resource(text)?;
         Ok(Resource { name, mip, layer })

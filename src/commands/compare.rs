@@ -10,6 +10,7 @@ use crate::metrics::MetricError;
 use crate::metrics::maps::MapFile;
 use crate::metrics::region::Region;
 use crate::picture;
+use crate::reference::ALL_BOUNCES;
 use clap::Args;
 use sides::Sources;
 use std::path::{Path, PathBuf};
@@ -25,7 +26,7 @@ pub struct CompareArgs {
     /// experiment and has one, or `none`.
     #[arg(long, default_value = "auto")]
     reference: PathBuf,
-    /// Bounces of the cached reference: 1, which is what the method gathers, unless given; then it must be there.
+    /// Bounces of the cached reference: all that matter unless given; then it must be there.
     #[arg(long)]
     bounces: Option<u32>,
     /// Compare only this part (total, direct, diffuse, specular, occlusion); may be given many times.
@@ -34,9 +35,9 @@ pub struct CompareArgs {
     /// Score the light pixels of this picture apart; may be given many times.
     #[arg(long, value_name = "NAME=FILE")]
     mask: Vec<String>,
-    /// Frames of an experiment to run; the last is compared.
-    #[arg(long, default_value_t = 1)]
-    frames: usize,
+    /// Frames of an experiment to run, of which the last is compared; as many as its graph takes to settle when absent.
+    #[arg(long)]
+    frames: Option<usize>,
     /// Write everything to this JSON file.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -51,7 +52,7 @@ pub struct CompareArgs {
 
 /// Compares.
 pub fn run(args: &CompareArgs) -> Result<(), LabError> {
-    super::adapt::check_frames(args.frames, 0, 0.0)?;
+    super::adapt::check_frames(args.frames.unwrap_or(1), 0, 0.0)?;
     if let Some(json) = &args.json {
         writable(json, &["json"])?;
     }
@@ -61,7 +62,9 @@ pub fn run(args: &CompareArgs) -> Result<(), LabError> {
     let b = args.b.as_ref().map(|b| sources.side(b, true)).transpose()?;
     let given = match args.reference.to_str() {
         // Beside a picture from elsewhere, an experiment is what it is compared with.
-        Some("auto") if args.a.extension().is_some_and(|e| e == "ron") => sources.cached(args.bounces.unwrap_or(1))?,
+        Some("auto") if args.a.extension().is_some_and(|e| e == "ron") => {
+            sources.cached(args.bounces.unwrap_or(ALL_BOUNCES))?
+        }
         Some("auto") => None,
         Some("none") => None,
         _ => Some(sources.side(&args.reference, false)?),

@@ -6,7 +6,7 @@ use crate::experiment::Experiment;
 use crate::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
 use crate::lab::{Lab, LabError, Workspace, params_of};
 use crate::measure::Frames;
-use crate::reference;
+use crate::reference::{self, ALL_BOUNCES};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -47,7 +47,7 @@ pub struct FitArgs {
     #[arg(long, default_value_t = 1024)]
     spp: u64,
     /// Turns of the reference's paths.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
     /// The experiment to write; captures/fit/NAME.ron when absent. What was tried goes beside it, as JSON.
     #[arg(short, long)]

@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use crate::lab::{Lab, LabError, Workspace};
-use crate::reference::{Gathered, Goal, Reference, gather};
+use crate::reference::{ALL_BOUNCES, Gathered, Goal, Reference, gather};
 use clap::Args;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -21,8 +21,8 @@ pub struct ReferenceArgs {
     /// most this.
     #[arg(long, value_name = "RELMSE")]
     until: Option<f64>,
-    /// Turns of a path behind the first surface; 1 is what voxel cones gather.
-    #[arg(long, default_value_t = 1)]
+    /// Turns of a path behind the first surface: all that matter when absent; 1 is what cones gather of one bounce.
+    #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
     /// Write the mean of a part to this file too (.exr).
     #[arg(short, long)]

@@ -261,11 +261,11 @@ pub fn no_texture(graph: &Graph, name: &str) -> LabError {
 }
 
 /// Frames until what graphs gather over frames has settled, near enough to be looked at.
-const SETTLE: u32 = 48;
+const SETTLE: usize = 32;
 
 impl Session {
     /// Frames until a picture has settled: 1 where no frame uses what the frame before left.
-    pub fn settling_frames(&self) -> u32 {
+    pub fn settling_frames(&self) -> usize {
         let history =
             self.program.plan.steps.iter().flat_map(|s| &s.uses).any(|u| matches!(u.res, Res::Texture(_, true)));
         if history { SETTLE } else { 1 }

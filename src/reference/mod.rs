@@ -16,6 +16,9 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+/// Turns of a path that hold all light that matters: what methods are compared with where nothing else is asked for.
+pub const ALL_BOUNCES: u32 = 64;
+
 /// A reference picture with its parts.
 #[derive(Clone, Debug)]
 pub struct Reference {

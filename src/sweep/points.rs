@@ -6,12 +6,13 @@ use crate::experiment::Experiment;
 use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::LabError;
 use crate::measure::Frames;
+use crate::reference::ALL_BOUNCES;
 use std::path::PathBuf;
 
 /// Most points of a sweep.
 pub const MAX_POINTS: usize = 20_000;
 /// Light that a lit surface reflects once more: what most methods gather.
-pub(super) const DEFAULT_BOUNCES: [u32; 1] = [1];
+pub(super) const DEFAULT_BOUNCES: [u32; 1] = [ALL_BOUNCES];
 
 /// What [`Sweep::one_at_a_time`] varies: the scene,
 pub const SCENE: &str = "scene";

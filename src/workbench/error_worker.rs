@@ -50,7 +50,7 @@ pub struct ErrorRequest {
     /// Lights and sky that differ from the scene's own.
     pub lights: Option<(Vec<Light>, Vec3)>,
     /// Frames until the picture has settled.
-    pub frames: u32,
+    pub frames: usize,
 }
 
 /// Answer to an [`ErrorRequest`].

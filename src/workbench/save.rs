@@ -77,10 +77,9 @@ pub fn take(
     scene: Arc<Scene>,
     folder: &Path,
     resources: Vec<String>,
-    frames: usize,
 ) -> Result<PathBuf, LabError> {
     let resources = resources.into_iter().map(|name| Resource { name, mip: 0, layer: 0 }).collect();
-    let what = What { resources, frames, step: 0.0 };
+    let what = What { resources, ..What::default() };
     let name = capture::free_name(folder, &experiment.name);
     capture::take(lab, experiment, scene, &what, folder, &name)
 }

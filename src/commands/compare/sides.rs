@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(super) struct Sources<'a> {
     changes: &'a Changes,
     device: &'a DeviceArgs,
-    frames: usize,
+    frames: Option<usize>,
     lab: Option<Lab>,
     scenes: BTreeMap<String, Arc<Scene>>,
     /// The experiments that were rendered, with their scenes.
@@ -24,7 +24,7 @@ pub(super) struct Sources<'a> {
 }
 
 impl<'a> Sources<'a> {
-    pub(super) fn new(changes: &'a Changes, device: &'a DeviceArgs, frames: usize) -> Sources<'a> {
+    pub(super) fn new(changes: &'a Changes, device: &'a DeviceArgs, frames: Option<usize>) -> Sources<'a> {
         Sources { changes, device, frames, lab: None, scenes: BTreeMap::new(), rendered: Vec::new() }
     }
 
@@ -95,7 +95,7 @@ impl<'a> Sources<'a> {
         for warning in warnings {
             eprintln!("{warning}");
         }
-        for _ in 0..self.frames {
+        for _ in 0..self.frames.unwrap_or(session.settling_frames()) {
             session.frame(0.0)?;
         }
         session.finish()?;

@@ -1,6 +1,7 @@
 //! What of a sweep is charted.
 
 use super::folder::Folder;
+use crate::reference::ALL_BOUNCES;
 use crate::report::{Data, Scored, pareto};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -34,7 +35,7 @@ impl Choice {
             .split_once(", ")
             .and_then(|(part, bounces)| Some((part.to_string(), bounces.strip_suffix(" bounces")?.parse().ok()?)));
         let first = data.and_then(|d| *d.bounces.get(self.subject)?);
-        named.unwrap_or_else(|| (self.part.clone(), first.unwrap_or(1)))
+        named.unwrap_or_else(|| (self.part.clone(), first.unwrap_or(ALL_BOUNCES)))
     }
 }
 

@@ -36,11 +36,10 @@ impl Run<'_> {
     pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
         let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone()) else { return };
         let experiment = save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
-        let frames = self.sides[number].session.as_ref().map_or(1, |s| s.settling_frames()) as usize;
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");
         std::thread::spawn(move || {
-            let result = save::take(&lab, &experiment, scene, &folder, resources, frames);
+            let result = save::take(&lab, &experiment, scene, &folder, resources);
             out.send(Report::Captured(result.map_err(|e| e.to_string())));
         });
     }

@@ -357,7 +357,7 @@ impl Run<'_> {
     /// Asks for frames: as many as it takes until graphs with history have settled.
     fn request_frames(&mut self, least: u32) {
         for side in &mut self.sides {
-            let settle = side.session.as_ref().map_or(1, |s| s.settling_frames());
+            let settle = side.session.as_ref().map_or(1, |s| s.settling_frames()) as u32;
             side.frames_left = side.frames_left.max(least.max(settle));
         }
     }
