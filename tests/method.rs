@@ -92,6 +92,25 @@ fn bounces_fill_the_furnace_and_rest() {
     assert!(wrong.is_empty(), "radiance outside 2 +- 0.04, or falling: {wrong:?}");
 }
 
+/// In its first frames every voxel gathers, so that light has gone round as often as there were frames, everywhere alike.
+#[test]
+fn the_first_frames_have_no_voxels_that_wait() {
+    let lab = lab(root());
+    let settings = [("voxel_dim", "32"), ("reflectance", "base"), ("gather_frames", "1"), QUICK];
+    let mut session = prepare(&lab, &experiment("furnace", (64, 48), &settings), &["diffuseIndirect"]);
+    for frame in 0..8 {
+        session.frame(0.0).unwrap();
+        session.finish().unwrap();
+        let light: Vec<f64> =
+            floats(&mut session, "diffuseIndirect", 0).iter().map(|t| f64::from(t[0] + t[1] + t[2]) / 3.0).collect();
+        let expected = 1.0 - 0.5f64.powi(frame + 1); // 1/2 + 1/4 + ...
+        let [least, most] = [f64::min, f64::max].map(|f| light.iter().copied().reduce(f).unwrap());
+        println!("frame {frame}: {least:.4} to {most:.4} of {expected:.4}");
+        assert!(least > 0.97 * expected && most < 1.03 * expected, "frame {frame}: {least} to {most}, not {expected}");
+    }
+    assert_clean(&lab);
+}
+
 #[test]
 fn a_picture_stores_one_image_and_each_is_the_same_alone() {
     let lab = lab(root());
@@ -296,6 +315,23 @@ fn every_view_shows_something() {
         let mut session = frames(&lab, &experiment(&workshop(), (64, 48), &settings), &["display"], 1);
         assert_picture(&floats(&mut session, "display", 0), &what);
     }
+}
+
+/// A camera nearer to a wall than a voxel stands in one of the cubes, and looks out of it.
+#[test]
+fn cubes_are_seen_from_within_one() {
+    let lab = lab(root());
+    let settings = [("voxel_dim", "16"), ("view", "voxels"), QUICK];
+    let mut experiment = experiment("cornell", (64, 48), &settings);
+    let (low, high) = scene("cornell").bounds();
+    let middle = 0.5 * (low + high);
+    let eye = Vec3::new(low.x + 0.002 * (high.x - low.x), middle.y, middle.z);
+    experiment.camera = CameraChoice::Placed(PlacedCamera::new(eye.into(), middle.into(), 60.0));
+    let texels = floats(&mut frames(&lab, &experiment, &["voxelView"], 1), "voxelView", 0);
+    let colours: BTreeSet<[u32; 3]> = texels.iter().map(|t| [t[0], t[1], t[2]].map(f32::to_bits)).collect();
+    println!("{} colours", colours.len());
+    // One cube has as many as five, by its faces.
+    assert!(colours.len() > 8, "nothing but {colours:?}");
 }
 
 #[test]

@@ -200,7 +200,7 @@ fn resolution() {
 fn walls() {
     let lab = lab(root());
     let mut rows = Vec::new();
-    for (voxels, thickness) in [(1, 0.1), (2, 0.2), (4, 0.4)] {
+    for (voxels, thickness) in [(0.3, 0.03), (1.0, 0.1), (2.0, 0.2), (4.0, 0.4)] {
         for degrees in [0, 20, 45] {
             let mut list = sides("wall", [-2.0, -1.0, -1.0], [2.0, 1.0, 1.0], true);
             list.extend(sides("wall", [-0.5 * thickness, -1.0, -1.0], [0.5 * thickness, 1.0, 1.0], false));

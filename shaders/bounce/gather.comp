@@ -43,5 +43,5 @@ void main() {
     }
     Side s = sideOfSlot(slot, side);
     if (s.normal == vec3(0.0)) return;
-    keepLight(gatheredWord(base, side), gatherAt(slotPosition(map, cell, base, axis), s.normal, pattern), min(times + 1.0, float(frames)));
+    keepLight(gatheredWord(base, side), gatherAt(slotPosition(map, cell, base, side, axis), s.normal, pattern), min(times + 1.0, float(frames)));
 }

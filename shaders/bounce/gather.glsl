@@ -25,10 +25,10 @@ vec3 gatherAt(vec3 p, vec3 n, uint pattern) {
     return sum / float(params.bounce_cones);
 }
 
-// Where the surfaces of a slot are.
-vec3 slotPosition(VolumeMap map, ivec3 cell, uint base, uint axis) {
+// Where the surfaces of a side of a slot are.
+vec3 slotPosition(VolumeMap map, ivec3 cell, uint base, uint side, uint axis) {
     vec3 center = volumeToWorld(map, cellCentre(cell));
-    return center + cellAxes(map, center) * planeMiddle(base, axis);
+    return center + cellAxes(map, center) * planeMiddle(base, side, axis);
 }
 
 #endif

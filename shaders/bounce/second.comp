@@ -17,6 +17,6 @@ void main() {
     VolumeMap map = volume.maps[cascadeOf(cell)];
     Side s = sideOfSlot(slot, side);
     if (s.normal == vec3(0.0)) return;
-    vec3 p = slotPosition(map, cell, base, uint(axisOfSlot(slot)));
+    vec3 p = slotPosition(map, cell, base, side, uint(axisOfSlot(slot)));
     keepLight(gatheredWord(base, side), gatherAt(p, s.normal, patternOf(uvec3(cell))), 1.0);
 }

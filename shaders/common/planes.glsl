@@ -1,4 +1,4 @@
-// What rays need of a slot: its surfaces as one plane, in cells, and the radiance that leaves each side; beside them what its
+// What rays need of a slot: the surfaces of each side as a plane, in cells, and the radiance that leaves it; beside them what its
 // cones have gathered. A few words, because rays read many. As the list of cells, this frame's in one half of the buffer and
 // last frame's in the other.
 #ifndef PLANES_GLSL
@@ -8,12 +8,11 @@
 
 layout(std430) buffer VoxelPlanes { uint words[]; } voxelPlanes;
 
-const uint PLANE_WORDS = 3 + 4 * SIDES; // the plane; which parts are covered, two words; by side radiance, two words; by side gathered light, two words
+const uint PLANE_WORDS = 7 * SIDES; // by side: a plane; then by side which parts are covered, radiance, gathered light, two words each
 
 struct Plane {
     vec3 normal; // of side 0; not unit length: 1 along its axis
     float offset; // from the cell's middle, along its axis
-    uint sides; // bit 0, 1: side 0, 1 has surfaces of its own
 };
 
 uint planeBase(uint half_used, uint slot) {
@@ -29,31 +28,45 @@ vec3 besideAxis(uint axis, float along, vec2 beside) {
     return axis == 0 ? vec3(along, beside) : axis == 1 ? vec3(beside.y, along, beside.x) : vec3(beside, along);
 }
 
+uint planeWord(uint base, uint side) {
+    return base + side;
+}
+
+// Bit 0, 1: side 0, 1 has surfaces of its own; else it is the back of the other.
+uint ownSides(uint base) {
+    return voxelPlanes.words[planeWord(base, 0)] >> 30;
+}
+
 // normal: along its axis positive.
-void keepPlane(uint base, vec3 normal, uint axis, float offset, uint sides) {
+void keepPlane(uint word, vec3 normal, uint axis, float offset, uint own) {
     vec2 beside = besideOf(normal, axis);
     uvec2 s = uvec2(clamp(beside / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
-    voxelPlanes.words[base] = s.x | s.y << 10 | storedOffset(offset) << 20 | sides << 30;
+    voxelPlanes.words[word] = s.x | s.y << 10 | storedOffset(offset) << 20 | own << 30;
 }
 
-Plane planeOf(uint base, uint axis) {
-    uint w = voxelPlanes.words[base];
+Plane planeOf(uint base, uint side, uint axis) {
+    uint w = voxelPlanes.words[planeWord(base, side)];
     vec2 beside = (vec2(w & 0x3ffu, w >> 10 & 0x3ffu) - 512.0) / 511.0;
-    return Plane(besideAxis(axis, 1.0, beside), offsetOfSum(float(w >> 20 & 0x3ffu), 1.0), w >> 30);
+    return Plane(besideAxis(axis, 1.0, beside), offsetOfSum(float(w >> 20 & 0x3ffu), 1.0));
 }
 
-uvec2 partsOf(uint base) {
-    return uvec2(voxelPlanes.words[base + 1], voxelPlanes.words[base + 2]);
+uint partsWord(uint base, uint side) {
+    return base + SIDES + 2 * side;
 }
 
-// A place on a slot's plane, by the coordinates beside its axis, and the middle of its surfaces; from the cell's middle [cells].
-vec3 onPlane(uint base, uint axis, vec2 beside) {
-    Plane plane = planeOf(base, axis);
+uvec2 partsOf(uint base, uint side) {
+    uint word = partsWord(base, side);
+    return uvec2(voxelPlanes.words[word], voxelPlanes.words[word + 1]);
+}
+
+// A place on a plane of a slot, by the coordinates beside its axis, and the middle of its surfaces; from the cell's middle [cells].
+vec3 onPlane(uint base, uint side, uint axis, vec2 beside) {
+    Plane plane = planeOf(base, side, axis);
     return besideAxis(axis, plane.offset - dot(besideOf(plane.normal, axis), beside), beside);
 }
 
-vec3 planeMiddle(uint base, uint axis) {
-    return onPlane(base, axis, middleOf(partsOf(base)));
+vec3 planeMiddle(uint base, uint side, uint axis) {
+    return onPlane(base, side, axis, middleOf(partsOf(base, side)));
 }
 
 vec3 lightWords(uint word) {
@@ -72,11 +85,11 @@ float timesGathered(uint word) {
 }
 
 uint radianceWord(uint base, uint side) {
-    return base + 3 + 2 * side;
+    return base + SIDES + 2 * (SIDES + side);
 }
 
 uint gatheredWord(uint base, uint side) {
-    return base + 3 + 2 * (SIDES + side);
+    return base + SIDES + 2 * (2 * SIDES + side);
 }
 
 #endif

@@ -15,12 +15,12 @@ struct Side {
 
 // Area of a side's surfaces for each area that rays meet of it, where the voxelizer measures both. More than one: a lamp before a
 // ceiling, in one cell, hides it, and must not be dimmed by the mean of both. Less: the parts of a small lamp are larger than it.
-float areaRatio(uint slot, float weight) {
+float areaRatio(uint base) {
     bool measured = !WARPED && params.voxelizer == VOXELIZER_RASTER
         && (params.conservative == CONSERVATIVE_DILATE || params.conservative == CONSERVATIVE_HARDWARE);
-    uint parts = slot * SLOT_WORDS + SLOT_PARTS;
+    uint parts = base + SIDE_PARTS;
     float covered = 16.0 * float(bitCount(voxelSlots.words[parts]) + bitCount(voxelSlots.words[parts + 1]));
-    return measured && covered > 0.0 ? weight / covered : 1.0;
+    return measured && covered > 0.0 ? float(voxelSlots.words[base + 3]) / covered : 1.0;
 }
 
 // A side without surfaces of its own is the back of the other: a sheet reflects on both sides.
@@ -33,7 +33,7 @@ Side sideOfSlot(uint slot, uint side) {
     mergedMean(base, s.color, mean);
     s.agreement = min(length(mean), 1.0);
     s.normal = s.agreement > 1e-3 ? mean / s.agreement * (mirrored ? -1.0 : 1.0) : vec3(0.0);
-    s.emission = meanEmission(base) * areaRatio(slot, float(voxelSlots.words[base + 3]));
+    s.emission = meanEmission(base) * areaRatio(base);
     s.count = float(voxelSlots.words[base + 3]);
     return s;
 }

@@ -7,11 +7,13 @@
 
 #include "modules/sides.glsl"
 
-const uint SIDE_WORDS = 12; // sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10; what is outermost in each quarter 11
+// Sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10; what is outermost in each quarter 11;
+// which parts of the cell are covered 12-13.
+const uint SIDE_WORDS = 14;
 const uint SIDE_OFFSET = 10;
 const uint SIDE_OUTERMOST = 11;
-const uint SLOT_PARTS = SIDES * SIDE_WORDS; // two words: which parts of the cell are covered
-const uint SLOT_CELL = SLOT_PARTS + 2; // cell, and above it the axis + 1; 0: no slot
+const uint SIDE_PARTS = 12;
+const uint SLOT_CELL = SIDES * SIDE_WORDS; // cell, and above it the axis + 1; 0: no slot
 const uint SLOT_WORDS = SLOT_CELL + 1;
 const uint CELL_FULL = 0xffffffffu; // occupied, but a list had no room left
 

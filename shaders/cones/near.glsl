@@ -23,24 +23,37 @@ struct Met {
 // Which surface of a cell a ray from `at` along `dir` meets between `enter` and `leave`: its distance, less than `end`, or `end`
 // [cells]. `facing`: the normal of the surface that the ray leaves. `word`: of the radiance.
 float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float enter, float leave, float end, out uint word) {
-    uint slot = firstSlot(found);
-    float nearest = end;
+    uint slot = firstSlot(found), behind_word = 0;
+    float nearest = end, behind = end;
     word = 0;
     for (uint axis = 0; axis < 3; axis++) {
         if ((found >> axis & 1u) == 0) continue;
-        uint base = planeBase(LISTED_HALF, slot++);
-        Plane plane = planeOf(base, axis);
-        vec3 middle = vec3(cell) + 0.5 + plane.offset * axisVector(axis);
-        float slope = dot(plane.normal, dir), t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
-        if (t < 0.0 || t < enter - NEAR_MARGIN || t > leave + NEAR_MARGIN || t >= nearest) continue;
-        if (!isCovered(partsOf(base), besideOf(at + t * dir - vec3(cell), axis))) continue;
-        // Not the back of the surface that is left: within a voxel or two its plane may lie before it.
-        uint side = slope < 0.0 ? 0 : 1;
-        if ((plane.sides >> side & 1u) == 0 && t < 1.5 && dot(plane.normal, facing) * slope > 0.0) continue;
-        nearest = t;
-        word = radianceWord(base, side);
+        uint base = planeBase(LISTED_HALF, slot++), own = ownSides(base);
+        for (uint side = 0; side < SIDES; side++) {
+            if ((own >> side & 1u) == 0) continue;
+            Plane plane = planeOf(base, side, axis);
+            vec3 middle = vec3(cell) + 0.5 + plane.offset * axisVector(axis);
+            float slope = dot(plane.normal, dir), t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
+            if (t < 0.0 || t < enter - NEAR_MARGIN || t > leave + NEAR_MARGIN || t >= nearest) continue;
+            vec2 place = besideOf(at + t * dir - vec3(cell), axis);
+            if (!isCovered(partsOf(base, side), place)) continue;
+            if ((side == 0) == (slope < 0.0)) {
+                nearest = t;
+                word = radianceWord(base, side);
+                continue;
+            }
+            // From behind: where the other side has a surface, back to back, the ray meets that one. Nor the back of the surface
+            // that is left: within a voxel or two its plane may lie before it.
+            if (t >= behind || own == 3 && isCovered(partsOf(base, 1 - side), place)) continue;
+            if (t < 1.5 && dot(plane.normal, facing) * slope > 0.0) continue;
+            behind = t;
+            behind_word = radianceWord(base, 1 - side);
+        }
     }
-    return nearest;
+    // At an edge a ray may pass the back of one face just before it meets the front of the other: planes are not that exact.
+    if (nearest < end) return nearest;
+    word = behind_word;
+    return behind;
 }
 
 // Whether the voxels around have planes that rays can meet: straight rays are not straight in curved cells.

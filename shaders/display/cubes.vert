@@ -18,7 +18,10 @@ void main() {
     int face = gl_VertexIndex / 6, corner = corners[gl_VertexIndex % 6];
     vec3 at = vec3(float(corner & 1), float(corner >> 1), float(face & 1));
     at = face < 2 ? at.zxy : face < 4 ? at.yzx : at.xyz;
-    position = volumeToWorld(volume.maps[shownCascade()], (vec3(cell) + at) / vec3(size));
+    VolumeMap map = volume.maps[shownCascade()];
+    position = volumeToWorld(map, (vec3(cell) + at) / vec3(size));
     color = vec4(cellColor(ivec3(cell), (vec3(cell) + 0.5) / vec3(size), face), 1.0);
-    gl_Position = camera.view_projection * vec4(position, 1.0);
+    // From inside a cube nothing else would be seen: the camera's own is left out.
+    bool own = uvec3(floor(worldToVolume(map, camera.position) * vec3(size))) == cell;
+    gl_Position = own ? vec4(0.0, 0.0, 2.0, 1.0) : camera.view_projection * vec4(position, 1.0);
 }

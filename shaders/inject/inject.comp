@@ -33,19 +33,19 @@ struct Taps {
 };
 
 Taps tapsOf(uint slot, uint side, uint base, uint axis) {
-    uvec2 parts = partsOf(base);
+    uvec2 parts = partsOf(base, side);
     uint outermost = voxelSlots.words[sideBase(slot, side) + SIDE_OUTERMOST];
-    float mean = planeOf(base, axis).offset;
+    float mean = planeOf(base, side, axis).offset;
     Taps taps;
     taps.count = 0;
-    taps.middle = planeMiddle(base, axis);
+    taps.middle = planeMiddle(base, side, axis);
     taps.outwards = (side == 0 ? 1.0 : -1.0) * axisVector(axis);
     for (uint i = 0; i < 4; i++) {
         uvec2 quarter = quarterOf(parts, i);
         if (quarter == uvec2(0)) continue;
         Outermost o = outermostOf(outermost, side, i);
         int k = taps.count++;
-        taps.places[k] = onPlane(base, axis, middleOf(quarter));
+        taps.places[k] = onPlane(base, side, axis, middleOf(quarter));
         taps.lift[k] = side == 0 ? o.offset - mean : mean - o.offset;
         taps.share[k] = taps.lift[k] > LAYER ? o.covers : 0.0;
     }

@@ -75,14 +75,14 @@ void main() {
             atomicAdd(voxelCounter.overflow, 1);
             continue;
         }
-        uint slot = slotOf(found, axis), parts = slot * SLOT_WORDS + SLOT_PARTS;
         uvec2 triangle = voxelTriangles.list[i];
         Covered covered = coveredBy(triangle, stored, axis, unpackOffset(fragment.z));
-        uint side = sideOf(normal, axis);
-        merge(sideBase(slot, side), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
+        uint side = sideOf(normal, axis), base = sideBase(slotOf(found, axis), side);
+        merge(base, unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
         // Of points and samples nobody knows where their plane passes the cell's middle.
-        if (triangle != NO_TRIANGLE) noteOutermost(sideBase(slot, side) + SIDE_OUTERMOST, side, covered);
+        if (triangle != NO_TRIANGLE) noteOutermost(base + SIDE_OUTERMOST, side, covered);
         for (uint k = 0; k < 2; k++)
-            if ((voxelSlots.words[parts + k] & covered.parts[k]) != covered.parts[k]) atomicOr(voxelSlots.words[parts + k], covered.parts[k]);
+            if ((voxelSlots.words[base + SIDE_PARTS + k] & covered.parts[k]) != covered.parts[k])
+                atomicOr(voxelSlots.words[base + SIDE_PARTS + k], covered.parts[k]);
     }
 }

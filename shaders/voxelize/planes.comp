@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The plane of each slot: the mean of all that its surfaces say, both sides together. Nothing has been gathered yet.
+// The planes of each slot: the mean of all that the surfaces of a side say. Nothing has been gathered yet.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
@@ -13,24 +13,18 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
-    vec3 normal = vec3(0.0);
-    float offset = 0.0, count = 0.0;
-    uint sides = 0, axis = uint(axisOfSlot(slot));
-    for (uint side = 0; side < SIDES; side++) {
-        uint base = sideBase(slot, side);
-        float weight = float(voxelSlots.words[base + 3]);
-        if (weight == 0.0) continue;
-        vec3 c, n;
-        mergedMean(base, c, n);
-        normal += n * (side == 0 ? weight : -weight);
-        offset += float(voxelSlots.words[base + SIDE_OFFSET]);
-        count += weight;
-        sides |= 1u << side;
-    }
+    uint axis = uint(axisOfSlot(slot)), base = planeBase(voxelCounter.half_used, slot);
     VolumeMap map = volume.maps[cascadeOf(cell)];
-    vec3 in_cells = normal * cellAxes(map, volumeToWorld(map, cellCentre(cell)));
-    uint base = planeBase(voxelCounter.half_used, slot);
-    keepPlane(base, in_cells, axis, offsetOfSum(offset, count), sides);
-    for (uint k = 0; k < 2; k++) voxelPlanes.words[base + 1 + k] = voxelSlots.words[slot * SLOT_WORDS + SLOT_PARTS + k];
-    for (uint side = 0; side < SIDES; side++) keepLight(gatheredWord(base, side), vec3(0.0), 0.0);
+    mat3 axes = cellAxes(map, volumeToWorld(map, cellCentre(cell)));
+    uint own = 0;
+    for (uint side = 0; side < SIDES; side++) own |= uint(voxelSlots.words[sideBase(slot, side) + 3] != 0) << side;
+    for (uint side = 0; side < SIDES; side++) {
+        uint seen = SIDES == 1 || (own >> side & 1u) != 0 ? side : 1 - side, sums = sideBase(slot, seen);
+        vec3 color, normal;
+        mergedMean(sums, color, normal);
+        float offset = offsetOfSum(float(voxelSlots.words[sums + SIDE_OFFSET]), float(voxelSlots.words[sums + 3]));
+        keepPlane(planeWord(base, side), (seen == 0 ? normal : -normal) * axes, axis, offset, own);
+        for (uint k = 0; k < 2; k++) voxelPlanes.words[partsWord(base, side) + k] = voxelSlots.words[sums + SIDE_PARTS + k];
+        keepLight(gatheredWord(base, side), vec3(0.0), 0.0);
+    }
 }
