@@ -45,6 +45,13 @@ fn experiment_of(folder: &Path, manifest_name: &str) -> Result<Experiment, LabEr
     Ok(experiment)
 }
 
+/// What rendering a capture gives.
+struct Rendered {
+    images: Vec<(Image, Texels)>,
+    frames: usize,
+    stats: Stats,
+}
+
 /// Renders a capture's experiment from the capture's sources; both taking and replaying one do this.
 fn render(
     lab: &Lab,
@@ -52,13 +59,13 @@ fn render(
     experiment: &Experiment,
     scene: Arc<Scene>,
     (frames, step): (Option<usize>, f64),
-    images: impl FnOnce(&Graph) -> Result<Vec<Image>, LabError>,
-) -> Result<(Vec<(Image, Texels)>, usize, Stats), LabError> {
+    wanted: impl FnOnce(&Graph) -> Result<Vec<Image>, LabError>,
+) -> Result<Rendered, LabError> {
     let home = Workspace { root: folder.join(SOURCES), cache: lab.home.cache.clone() };
     let lab = Lab { home, gpu: lab.gpu.clone() };
     let mut chosen = Vec::new();
     let (mut session, _) = lab.prepare(experiment, scene, |graph| {
-        chosen = images(graph)?;
+        chosen = wanted(graph)?;
         Ok(chosen.iter().map(|i| i.texture.clone()).collect())
     })?;
     let frames = frames.unwrap_or(session.settling_frames());
@@ -68,10 +75,11 @@ fn render(
     }
     times.extend(session.finish()?);
     let warnings = session.failed_checks()?;
-    let mut out = Vec::new();
+    let mut images = Vec::new();
     for image in chosen {
         let texels = session.texels(&image.texture, image.mip, image.layer)?;
-        out.push((image, texels));
+        images.push((image, texels));
     }
-    Ok((out, frames, stats::collect(&lab.gpu.info, &experiment.name, &session, &times, 0, warnings)))
+    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, 0, warnings);
+    Ok(Rendered { images, frames, stats })
 }

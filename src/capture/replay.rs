@@ -82,7 +82,7 @@ pub fn replay(
         }
     }
     let frames = (Some(manifest.frames), manifest.step);
-    let (images, ..) = render(lab, folder, &experiment, scene, frames, |_| Ok(manifest.images.clone()))?;
+    let images = render(lab, folder, &experiment, scene, frames, |_| Ok(manifest.images.clone()))?.images;
     for (image, texels) in &images {
         result.images += 1;
         result.texels += texels.extent.iter().product::<u32>() as usize;

@@ -2,7 +2,8 @@
 
 use super::manifest::{check_frames, files_below, hash_file, rfc3339};
 use super::{
-    EXPERIMENT, Image, MANIFEST, Manifest, SCHEMA, SOURCES, SceneRecord, experiment_of, failed, render, scene_hash,
+    EXPERIMENT, Image, MANIFEST, Manifest, Rendered, SCHEMA, SOURCES, SceneRecord, experiment_of, failed, render,
+    scene_hash,
 };
 use crate::experiment::{Experiment, checked_name, resolved_text};
 use crate::graph::link::Linked;
@@ -90,7 +91,7 @@ pub fn take(
     let scene = resolved.adapted(scene)?;
     let sha256 = scene_hash(&scene);
     let scene_name = scene.name.clone();
-    let (images, frames, stats) =
+    let Rendered { images, frames, stats } =
         render(lab, path, &resolved, scene, (what.frames, what.step), |graph| images_of(graph, &what.resources))?;
     for (image, texels) in &images {
         let file = path.join(&image.file);
