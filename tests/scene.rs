@@ -752,6 +752,13 @@ fn splitting_measures_in_the_world_and_has_limits() {
         assert_eq!(same.triangle_count(), 2);
         assert_warning(&same, &["not split"]);
     }
+    // What it takes at least is known before, and never more than what it takes.
+    for (scene, edge) in [(&scene, 0.5), (&scene, 0.05), (&open("triangles").unwrap(), 0.1)] {
+        let split = scene.split_triangles(edge);
+        let bytes = split.meshes.iter().map(|m| size_of_val(m.vertices.as_slice())).sum::<usize>() as f64;
+        let least = scene.least_split_bytes(edge);
+        assert!(least <= bytes && least > 0.05 * bytes, "{least} of {bytes} at {edge}");
+    }
     let needles = open("triangles").unwrap().split_triangles(0.1);
     assert!(longest_edge(&needles) <= 0.1001);
 }

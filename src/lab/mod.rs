@@ -161,7 +161,10 @@ impl Lab {
             Some(reuse) if reuse.shared => reuse.scene_gpu.fork(&self.gpu, &scene)?,
             Some(reuse) => reuse.scene_gpu.clone(),
             None => {
-                let split = plan.max_edge.map(|edge| scene.split_triangles(edge as f32));
+                let split = match plan.max_edge {
+                    Some(edge) => Some(split(&scene, edge as f32, self.gpu.info.limits.max_storage_buffer_range)?),
+                    None => None,
+                };
                 SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene), scene.origin(), rays)?
             }
         };
@@ -258,6 +261,21 @@ pub fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint,
 pub fn no_texture(graph: &Graph, name: &str) -> LabError {
     let hint = nearest(name, graph.textures.iter().map(|t| t.0.as_str()));
     LabError::Request(format!("no texture '{name}'{}", hint.map_or(String::new(), |h| format!(" ({h})"))))
+}
+
+/// The scene with triangles no longer than `edge`, unless the device cannot hold their vertices: splitting takes long.
+fn split(scene: &Scene, edge: f32, limit: u32) -> Result<Scene, LabError> {
+    let bytes = scene.least_split_bytes(edge);
+    if bytes > f64::from(limit) {
+        return Err(LabError::Request(format!(
+            "{}: triangles with edges of at most {edge} m, as the graph asks for, take {:.0} MB of vertices or more, and \
+             this device's largest buffer has {:.0} MB. Ask for longer ones, or take a smaller scene",
+            scene.name,
+            bytes / 1e6,
+            f64::from(limit) / 1e6
+        )));
+    }
+    Ok(scene.split_triangles(edge))
 }
 
 /// Frames until what graphs gather over frames has settled, near enough to be looked at.

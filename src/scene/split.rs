@@ -53,6 +53,29 @@ impl Scene {
     }
 }
 
+impl Scene {
+    /// Bytes that the vertices of [`Scene::split_triangles`] take at least, worked out without splitting: no triangle with
+    /// edges of `max_edge` has more than the area of the equilateral one, and there are half as many vertices as triangles.
+    pub fn least_split_bytes(&self, max_edge: f32) -> f64 {
+        let largest = 0.25 * 3f64.sqrt() * f64::from(max_edge).powi(2);
+        let triangles = |i: usize| {
+            let placements = self.instances.iter().filter(|instance| instance.mesh as usize == i);
+            let areas = placements.map(|instance| area(&self.meshes[i], &Mat3::from_mat4(instance.transform)));
+            areas.fold(0.0, f64::max) / largest
+        };
+        (0..self.meshes.len()).map(triangles).sum::<f64>() * 0.5 * size_of::<Vertex>() as f64
+    }
+}
+
+/// World area of a mesh, m^2.
+fn area(mesh: &Mesh, axes: &Mat3) -> f64 {
+    let triangle = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| *axes * Vec3::from_array(mesh.vertices[i as usize].position));
+        0.5 * (b - a).as_dvec3().cross((c - a).as_dvec3()).length()
+    };
+    mesh.indices.as_chunks::<3>().0.par_iter().map(triangle).sum()
+}
+
 /// The mesh split round by round, or none when it would have more triangles than the limit.
 fn split_mesh(mesh: &Mesh, too_long: &(impl Fn(Vec3, Vec3) -> bool + Sync), limit: usize) -> Option<Mesh> {
     let mut mesh = mesh.clone();
