@@ -142,7 +142,7 @@ fn a_still_scene_is_still() {
 #[test]
 fn the_reference_as_a_method_is_at_its_own_noise() {
     let home = home();
-    let methods = "\"path tracer\": { \"graph\": \"reference.ron\", \"samples\": 64, \"seed\": 7 }";
+    let methods = "\"path tracer\": { \"graph\": \"reference.ron\", \"samples\": 64, \"bounces\": 1, \"seed\": 7 }";
     let file = suite(
         home.path(),
         methods,
