@@ -9,14 +9,14 @@
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 inspected;
 
-uniform sampler2D depth;
+uniform sampler2D seenDepth;
 uniform sampler2D surfaceNormal;
 
 const float NOTHING = 1e-30; // depth of the background, but for a position that is finite
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float z = max(texelFetch(depth, pixel, 0).r, NOTHING);
+    float z = max(texelFetch(seenDepth, pixel, 0).r, NOTHING);
     vec4 h = camera.inverse_view_projection * vec4(uv * 2.0 - 1.0, z, 1.0);
     vec3 p = h.xyz / h.w;
     vec3 n = texelFetch(surfaceNormal, pixel, 0).rgb * 2.0 - 1.0;

@@ -6,9 +6,9 @@
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 inspected;
 
-uniform sampler2D depth;
+uniform sampler2D seenDepth;
 
 void main() {
-    float along = camera.near / max(texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r, 1e-30);
+    float along = camera.near / max(texelFetch(seenDepth, ivec2(gl_FragCoord.xy), 0).r, 1e-30);
     inspected = vec4(vec3(clamp(along / length(sceneInfo.bounds_max - sceneInfo.bounds_min), 0.0, 1.0)), 1.0);
 }

@@ -29,20 +29,14 @@ pub struct Resource {
 }
 
 /// What a capture holds beside the picture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct What {
     /// Further textures.
     pub resources: Vec<Resource>,
-    /// Frames to run, at least 1; as many as the graph takes to settle when `None`.
+    /// Frames to run, at least 1. When `None` as many as the graph takes to settle, or one where time goes on.
     pub frames: Option<usize>,
     /// Time from frame to frame, s.
     pub step: f64,
-}
-
-impl Default for What {
-    fn default() -> What {
-        What { resources: Vec::new(), frames: None, step: 0.0 }
-    }
 }
 
 /// The first of `name`, `name-2`, `name-3` and so on that no capture in `folder` has.

@@ -42,7 +42,7 @@ pub struct AblateArgs {
     /// Bounces of the references.
     #[arg(long, default_value_t = ALL_BOUNCES)]
     bounces: u32,
-    /// Frames that are timed, 50 when absent; of each step 1: methods that gather over time need more.
+    /// Frames that are timed, 50 when absent; of each step as many as it takes to settle.
     #[arg(long)]
     frames: Option<usize>,
     /// With --steps: write the numbers to this JSON file.

@@ -19,7 +19,7 @@ pub struct CaptureArgs {
     /// Keep this texture too; may be given many times.
     #[arg(long, value_name = "NAME[:MIP[:LAYER]]")]
     resource: Vec<String>,
-    /// Frames to run, of which the last is kept; as many as the graph takes to settle when absent.
+    /// Frames to run, of which the last is kept; as many as the graph takes to settle when absent, or one with --step.
     #[arg(long)]
     frames: Option<usize>,
     /// Time from frame to frame, s.

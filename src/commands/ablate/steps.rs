@@ -37,8 +37,7 @@ struct Ablation {
 /// Tells what each step of the graph's ablation adds to an experiment's error.
 pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
-    let frames = args.frames.unwrap_or(1);
-    adapt::check_frames(frames, 0, 0.0)?;
+    adapt::check_frames(args.frames.unwrap_or(1), 0, 0.0)?;
     let home = Workspace::find()?;
     let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
     if loaded.graph.ablation.is_empty() {
@@ -58,7 +57,7 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
         }
         let wanted = names.iter().map(|n| n.1.clone()).collect();
         let mut session = lab.build(&set, &loaded, scene.clone(), wanted, None)?;
-        for _ in 0..frames {
+        for _ in 0..args.frames.unwrap_or(session.settling_frames()) {
             session.frame(0.0)?;
         }
         session.finish()?;

@@ -3,10 +3,10 @@
 // Exposure, tone map and encoding: linear radiance to the 8-bit picture.
 #include "params.glsl"
 
-layout(location = 0) in vec2 uv;
-layout(location = 0) out vec4 display;
+layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform sampler2D source;
+uniform writeonly image2D display;
 
 vec3 toneMap(vec3 c) {
     if (params.tone_map == TONE_MAP_REINHARD) return c / (c + 1.0); // thesis, Algorithm 3
@@ -21,6 +21,8 @@ vec3 encode(vec3 c) {
 }
 
 void main() {
-    vec3 c = max(texelFetch(source, ivec2(gl_FragCoord.xy), 0).rgb, 0.0);
-    display = vec4(encode(toneMap(c * exp2(params.exposure))), 1.0);
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(display)))) return;
+    vec3 c = max(texelFetch(source, pixel, 0).rgb, 0.0);
+    imageStore(display, pixel, vec4(encode(toneMap(c * exp2(params.exposure))), 1.0));
 }
