@@ -248,6 +248,7 @@ fn devices() -> Result<(), LabError> {
                     ("stores in fragment shaders", f.fragment_stores),
                     ("stores in vertex stages", f.vertex_stores),
                     ("conservative rasterisation", f.conservative_rasterization),
+                    ("64-bit atomics", f.int64_atomics),
                     ("BC textures", f.bc),
                     ("timestamps", info.timestamp_ns > 0.0),
                 ];

@@ -72,7 +72,8 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     };
     let scene_name = args.scene.clone().or(experiment.as_ref().map(|e| e.scene.clone())).unwrap_or("cornell".into());
     let scene = super::open_scene(&scene_name)?;
-    let env = environment(&scene, size);
+    let device = any_device();
+    let env = environment(&scene, size, &device);
     if args.params {
         let (values, errors) = fill(&graph, &params, &mut env.clone());
         say_part!("{}", report::values(&graph, &values));
@@ -86,7 +87,6 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     }
     wanted.extend(graph.checks.iter().map(|c| c.buffer().to_string()));
     let linked = home.linked(&graph, &params).map_err(LabError::Input)?;
-    let device = any_device();
     let input = PlanInput { params: &params, env, wanted, device: &device };
     let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
     say_part!(

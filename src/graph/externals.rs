@@ -46,6 +46,7 @@ pub const EXTERNALS: &[External] = &[
     external("positions", Storage),
     external("attributes", Storage),
     external("indices", Storage),
+    external("triangles", Storage),
     external("bvhNodes", Storage),
     external("bvhTriangles", Storage),
     external("materialTexture0", TextureArray),

@@ -88,6 +88,8 @@ pub const BUILTIN_VARIABLES: &[&str] = &[
     "triangle_count",
     "scene_size",
     "seen_distance",
+    "int64_atomics",
+    "software_device",
     "scene_min_x",
     "scene_min_y",
     "scene_min_z",

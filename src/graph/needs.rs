@@ -12,6 +12,7 @@ use crate::vulkan::Stage;
 const CLIP_DISTANCE: u32 = 32;
 const FLOAT64: u32 = 10;
 const INT64: u32 = 11;
+const INT64_ATOMICS: u32 = 12;
 
 /// One error for each feature that a pass of the plan needs and the device lacks.
 pub(super) fn check(graph: &Graph, linked: &[Linked], plan: &Plan, input: &PlanInput<'_>) -> Vec<Diagnostic> {
@@ -48,8 +49,9 @@ pub(super) fn check(graph: &Graph, linked: &[Linked], plan: &Plan, input: &PlanI
             (pass.raster.depth_clamp, have.depth_clamp, "depth clamping"),
             (unformatted, have.write_without_format, "writing images without a format"),
             (uses(CLIP_DISTANCE), have.clip_distance, "gl_ClipDistance"),
+            (uses(INT64) || uses(INT64_ATOMICS), have.int64_atomics, "64-bit atomics in buffers"),
             // Not asked of any device: portable shaders do without.
-            (uses(FLOAT64) || uses(INT64), false, "64-bit numbers in shaders"),
+            (uses(FLOAT64), false, "64-bit floating point in shaders"),
         ];
         for (needed, available, what) in needs {
             if needed && !available {

@@ -129,7 +129,7 @@ impl Lab {
         scene: Arc<Scene>,
         wanted: impl FnOnce(&Graph) -> Result<Vec<String>, LabError>,
     ) -> Result<(Session, Vec<Diagnostic>), LabError> {
-        let loaded = self.home.load_for(experiment, &scene).map_err(LabError::Input)?;
+        let loaded = self.home.load_for(experiment, &scene, &self.gpu.info).map_err(LabError::Input)?;
         let warnings = loaded.warnings.clone();
         let wanted = wanted(&loaded.graph)?;
         Ok((self.build(experiment, &loaded, scene, wanted, None)?, warnings))
@@ -149,7 +149,8 @@ impl Lab {
         reuse: Option<&ReusableParts>,
     ) -> Result<Session, LabError> {
         let params = params_of(&loaded.graph, experiment)?;
-        let Loaded { graph, linked, .. } = self.home.complete(loaded, experiment, &scene).map_err(LabError::Input)?;
+        let Loaded { graph, linked, .. } =
+            self.home.complete(loaded, experiment, &scene, &self.gpu.info).map_err(LabError::Input)?;
         wanted.extend(graph.checks.iter().map(|c| c.buffer().to_string()));
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
@@ -161,10 +162,8 @@ impl Lab {
             Some(reuse) if reuse.shared => reuse.scene_gpu.fork(&self.gpu, &scene)?,
             Some(reuse) => reuse.scene_gpu.clone(),
             None => {
-                let split = match plan.max_edge {
-                    Some(edge) => Some(split(&scene, edge as f32, self.gpu.info.limits.max_storage_buffer_range)?),
-                    None => None,
-                };
+                let limit = self.gpu.info.limits.max_storage_buffer_range;
+                let split = plan.max_edge.map(|edge| split(&scene, edge as f32, limit)).transpose()?;
                 SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene), scene.origin(), rays)?
             }
         };
@@ -174,7 +173,7 @@ impl Lab {
             Some(reuse) => reuse.parts.pipelines_only(),
             None => Parts::default(),
         };
-        let values = values_of(&graph, &params, &scene, experiment.size);
+        let values = values_of(&graph, &params, &scene, experiment.size, &self.gpu.info);
         let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources, &parts)?;
         Ok(Session {
             graph,
@@ -205,7 +204,7 @@ fn plan_of(
     wanted: &[String],
     device: &DeviceInfo,
 ) -> Result<Plan, LabError> {
-    let input = PlanInput { params, env: environment(scene, size), wanted: wanted.to_vec(), device };
+    let input = PlanInput { params, env: environment(scene, size, device), wanted: wanted.to_vec(), device };
     plan(graph, linked, &input).map_err(LabError::Input)
 }
 
@@ -329,7 +328,9 @@ impl Session {
             return Ok(false);
         }
         let size = self.size;
-        if !runs(&self.graph, params, &environment(&self.scene, size)).are_linked(&self.graph, &self.linked) {
+        if !runs(&self.graph, params, &environment(&self.scene, size, &lab.gpu.info))
+            .are_linked(&self.graph, &self.linked)
+        {
             return Ok(false);
         }
         let plan = plan_of(&self.graph, &self.linked, params, &self.scene, size, &self.wanted, &lab.gpu.info)?;
@@ -337,7 +338,7 @@ impl Session {
             return Ok(false);
         }
         self.params = params.clone();
-        self.values = values_of(&self.graph, params, &self.scene, size);
+        self.values = values_of(&self.graph, params, &self.scene, size, &lab.gpu.info);
         self.sent_params = false;
         Ok(true)
     }
@@ -534,6 +535,7 @@ pub fn any_device() -> DeviceInfo {
         multi_draw_indirect: true,
         independent_blend: true,
         full_index: true,
+        int64_atomics: true,
     };
     DeviceInfo::imaginary(all)
 }

@@ -42,6 +42,7 @@ impl SceneGpu {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let (positions, attributes, indices, first_index) = vertices(scene);
         let draws = draws(scene, &first_index);
+        let triangles = triangles(&draws, &indices, &positions, &attributes);
         let opaque = draws.iter().filter(|d| !is_masked(scene, d)).count();
         // One command (VkDrawIndexedIndirectCommand) a draw; the instance number tells the shaders which.
         let commands: Vec<[u32; 5]> =
@@ -80,6 +81,7 @@ impl SceneGpu {
             ("materials", upload.buffer("materials", bytemuck::cast_slice(&material_blocks), storage)?),
             ("instances", instances.clone()),
             ("draws", upload.buffer("draws", bytemuck::cast_slice(&draws), storage)?),
+            ("triangles", upload.buffer("triangles", bytemuck::cast_slice(&triangles), storage)?),
             ("positions", upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?),
             ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
         ]);
@@ -275,6 +277,49 @@ fn draws(scene: &Scene, first_index: &[u32]) -> Vec<DrawBlock> {
     }
     list.sort_by_key(|d| is_masked(scene, d));
     list
+}
+
+/// (draw, first of its indices) of every triangle, draw by draw. Neighbours in space are neighbours in the list, and the order
+/// is of what the triangles hold alone: where two are in one place it decides which is seen.
+fn triangles(draws: &[DrawBlock], indices: &[u32], positions: &[f32], attributes: &[[f32; 12]]) -> Vec<[u32; 2]> {
+    let position = |i: u32| -> [f32; 3] { std::array::from_fn(|k| positions[3 * indices[i as usize] as usize + k]) };
+    let content = |first: u32| -> [[u32; 15]; 3] {
+        std::array::from_fn(|k| {
+            let vertex = indices[first as usize + k] as usize;
+            let numbers = positions[3 * vertex..3 * vertex + 3].iter().chain(&attributes[vertex]);
+            let mut words = [0; 15];
+            words.iter_mut().zip(numbers).for_each(|(w, n)| *w = n.to_bits());
+            words
+        })
+    };
+    // Instances of one mesh have the same triangles.
+    let mut sorted: HashMap<(u32, u32), Vec<u32>> = HashMap::new();
+    let mut list = Vec::new();
+    for (number, draw) in (0u32..).zip(draws) {
+        let order = sorted.entry((draw.first_index, draw.index_count)).or_insert_with(|| {
+            let firsts = (draw.first_index..draw.first_index + draw.index_count).step_by(3);
+            let middle = |first: u32| {
+                let [a, b, c] = [0, 1, 2].map(|k| Vec3::from(position(first + k)));
+                (a + b + c) / 3.0
+            };
+            let (low, high) = firsts
+                .clone()
+                .map(middle)
+                .fold((Vec3::splat(f32::MAX), Vec3::splat(f32::MIN)), |(low, high), p| (low.min(p), high.max(p)));
+            let scale = 1023.0 / (high - low).max(Vec3::splat(f32::MIN_POSITIVE));
+            let mut keyed: Vec<(u32, u32)> = firsts.map(|f| (morton((middle(f) - low) * scale), f)).collect();
+            keyed.sort_by(|a, b| a.0.cmp(&b.0).then_with(|| content(a.1).cmp(&content(b.1))));
+            keyed.into_iter().map(|(_, first)| first).collect()
+        });
+        list.extend(order.iter().map(|first| [number, *first]));
+    }
+    list
+}
+
+/// The bits of three numbers below 1024 in turns: neighbours in space have neighbouring codes (Morton 1966).
+fn morton(p: Vec3) -> u32 {
+    let spread = |v: f32| (0..10).fold(0, |word, bit| word | (v as u32 >> bit & 1) << (3 * bit));
+    spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
 }
 
 fn material(m: &crate::scene::Material, handles: &[u32]) -> MaterialBlock {

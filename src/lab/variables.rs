@@ -6,9 +6,10 @@ use crate::graph::load::Graph;
 use crate::graph::param::{Params, Value};
 use crate::graph::value::fill;
 use crate::scene::{Scene, origin_of};
+use crate::vulkan::DeviceInfo;
 
-/// Variables of expressions that come from scene and size.
-pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
+/// Variables of expressions that come from scene, size and device.
+pub fn environment(scene: &Scene, size: (u32, u32), device: &DeviceInfo) -> Env {
     let (low, high) = scene.bounds();
     let (origin, extent) = (origin_of((low, high)), high - low);
     let (low, high) = (low - origin, high - origin);
@@ -24,6 +25,8 @@ pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
     put("triangle_count", scene.triangle_count() as f64);
     put("scene_size", f64::from(extent.max_element()));
     put("seen_distance", f64::from(scene.seen_distance));
+    put("int64_atomics", f64::from(u8::from(device.features.int64_atomics)));
+    put("software_device", f64::from(u8::from(device.kind == "cpu")));
     for (axis, (a, b)) in ["x", "y", "z"].iter().zip(low.to_array().into_iter().zip(high.to_array())) {
         put(&format!("scene_min_{axis}"), f64::from(a));
         put(&format!("scene_max_{axis}"), f64::from(b));
@@ -32,6 +35,6 @@ pub fn environment(scene: &Scene, size: (u32, u32)) -> Env {
 }
 
 /// The graph's named values; a plan reports those that have none.
-pub fn values_of(graph: &Graph, params: &Params, scene: &Scene, size: (u32, u32)) -> Vec<Value> {
-    fill(graph, params, &mut environment(scene, size)).0
+pub fn values_of(graph: &Graph, params: &Params, scene: &Scene, size: (u32, u32), device: &DeviceInfo) -> Vec<Value> {
+    fill(graph, params, &mut environment(scene, size, device)).0
 }

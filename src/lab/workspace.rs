@@ -9,6 +9,7 @@ use crate::graph::runs::{Runs, runs};
 use crate::graph::source::{Diagnostic, Place};
 use crate::scene::Scene;
 use crate::shader::ShaderCompiler;
+use crate::vulkan::DeviceInfo;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -142,9 +143,14 @@ impl Workspace {
     ///
     /// # Errors
     /// All mistakes in the graph and in these shaders.
-    pub fn load_for(&self, experiment: &Experiment, scene: &Scene) -> Result<Loaded, Vec<Diagnostic>> {
+    pub fn load_for(
+        &self,
+        experiment: &Experiment,
+        scene: &Scene,
+        device: &DeviceInfo,
+    ) -> Result<Loaded, Vec<Diagnostic>> {
         let graph = self.read(&experiment.graph)?;
-        let (linked, warnings) = self.link(&graph, &runs_of(&graph, experiment, scene))?;
+        let (linked, warnings) = self.link(&graph, &runs_of(&graph, experiment, scene, device))?;
         Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
     }
 
@@ -152,8 +158,14 @@ impl Workspace {
     ///
     /// # Errors
     /// All mistakes in these shaders.
-    pub fn complete(&self, loaded: &Loaded, experiment: &Experiment, scene: &Scene) -> Result<Loaded, Vec<Diagnostic>> {
-        let runs = runs_of(&loaded.graph, experiment, scene);
+    pub fn complete(
+        &self,
+        loaded: &Loaded,
+        experiment: &Experiment,
+        scene: &Scene,
+        device: &DeviceInfo,
+    ) -> Result<Loaded, Vec<Diagnostic>> {
+        let runs = runs_of(&loaded.graph, experiment, scene, device);
         if runs.are_linked(&loaded.graph, &loaded.linked) {
             return Ok(loaded.clone());
         }
@@ -172,9 +184,9 @@ impl Workspace {
 }
 
 /// The passes that an experiment runs. With parameters that are none, which is told elsewhere: all.
-fn runs_of(graph: &Graph, experiment: &Experiment, scene: &Scene) -> Runs {
+fn runs_of(graph: &Graph, experiment: &Experiment, scene: &Scene, device: &DeviceInfo) -> Runs {
     params_of(graph, experiment).map_or_else(
         |_| Runs::all(graph, &graph.params),
-        |params| runs(graph, &params, &environment(scene, experiment.size)),
+        |params| runs(graph, &params, &environment(scene, experiment.size, device)),
     )
 }

@@ -51,9 +51,7 @@ impl Scene {
         }
         scene
     }
-}
 
-impl Scene {
     /// Bytes that the vertices of [`Scene::split_triangles`] take at least, worked out without splitting: no triangle with
     /// edges of `max_edge` has more than the area of the equilateral one, and there are half as many vertices as triangles.
     pub fn least_split_bytes(&self, max_edge: f32) -> f64 {

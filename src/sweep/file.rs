@@ -1,12 +1,13 @@
 //! Sweep files: which experiments, and what is varied (docs/sweeps.md).
 
 use super::axis::{Axis, Choice, choices};
-use super::points::{DEFAULT_BOUNCES, MAX_POINTS, Sweep};
+use super::points::{MAX_POINTS, Sweep};
 use super::settings::Setting;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
 use crate::graph::source::{Diagnostic, Entries, Items, Loc, Place, Severity, Sources};
 use crate::measure::Frames;
+use crate::reference::ALL_BOUNCES;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -77,7 +78,7 @@ impl Sweep {
         }
         let mut bounces: Vec<u32> = parsed.bounces.0.iter().map(|b| b.value).collect();
         if bounces.is_empty() {
-            bounces = DEFAULT_BOUNCES.to_vec();
+            bounces.push(ALL_BOUNCES);
         }
         Ok(Sweep {
             name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),

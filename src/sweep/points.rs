@@ -11,8 +11,6 @@ use std::path::PathBuf;
 
 /// Most points of a sweep.
 pub const MAX_POINTS: usize = 20_000;
-/// Light that a lit surface reflects once more: what most methods gather.
-pub(super) const DEFAULT_BOUNCES: [u32; 1] = [ALL_BOUNCES];
 
 /// What [`Sweep::one_at_a_time`] varies: the scene,
 pub const SCENE: &str = "scene";
@@ -81,7 +79,7 @@ impl Sweep {
         let names = axes.iter().map(|a| a.0.clone());
         let names = (experiments.len() > 1).then(|| "experiment".to_string()).into_iter().chain(names).collect();
         let name = experiments.first().map_or(String::new(), |e| e.name.clone());
-        let bounces = DEFAULT_BOUNCES.to_vec();
+        let bounces = vec![ALL_BOUNCES];
         let (beside, fixed, folder) = (Vec::new(), Vec::new(), PathBuf::from("."));
         Ok(Sweep { name, text, experiments, beside, names, frames, bounces, fixed, axes: list, folder })
     }

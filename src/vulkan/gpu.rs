@@ -48,6 +48,8 @@ pub struct Features {
     pub independent_blend: bool,
     /// Vertex numbers above 2^24.
     pub full_index: bool,
+    /// 64-bit integers in shaders, and atomics on those in buffers.
+    pub int64_atomics: bool,
 }
 
 /// What a device is.
@@ -173,7 +175,10 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
         instance.get_physical_device_properties2(physical, &mut properties);
         let core = properties.properties;
-        let have = instance.get_physical_device_features(physical);
+        let mut have12 = vk::PhysicalDeviceVulkan12Features::default();
+        let mut all = vk::PhysicalDeviceFeatures2::default().push_next(&mut have12);
+        instance.get_physical_device_features2(physical, &mut all);
+        let have = all.features;
         let extensions = instance.enumerate_device_extension_properties(physical).unwrap_or_default();
         let memory = instance.get_physical_device_memory_properties(physical);
         let heap = memory
@@ -229,6 +234,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                     && have.draw_indirect_first_instance == vk::TRUE,
                 independent_blend: have.independent_blend == vk::TRUE,
                 full_index: have.full_draw_index_uint32 == vk::TRUE,
+                int64_atomics: have.shader_int64 == vk::TRUE && have12.shader_buffer_int64_atomics == vk::TRUE,
             },
             cache_key: format!(
                 "{:04x}-{:04x}-{:08x}-{}",
@@ -429,14 +435,17 @@ fn create_device(
         .draw_indirect_first_instance(have.multi_draw_indirect)
         .independent_blend(have.independent_blend)
         .full_draw_index_uint32(have.full_index)
+        .shader_int64(have.int64_atomics)
         .robust_buffer_access(true);
     let mut v13 = vk::PhysicalDeviceVulkan13Features::default()
         .dynamic_rendering(true)
         .synchronization2(true)
         .maintenance4(true)
         .robust_image_access(true);
-    let mut v12 =
-        vk::PhysicalDeviceVulkan12Features::default().host_query_reset(true).uniform_buffer_standard_layout(true);
+    let mut v12 = vk::PhysicalDeviceVulkan12Features::default()
+        .host_query_reset(true)
+        .uniform_buffer_standard_layout(true)
+        .shader_buffer_int64_atomics(have.int64_atomics);
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&priorities)];
     let extensions: Vec<_> = have

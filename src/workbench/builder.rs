@@ -75,8 +75,8 @@ fn build(job: Job) -> Result<(Box<Session>, Loaded), LabError> {
     // What does not run is not waited for: it is compiled when it first runs.
     let home = &job.lab.home;
     let loaded = match &job.loaded {
-        Some(loaded) => home.complete(loaded, &job.experiment, &job.scene),
-        None => home.load_for(&job.experiment, &job.scene),
+        Some(loaded) => home.complete(loaded, &job.experiment, &job.scene, &job.lab.gpu.info),
+        None => home.load_for(&job.experiment, &job.scene, &job.lab.gpu.info),
     };
     let loaded = loaded.map_err(LabError::Input)?;
     let graph = &loaded.graph;
