@@ -24,6 +24,11 @@ uint gatheredBefore(vec3 p, int cascade, uint axis, uint side) {
     return gatheredWord(planeBase(LISTED_HALF, slotOf(found, axis)), side);
 }
 
+// Bricks side by side have other turns.
+uint turnOf(uvec3 brick) {
+    return brick.x + 3u * brick.y + 5u * brick.z;
+}
+
 void main() {
     uint i = gl_GlobalInvocationID.x, slot = i / SIDES, side = i % SIDES;
     if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
@@ -34,10 +39,10 @@ void main() {
     VolumeMap map = placed.maps[cascade];
 
     // A part of the voxels each frame, and the others keep what they have; but all of them in every frame at first, so that light
-    // goes round before the first pictures are seen.
+    // goes round before the first pictures are seen. By bricks: threads beside each other gather together, or none of them.
     uint frames = uint(params.bounce_frames), before = gatheredBefore(volumeToWorld(map, cellCentre(cell)), cascade, axis, side);
     float times = before == 0 ? 0.0 : timesGathered(before);
-    if (times >= float(frames) && pattern % frames != camera.frame % frames) {
+    if (times >= float(frames) && turnOf(uvec3(cell) >> 2) % frames != camera.frame % frames) {
         keepLight(gatheredWord(base, side), lightWords(before), times);
         return;
     }

@@ -27,7 +27,45 @@ bool holds(VolumeMap map, vec3 p) {
     return inVolume(worldToVolume(map, p));
 }
 
+// Coordinates in which triangles are flat and cells are boxes, as long as the volume has cells; and cells in these, axis by axis.
+vec3 flatFromWorld(VolumeMap map, vec3 p) {
+    return (p - map.minimum) / map.size * float(params.voxel_dim);
+}
+
+vec3 flatOfCells(VolumeMap map, vec3 cells) {
+    if (!WARPED) return cells;
+    vec3 u = cells / float(params.voxel_dim), in_volume = clamp(u, 0.0, 1.0);
+    return mix(u, unwarp(in_volume), equal(in_volume, u)) * float(params.voxel_dim);
+}
+
+vec3 cellsOfFlat(VolumeMap map, vec3 f) {
+    if (!WARPED) return f;
+    vec3 x = f / float(params.voxel_dim), in_volume = clamp(x, 0.0, 1.0);
+    return mix(x, warp(in_volume), equal(in_volume, x)) * float(params.voxel_dim);
+}
+
+bool isFlat(VolumeMap map) {
+    return true;
+}
+
+// How far along its depth a point lies, where cells have a near side that cuts triangles.
+bool hasNear(VolumeMap map) {
+    return false;
+}
+
+float flatDepth(VolumeMap map, vec3 p) {
+    return 1.0;
+}
+
 // What curved cells have, for code that knows both.
+void curvedBounds(VolumeMap map, vec3 a, vec3 b, vec3 c, out vec3 low, out vec3 high) {
+    low = high = vec3(0.0);
+}
+
+bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
+    return false;
+}
+
 const vec3 CURVED_BORDERS = vec3(1.0);
 const bool CURVED_SEAM = false;
 

@@ -2,14 +2,32 @@
 // a cache. As the list of cells, this frame's in one half of the buffer and last frame's in the other.
 #ifndef BRICKS_GLSL
 #define BRICKS_GLSL
+#include "common/volume.glsl"
 
 layout(std430) buffer VoxelBricks { uint masks[]; } voxelBricks;
+layout(std430) buffer VoxelWords { uint list[]; } voxelWords; // words that are set, from the start of the half
 
-// The first of a brick's two words, of the cells with z 0 and 1. `stored`: as textures hold it.
-uint brickWord(uint half_used, ivec3 stored) {
-    uint edge = uint(params.voxel_dim) / 4u;
-    uvec3 brick = uvec3(stored) >> 2;
-    return half_used * (voxelBricks.masks.length() / 2) + 2 * (brick.x + edge * (brick.y + edge * brick.z));
+// Bricks along an edge of a cascade; the last ones may reach beyond its cells.
+uint brickEdge() {
+    return (uint(params.voxel_dim) + 3u) / 4u;
+}
+
+// The cell, as textures hold it, of a bit of a word that is counted from the start of a half.
+ivec3 cellOfBit(uint word, uint bit) {
+    uint edge = brickEdge(), brick = word / 2, z = brick / (edge * edge);
+    ivec3 cell = 4 * ivec3(brick % edge, brick / edge % edge, z % edge) + ivec3(bit & 3u, bit >> 2 & 3u, (word & 1u) << 1 | bit >> 4);
+    return storedCell(cell, int(z / edge));
+}
+
+// The first of a brick's two words, of the cells with z 0 and 1, from the start of a half; and in the buffer.
+uint brickNumber(ivec3 cell, int cascade) {
+    uint edge = brickEdge();
+    uvec3 brick = uvec3(cell) >> 2;
+    return 2 * (brick.x + edge * (brick.y + edge * (brick.z + edge * uint(cascade))));
+}
+
+uint brickWord(uint half_used, ivec3 cell, int cascade) {
+    return half_used * (voxelBricks.masks.length() / 2) + brickNumber(cell, cascade);
 }
 
 // A cell's word in its brick, 0 or 1, and its bit there.

@@ -25,6 +25,33 @@ vec3 cellsPerMetre(VolumeMap map, vec3 p, vec3 d) {
     return inverse(curvedAxes(map, p)) * d;
 }
 
+// Coordinates in which triangles are flat and cells are boxes, as long as the volume has cells; and cells in these, axis by axis.
+// The module says them for its curved cells, if there are such: curvedFlat, flatOfCurved, curvedOfFlat, FLAT.
+vec3 flatFromWorld(VolumeMap map, vec3 p) {
+    return map.curved == 0 ? (p - map.minimum) / map.size * float(params.voxel_dim) : curvedFlat(map, p);
+}
+
+vec3 flatOfCells(VolumeMap map, vec3 cells) {
+    return map.curved == 0 ? cells : flatOfCurved(map, cells);
+}
+
+vec3 cellsOfFlat(VolumeMap map, vec3 f) {
+    return map.curved == 0 ? f : curvedOfFlat(map, f);
+}
+
+bool isFlat(VolumeMap map) {
+    return FLAT || map.curved == 0;
+}
+
+// How far along its depth a point lies, where cells have a near side that cuts triangles.
+bool hasNear(VolumeMap map) {
+    return FLAT && map.curved != 0;
+}
+
+float flatDepth(VolumeMap map, vec3 p) {
+    return dot(p - map.eye, map.axis_z);
+}
+
 bool holds(VolumeMap map, vec3 p) {
     return map.curved == 0 ? inVolume(worldToVolume(map, p)) : curvedHolds(map, p);
 }

@@ -4,6 +4,7 @@
 #include "common/scene.glsl"
 #include "common/materials.glsl"
 #include "common/brdf.glsl"
+#include "common/normals.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
@@ -19,17 +20,7 @@ vec3 faceNormal(vec3 v) {
 }
 
 vec3 shadingNormal(Material m, Gradient g, vec3 face) {
-    vec3 n = normalize(normal);
-    float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
-    if (m.normal_texture != NO_TEXTURE) {
-        vec3 t = tangentNormal(m, uv, g);
-        vec3 x = tangent.xyz - n * dot(n, tangent.xyz);
-        if (dot(x, x) > 1e-12) {
-            x = normalize(x);
-            n = normalize(mat3(x, cross(n, x) * tangent.w, n) * t);
-        }
-    }
-    return n * side;
+    return mappedNormal(m, uv, g, normal, tangent, face);
 }
 
 Surface surfaceAt(Material m, Gradient g, vec3 face) {

@@ -3,7 +3,8 @@
 #define SHADOW_GLSL
 #include "common/shadow_layers.glsl"
 
-uniform sampler2DArrayShadow shadowCompare;
+// shadowLit: 1 or 0, or between, of a depth at a place of a layer.
+#include "modules/shadow_lookup.glsl"
 
 // Mean of the taps around `at`. `slope`: how depth changes over the receiver [depth a map's width].
 float shadowTaps(int layer, vec3 at, vec2 slope) {
@@ -13,7 +14,7 @@ float shadowTaps(int layer, vec3 at, vec2 slope) {
     for (int y = -r; y <= r; y++)
         for (int x = -r; x <= r; x++) {
             vec2 offset = vec2(x, y) * texel;
-            sum += textureGrad(shadowCompare, vec4(at.xy + offset, layer, at.z + dot(slope, offset)), vec2(0.0), vec2(0.0));
+            sum += shadowLit(layer, vec3(at.xy + offset, at.z + dot(slope, offset)));
         }
     return sum / float((2 * r + 1) * (2 * r + 1));
 }

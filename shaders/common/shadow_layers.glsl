@@ -9,6 +9,7 @@ struct ShadowLayer {
     float perspective; // 1, or 0
     int finer; // the layer that shows a part of this one, -1: none
     float rounding; // of depth, beyond what its format rounds
+    float near; // least w of what is drawn
 };
 
 layout(std430) buffer ShadowLayers { ShadowLayer layers[]; } shadowLayers;

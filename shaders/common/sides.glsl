@@ -16,8 +16,7 @@ struct Side {
 // Area of a side's surfaces for each area that rays meet of it, where the voxelizer measures both. More than one: a lamp before a
 // ceiling, in one cell, hides it, and must not be dimmed by the mean of both. Less: the parts of a small lamp are larger than it.
 float areaRatio(uint base) {
-    bool measured = !WARPED && params.voxelizer == VOXELIZER_RASTER
-        && (params.conservative == CONSERVATIVE_DILATE || params.conservative == CONSERVATIVE_HARDWARE);
+    bool measured = !WARPED && params.areas_measured != 0;
     uint parts = base + SIDE_PARTS;
     float covered = 16.0 * float(bitCount(voxelSlots.words[parts]) + bitCount(voxelSlots.words[parts + 1]));
     return measured && covered > 0.0 ? float(voxelSlots.words[base + 3]) / covered : 1.0;

@@ -25,7 +25,8 @@ const float EMISSION_SCALE = 16.0;
 const float EMISSION_MAX = 1024.0;
 
 layout(std430) buffer VoxelSlots { uint words[]; } voxelSlots;
-// Occupied cells: this frame's in one half of the list, last frame's in the other.
+// Occupied cells: this frame's in one half of the list, last frame's in the other. Those of a word of a brick are neighbours, and
+// so are their slots: threads beside each other read what lies beside each other.
 layout(std430) buffer VoxelCells { uint list[]; } voxelCells;
 layout(std430) buffer VoxelCounter {
     uint half_used; // by this frame, 0 or 1
@@ -35,7 +36,8 @@ layout(std430) buffer VoxelCounter {
     uint overflow; // fragments that were lost: the list of voxels or of fragments was full
     uint count; // slots in the list
     uint fragments; // stored, this frame
-    uvec3 cell_groups; // indirect dispatch over the cells, 128 threads a group
+    uint words; // of bricks that are set, this frame
+    uvec3 word_groups; // indirect dispatch over the words of bricks that are set, 4 a group
     uvec3 list_groups; // over the slots
     uvec3 side_groups; // over their sides
     uint clear_cells; // of the half that this frame takes; all, where that does not name them

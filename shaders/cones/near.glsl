@@ -78,7 +78,7 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
         ivec3 stored = storedCell(cell, cascade);
         if (cell >> 2 != brick) {
             brick = cell >> 2;
-            uint word = brickWord(LISTED_HALF, stored);
+            uint word = brickWord(LISTED_HALF, cell, cascade);
             mask = uvec2(voxelBricks.masks[word], voxelBricks.masks[word + 1]);
         }
         bool empty = mask == uvec2(0);

@@ -10,11 +10,11 @@
 #include "common/planes.glsl"
 #include "common/shadow_layers.glsl"
 #include "common/scene.glsl"
+#include "modules/shadow_lookup.glsl"
 
 layout(local_size_x = 128) in;
 
 layout(r32ui) uniform readonly uimage3D voxelIndex;
-uniform sampler2DArrayShadow shadowCompare;
 uniform writeonly image3D injected;
 
 const float PI = 3.14159265359;
@@ -58,8 +58,7 @@ Taps tapsOf(uint slot, uint side, uint base, uint axis) {
 
 float lookUp(Light light, vec3 p) {
     int layer = shadowLayerOf(light, p);
-    vec3 q = shadowPosition(layer, p);
-    return texture(shadowCompare, vec4(q.xy, layer, q.z));
+    return shadowBlended(layer, shadowPosition(layer, p));
 }
 
 // Share of the surface around `center` that sees the light, each place moved off it a little.

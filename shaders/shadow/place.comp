@@ -36,6 +36,15 @@ mat4 around(mat4 whole, float width) {
 // rasteriser clips and interpolates is as large as the scene. On an NVIDIA H100 a fifth was seen.
 const float ROUNDED_BITS = 0.5;
 
+// Depth is clamped, so what lies before the near plane casts shadows too, down to a tenth of its distance; w is 1 everywhere in
+// orthographic views.
+float nearOf(ShadowView view) {
+    if (view.texel_size_and_depth.z == 0.0) return 0.5;
+    mat4 m = transpose(view.view_projection); // z = scale * w - scale * near
+    float scale = length(m[2].xyz) / length(m[3].xyz);
+    return max(0.1 * (m[3].w - m[2].w / scale), 1e-7);
+}
+
 void main() {
     int next = int(sceneInfo.shadow_views);
     for (uint i = 0; i < sceneInfo.light_count; i++) {
@@ -44,7 +53,7 @@ void main() {
         int views = light.kind == LIGHT_POINT ? 6 : 1;
         for (int layer = light.shadow_view; layer < light.shadow_view + views; layer++) {
             ShadowView view = shadowViews.views[layer];
-            shadowLayers.layers[layer] = ShadowLayer(view.view_projection, view.texel_size_and_depth.x, view.texel_size_and_depth.z, -1, 0.0);
+            shadowLayers.layers[layer] = ShadowLayer(view.view_projection, view.texel_size_and_depth.x, view.texel_size_and_depth.z, -1, 0.0, nearOf(view));
         }
         if (light.kind != LIGHT_DIRECTIONAL) continue;
         ShadowView whole = shadowViews.views[light.shadow_view];
@@ -54,7 +63,7 @@ void main() {
             width /= params.shadow_step;
             shadowLayers.layers[layer].finer = next;
             shadowLayers.layers[next] = ShadowLayer(around(whole.view_projection, width), width, 0.0, -1,
-                ROUNDED_BITS / 16777216.0 * whole.texel_size_and_depth.x / width);
+                ROUNDED_BITS / 16777216.0 * whole.texel_size_and_depth.x / width, 0.5);
             layer = next++;
         }
     }

@@ -26,5 +26,5 @@ void main() {
     voxelCounter.kept = 0;
     voxelCounter.allocated = 0;
     voxelCounter.overflow = 0;
-    voxelCounter.fragments = 0;
+    voxelCounter.fragments = voxelCounter.words = 0;
 }

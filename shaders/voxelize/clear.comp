@@ -24,7 +24,7 @@ void main() {
         if (i < cells) {
             ivec3 cell = cellToClear(now, i);
             imageStore(voxelIndex, cell, uvec4(0));
-            uint word = brickWord(now, cell);
+            uint word = brickWord(now, ivec3(cell.xy, cell.z % params.voxel_dim), cascadeOf(cell));
             voxelBricks.masks[word] = voxelBricks.masks[word + 1] = 0;
         }
         if (i < last_cells) clearViews(cellToClear(1 - now, i));

@@ -9,8 +9,8 @@ layout(local_size_x = 1) in;
 
 void main() {
     uint now = voxelCounter.half_used;
-    voxelCounter.cell_groups = uvec3(min((cellsListed(now) + 127) / 128, 65535u), 1, 1);
-    voxelCounter.signatures[now] = voxelCounter.cells[now] > roomForCells() ? 0 : params.voxel_signature;
+    voxelCounter.word_groups = uvec3(min((voxelCounter.words + 3) / 4, 65535u), 1, 1);
+    voxelCounter.signatures[now] = params.voxel_signature;
     voxelCounter.count = 0;
     voxelCounter.list_groups = voxelCounter.side_groups = uvec3(0, 1, 1);
     uint fragments = min(voxelCounter.fragments, voxelFragments.list.length());

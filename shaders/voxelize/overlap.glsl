@@ -7,7 +7,7 @@ const float OVERLAP_EPSILON = 1e-5;
 
 bool edgeOverlaps(vec2 a, vec2 b, float orientation) {
     vec2 n = vec2(a.y - b.y, b.x - a.x) * orientation;
-    return dot(n, -a) + max(n.x, 0.0) + max(n.y, 0.0) >= -OVERLAP_EPSILON;
+    return dot(n, -a) + max(n.x, 0.0) + max(n.y, 0.0) >= -OVERLAP_EPSILON * (abs(n.x) + abs(n.y));
 }
 
 bool projectionOverlaps(vec2 a, vec2 b, vec2 c, float orientation) {

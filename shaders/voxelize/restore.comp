@@ -11,5 +11,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= voxelCounter.kept) return;
     uint word = voxelKept.words[i * SLOT_WORDS + SLOT_CELL];
-    occupy(unpackCell(word), (word >> 30) - 1);
+    ivec3 stored = unpackCell(word);
+    int cascade = cascadeOf(stored);
+    occupy(ivec3(stored.xy, stored.z - cascade * params.voxel_dim), cascade, (word >> 30) - 1);
 }

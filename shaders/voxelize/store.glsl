@@ -4,17 +4,19 @@
 #define STORE_VOXEL_GLSL
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
+#include "common/bricks.glsl"
 
 layout(r32ui) coherent uniform uimage3D voxelIndex;
 
-// Notes that a cell has surfaces along an axis. Only the first invocation that comes lists the cell, and none waits for it.
-void occupy(ivec3 cell, uint axis) {
+// Notes that a cell has surfaces along an axis. Only the first invocation that comes to a word of a brick lists it, and none waits
+// for it.
+void occupy(ivec3 cell, int cascade, uint axis) {
+    ivec3 stored = storedCell(cell, cascade);
     uint bit = 1u << axis;
-    if ((imageLoad(voxelIndex, cell).r & bit) != 0) return;
-    if (imageAtomicOr(voxelIndex, cell, bit) != 0) return;
-    uint p = voxelCounter.half_used, i = atomicAdd(voxelCounter.cells[p], 1);
-    if (i < roomForCells()) voxelCells.list[p * roomForCells() + i] = packCell(cell);
-    else imageAtomicOr(voxelIndex, cell, CELL_FULL);
+    if ((imageLoad(voxelIndex, stored).r & bit) != 0) return;
+    if (imageAtomicOr(voxelIndex, stored, bit) != 0) return;
+    uint number = brickNumber(cell, cascade) + wordOfCell(cell), word = brickWord(voxelCounter.half_used, ivec3(0), 0) + number;
+    if (atomicOr(voxelBricks.masks[word], bitOfCell(cell)) == 0) voxelWords.list[atomicAdd(voxelCounter.words, 1)] = number;
 }
 
 // color in [0,1], normal unit, emission radiance. `cascade`: of the volume. `at`: a point of the surface near the cell's
@@ -24,7 +26,7 @@ void storeVoxel(ivec3 cell, int cascade, vec3 color, vec3 normal, vec3 emission,
     ivec3 stored = storedCell(cell, cascade);
     uint packed = packDirection(normal), axis = axisOf(unpackDirection(packed)); // as merge.comp will read it
     packed |= packOffset(at[axis] - float(cell[axis]) - 0.5);
-    occupy(stored, axis);
+    occupy(cell, cascade, axis);
     uint i = atomicAdd(voxelCounter.fragments, 1);
     if (i >= voxelFragments.list.length()) return;
     voxelFragments.list[i] = uvec4(packCell(stored), packColor(color), packed, packRadiance(emission));

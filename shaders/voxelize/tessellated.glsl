@@ -1,4 +1,4 @@
 // Cascades that the tessellator fills: beside the rasteriser, the curved one.
 int tessellatedCascades() {
-    return CURVED && params.voxelizer == VOXELIZER_RASTER ? 1 : CASCADE_COUNT;
+    return CURVED && params.voxelizer != VOXELIZER_TESSELLATED ? 1 : CASCADE_COUNT;
 }

@@ -21,7 +21,7 @@ float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     vec3 q = shadowPositionBeyond(layer, from);
     // 1/64 of the map's width.
     vec2 slope = planeSlope(layer, from, q, n, to_light, texel * float(params.shadow_dim) / 64.0);
-    q.z = clamp(q.z, 0.0, 1.0) - (params.shadow_format == SHADOW_FORMAT_D16 ? 1.0 / 65535.0 : 1e-6) - shadowLayers.layers[layer].rounding;
+    q.z = clamp(q.z, 0.0, 1.0) - params.shadow_rounding - shadowLayers.layers[layer].rounding;
     // Taps at texels' centres, which a bilinear lookup gives alone.
     vec2 centre = (floor(q.xy * float(params.shadow_dim)) + 0.5) * (1.0 / float(params.shadow_dim));
     return shadowTaps(layer, vec3(centre, q.z + dot(slope, centre - q.xy)), slope);

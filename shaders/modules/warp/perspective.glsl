@@ -24,6 +24,34 @@ bool curvedHolds(VolumeMap map, vec3 p) {
     return inVolume(curvedFromWorld(map, p));
 }
 
+// Perspective keeps triangles flat where depth is that of a depth buffer; cells are boxes there too.
+const bool FLAT = true;
+
+vec3 curvedFlat(VolumeMap map, vec3 p) {
+    vec3 d = p - map.eye;
+    float w = max(dot(d, map.axis_z), 0.5 * map.range.x);
+    vec2 xy = vec2(dot(d, map.axis_x) / dot(map.axis_x, map.axis_x), dot(d, map.axis_y) / dot(map.axis_y, map.axis_y)) / w;
+    return vec3(xy * 0.5 + 0.5, (1.0 - map.range.x / w) / (1.0 - map.range.x / map.range.y)) * float(params.voxel_dim);
+}
+
+vec3 flatOfCurved(VolumeMap map, vec3 cells) {
+    float w = max(mix(map.range.x, map.range.y, cells.z / float(params.voxel_dim)), 0.5 * map.range.x);
+    return vec3(cells.xy, (1.0 - map.range.x / w) / (1.0 - map.range.x / map.range.y) * float(params.voxel_dim));
+}
+
+vec3 curvedOfFlat(VolumeMap map, vec3 f) {
+    float per_w = max((1.0 - f.z / float(params.voxel_dim) * (1.0 - map.range.x / map.range.y)) / map.range.x, 0.5 / map.range.y);
+    return vec3(f.xy, (1.0 / per_w - map.range.x) / (map.range.y - map.range.x) * float(params.voxel_dim));
+}
+
+void curvedBounds(VolumeMap map, vec3 a, vec3 b, vec3 c, out vec3 low, out vec3 high) {
+    low = high = vec3(0.0);
+}
+
+bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
+    return false;
+}
+
 // Whether a triangle is wholly before or behind the cells (1), or crosses their near side, where it has no coordinates (0);
 // -1: its corners' coordinates tell.
 int curvedOutside(VolumeMap map, vec3 a, vec3 b, vec3 c) {

@@ -1,0 +1,21 @@
+// The shading normal: interpolated, bent by the material's normal map, on the side of the face that is seen.
+#ifndef NORMALS_GLSL
+#define NORMALS_GLSL
+#include "common/materials.glsl"
+
+// normal, tangent: as interpolated, in the world; w of the tangent: the sign of the bitangent.
+vec3 mappedNormal(Material m, vec2 uv, Gradient g, vec3 normal, vec4 tangent, vec3 face) {
+    vec3 n = normalize(normal);
+    float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
+    if (m.normal_texture != NO_TEXTURE) {
+        vec3 t = tangentNormal(m, uv, g);
+        vec3 x = tangent.xyz - n * dot(n, tangent.xyz);
+        if (dot(x, x) > 1e-12) {
+            x = normalize(x);
+            n = normalize(mat3(x, cross(n, x) * tangent.w, n) * t);
+        }
+    }
+    return n * side;
+}
+
+#endif

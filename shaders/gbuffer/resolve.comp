@@ -1,0 +1,70 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The G-buffer of what the visibility buffer names: where the ray of a pixel and those of its neighbours meet the triangle's plane
+// (Moller and Trumbore 1997) gives attributes and the gradients of textures (Schied and Dachsbacher 2015).
+#include "common/scene.glsl"
+#include "common/materials.glsl"
+#include "common/gbuffer.glsl"
+#include "common/normals.glsl"
+#include "raster/triangles.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(std430) readonly buffer Visibility { uvec2 words[]; } visibility; // triangle, depth
+uniform writeonly image2D gbufferBase;
+uniform writeonly image2D gbufferNormals;
+uniform writeonly image2D gbufferEmission;
+uniform writeonly image2D gbufferDistance;
+uniform writeonly image2D visibleDepth;
+
+// Through a point of the picture; not unit length.
+vec3 rayThrough(vec2 pixel) {
+    vec2 clip = pixel / vec2(camera.size) * 2.0 - 1.0;
+    return transpose(mat3(camera.view)) * vec3(clip.x / camera.projection[0][0], clip.y / camera.projection[1][1], -1.0);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
+    uvec2 word = visibility.words[uint(pixel.y) * camera.size.x + uint(pixel.x)];
+    imageStore(visibleDepth, pixel, vec4(uintBitsToFloat(word.y)));
+    if (word.y == 0) {
+        imageStore(gbufferBase, pixel, vec4(0.0));
+        imageStore(gbufferNormals, pixel, vec4(0.0));
+        imageStore(gbufferEmission, pixel, vec4(0.0));
+        imageStore(gbufferDistance, pixel, vec4(0.0));
+        return;
+    }
+    uvec2 t = triangles.list[word.x];
+    Draw draw = draws.draws[t.x];
+    uvec3 vertex = uvec3(indices.indices[t.y], indices.indices[t.y + 1], indices.indices[t.y + 2]);
+    vec3 a = toWorld(draw.instance, loadPosition(vertex.x));
+    vec3 e = toWorld(draw.instance, loadPosition(vertex.y)) - a, f = toWorld(draw.instance, loadPosition(vertex.z)) - a;
+    VertexAttributes at[3] = VertexAttributes[3](loadAttributes(vertex.x), loadAttributes(vertex.y), loadAttributes(vertex.z));
+
+    // Along a ray: its length to the plane, and the weights of the second and third corner there.
+    vec3 from = camera.position - a, plane = cross(e, f);
+    mat3 meet = mat3(cross(from, f), cross(e, from), plane);
+    vec3 ray = rayThrough(vec2(pixel) + 0.5);
+    vec3 across = ray * meet, across_x = rayThrough(vec2(pixel) + vec2(1.5, 0.5)) * meet, across_y = rayThrough(vec2(pixel) + vec2(0.5, 1.5)) * meet;
+    // Of a triangle that is seen edge-on rounding decides where: not beyond its corners, nor far from where it was drawn.
+    vec2 weights = clamp(across.xy / (across.z == 0.0 ? 1e-30 : across.z), 0.0, 1.0);
+    float drawn = camera.near / uintBitsToFloat(word.y);
+    float along = clamp(-dot(from, plane) / (across.z == 0.0 ? 1e-30 : across.z), 0.99 * drawn, 1.01 * drawn);
+    mat2 uv_of = mat2(at[1].uv - at[0].uv, at[2].uv - at[0].uv);
+    vec2 uv = at[0].uv + uv_of * weights;
+    Gradient g = Gradient(uv_of * (across_x.xy / across_x.z - weights), uv_of * (across_y.xy / across_y.z - weights));
+
+    Material m = materials.materials[draw.material];
+    vec3 b = vec3(1.0 - weights.x - weights.y, weights);
+    vec3 normal = normalToWorld(draw.instance, mat3(at[0].normal, at[1].normal, at[2].normal) * b);
+    vec4 tangent = mat3x4(at[0].tangent, at[1].tangent, at[2].tangent) * b;
+    tangent.xyz = mat3(instances.instances[draw.instance].model) * tangent.xyz;
+    vec3 face = dot(plane, plane) > 0.0 ? normalize(plane) : normalize(normal);
+    if (dot(face, ray) > 0.0) face = -face;
+    vec2 rm = roughnessMetallic(m, uv, g);
+    imageStore(gbufferBase, pixel, vec4(baseColor(m, uv, g).rgb, rm.x));
+    imageStore(gbufferNormals, pixel, vec4(packNormal(mappedNormal(m, uv, g, normal, tangent, face)), packNormal(face)));
+    imageStore(gbufferEmission, pixel, vec4(emission(m, uv, g), rm.y));
+    imageStore(gbufferDistance, pixel, vec4(along * length(ray)));
+}

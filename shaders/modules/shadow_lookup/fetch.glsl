@@ -1,0 +1,13 @@
+// Of one texel, or blended between four, whichever way the map was drawn. Beyond the map all is lit.
+uniform sampler2DArray shadowDepths;
+
+float shadowLit(int layer, vec3 at) {
+    return at.z <= textureLod(shadowDepths, vec3(at.xy, layer), 0.0).r ? 1.0 : 0.0;
+}
+
+float shadowBlended(int layer, vec3 at) {
+    vec4 lit = vec4(lessThanEqual(vec4(at.z), textureGather(shadowDepths, vec3(at.xy, layer))));
+    vec2 between = fract(at.xy * float(params.shadow_dim) - 0.5);
+    vec2 columns = mix(lit.wx, lit.zy, between.x); // upper, lower row
+    return mix(columns.x, columns.y, between.y);
+}

@@ -1,0 +1,38 @@
+// The tiles of large pieces, a group a piece.
+#include "raster/fill.glsl"
+
+layout(local_size_x = 32) in;
+
+// One atomic of the queue's length for all of a group: a hundred thousand would wait for each other.
+shared uint found;
+shared uint first_entry;
+
+void main() {
+    uint count = min(rasterCounter.pieces, rasterPieces.list.length());
+    for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
+        Piece p = rasterPieces.list[i];
+        Outline o;
+        outlineOf(p, targetSize(), o); // pieces in the queue have one
+        ivec2 first = o.low / TILE, tiles = o.high / TILE - first + 1;
+        int many = tiles.x * tiles.y;
+        for (int start = 0; start < many; start += int(gl_WorkGroupSize.x)) {
+            if (gl_LocalInvocationIndex == 0) found = 0;
+            barrier();
+            int t = start + int(gl_LocalInvocationIndex);
+            ivec2 tile = first + ivec2(t % tiles.x, t / tiles.x);
+            bool meets = t < many && meetsRectangle(o, tile * TILE, ivec2(TILE));
+            uint mine = meets ? atomicAdd(found, 1) : 0;
+            barrier();
+            if (gl_LocalInvocationIndex == 0) first_entry = atomicAdd(rasterCounter.tiles, found);
+            barrier();
+            if (!meets) continue;
+            uint k = first_entry + mine;
+            if (k < rasterTiles.list.length()) {
+                rasterTiles.list[k] = uvec2(i, uint(tile.x | tile.y << 16));
+            } else {
+                ivec2 corner = tile * TILE;
+                fillRectangle(p, o, materialOf(p.triangle), max(o.low, corner), min(o.high, corner + TILE - 1));
+            }
+        }
+    }
+}

@@ -1,0 +1,40 @@
+// Filling the pixels of pieces. The including shader says where to: targetSize; isNearer, whether a depth is not hidden yet; plot.
+#ifndef RASTER_FILL_GLSL
+#define RASTER_FILL_GLSL
+#include "common/scene.glsl"
+#include "common/materials.glsl"
+#include "raster/pieces.glsl"
+#include "raster/triangles.glsl"
+
+// Texture coordinates at a point of the screen, of a piece's plane.
+vec2 uvAt(Piece p, Outline o, vec2 at) {
+    vec3 b = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at)) * vec3(p.per_w[0], p.per_w[1], p.per_w[2]);
+    return (b.x * p.uv[0] + b.y * p.uv[1] + b.z * p.uv[2]) / (b.x + b.y + b.z);
+}
+
+bool isCutOut(Piece p, Outline o, Material m, vec2 at) {
+    vec2 uv = uvAt(p, o, at);
+    return baseColor(m, uv, Gradient(uvAt(p, o, at + vec2(1, 0)) - uv, uvAt(p, o, at + vec2(0, 1)) - uv)).a < m.alpha_cutoff;
+}
+
+void fillPixel(Piece p, Outline o, Material m, ivec2 pixel) {
+    vec2 at = vec2(pixel) + 0.5;
+    vec3 e = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at));
+    if (!isInside(o.edges[0], e.x) || !isInside(o.edges[1], e.y) || !isInside(o.edges[2], e.z)) return;
+    vec2 steps = vec2(pixel - o.low);
+    precise float depth = clamp(p.depth + p.slope.x * steps.x + p.slope.y * steps.y, p.range.x, p.range.y);
+    if (!isNearer(pixel, p.layer, depth)) return;
+    if (m.alpha_cutoff > 0.0 && isCutOut(p, o, m, at)) return;
+    plot(pixel, p.layer, depth, p.triangle);
+}
+
+void fillRectangle(Piece p, Outline o, Material m, ivec2 low, ivec2 high) {
+    for (int y = low.y; y <= high.y; y++)
+        for (int x = low.x; x <= high.x; x++) fillPixel(p, o, m, ivec2(x, y));
+}
+
+Material materialOf(uint triangle) {
+    return materials.materials[draws.draws[triangles.list[triangle].x].material];
+}
+
+#endif

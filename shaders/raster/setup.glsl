@@ -1,0 +1,106 @@
+// Sets triangles up, a thread a triangle and layer: to clip space, cut at the near plane, to the screen; small ones are filled.
+// The including shader says, beside what raster/fill.glsl asks for: targetClip, a clip position; targetNear, its least w.
+#include "raster/fill.glsl"
+
+layout(local_size_x = 64) in;
+
+struct Corner {
+    vec4 clip;
+    vec2 uv;
+};
+
+// Depth as a linear function of the place on the screen, [-1,1]: from clip positions, before the near plane cuts anything and
+// corners close to it land far outside the picture, where a float has few digits left for the inside.
+vec3 depthPlane(Corner a, Corner b, Corner c) {
+    vec3 from = a.clip.xyw;
+    precise vec3 e = b.clip.xyw - from, f = c.clip.xyw - from, normal = cross(e, f);
+    precise vec3 sum = a.clip.z * normal + (b.clip.z - a.clip.z) * cross(f, from) + (c.clip.z - a.clip.z) * cross(from, e);
+    return sum / dot(normal, from);
+}
+
+void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, Material m) {
+    ivec2 size = targetSize();
+    Piece p;
+    p.uv = vec2[3](a.uv, b.uv, c.uv);
+    p.triangle = triangle;
+    p.layer = layer;
+    vec4 clip[3] = vec4[3](a.clip, b.clip, c.clip);
+    float depths[3];
+    for (int i = 0; i < 3; i++) {
+        precise vec2 pixel = (clip[i].xy / clip[i].w * 0.5 + 0.5) * vec2(size);
+        p.corner[i] = pixel;
+        p.per_w[i] = 1.0 / clip[i].w;
+        depths[i] = clamp(clip[i].z / clip[i].w, 0.0, 1.0);
+    }
+    Outline o;
+    if (!outlineOf(p, size, o)) return;
+    vec2 first = (vec2(o.low) + 0.5) / vec2(size) * 2.0 - 1.0;
+    precise float depth = plane.x * first.x + plane.y * first.y + plane.z;
+    p.depth = depth;
+    p.slope = plane.xy * 2.0 / vec2(size);
+    p.range = vec2(min(depths[0], min(depths[1], depths[2])), max(depths[0], max(depths[1], depths[2])));
+    ivec2 edge = o.high - o.low + 1;
+    if (edge.x * edge.y > SMALL) {
+        uint i = atomicAdd(rasterCounter.pieces, 1);
+        if (i < rasterPieces.list.length()) {
+            rasterPieces.list[i] = p;
+            return;
+        }
+    }
+    fillRectangle(p, o, m, o.low, o.high);
+}
+
+// Where the line from a corner before the near plane to one behind it is cut: from the same end for both triangles beside it.
+Corner cut(Corner before, Corner behind, float near) {
+    precise float t = (before.clip.w - near) / (before.clip.w - behind.clip.w);
+    precise vec4 clip = before.clip + t * (behind.clip - before.clip);
+    return Corner(vec4(clip.xyz, near), mix(before.uv, behind.uv, t));
+}
+
+void setUp(uint triangle, uint layer) {
+    uvec2 t = triangles.list[triangle];
+    Draw d = draws.draws[t.x];
+    Corner corner[3];
+    for (int i = 0; i < 3; i++) {
+        uint vertex = indices.indices[t.y + i];
+        corner[i] = Corner(targetClip(toWorld(d.instance, loadPosition(vertex)), layer), vec2(0.0));
+    }
+    for (int k = 0; k < 2; k++) {
+        vec3 x = vec3(corner[0].clip[k], corner[1].clip[k], corner[2].clip[k]);
+        vec3 w = vec3(corner[0].clip.w, corner[1].clip.w, corner[2].clip.w);
+        if (all(greaterThan(x, w)) || all(lessThan(x, -w))) return;
+    }
+    float near = targetNear(layer);
+    uint before = 0;
+    for (int i = 0; i < 3; i++) before |= uint(corner[i].clip.w >= near) << i;
+    if (before == 0) return;
+    Material m = materials.materials[d.material];
+    if (m.alpha_cutoff > 0.0)
+        for (int i = 0; i < 3; i++) corner[i].uv = loadAttributes(indices.indices[t.y + i]).uv;
+    vec3 plane = depthPlane(corner[0], corner[1], corner[2]);
+    Corner parts[6];
+    for (int i = 0; i < 3; i++) parts[i] = corner[i];
+    int count = 1;
+    if (before != 7) {
+        bool one = bitCount(before) == 1;
+        int odd = findLSB(one ? before : 7u & ~before); // the corner that is alone on its side
+        Corner a = corner[odd], b = corner[(odd + 1) % 3], c = corner[(odd + 2) % 3];
+        if (one) {
+            parts[0] = a;
+            parts[1] = cut(a, b, near);
+            parts[2] = cut(a, c, near);
+        } else {
+            parts[0] = parts[3] = b;
+            parts[1] = c;
+            parts[2] = parts[4] = cut(c, a, near);
+            parts[5] = cut(b, a, near);
+            count = 2;
+        }
+    }
+    for (int i = 0; i < 3 * count; i += 3) draw(parts[i], parts[i + 1], parts[i + 2], plane, triangle, layer, m);
+}
+
+void main() {
+    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    for (uint i = gl_GlobalInvocationID.x; i < sceneInfo.triangle_count; i += stride) setUp(i, gl_GlobalInvocationID.y);
+}

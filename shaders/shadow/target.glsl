@@ -1,0 +1,25 @@
+// The shadow maps as words: depths as floats, whose bits compare like integers. The least stays.
+#include "params.glsl"
+#include "common/shadow_layers.glsl"
+
+layout(r32ui) uniform uimage2DArray shadowWords;
+
+ivec2 targetSize() {
+    return ivec2(params.shadow_dim);
+}
+
+vec4 targetClip(vec3 p, uint layer) {
+    return shadowLayers.layers[layer].view_projection * vec4(p, 1.0);
+}
+
+float targetNear(uint layer) {
+    return shadowLayers.layers[layer].near;
+}
+
+bool isNearer(ivec2 pixel, uint layer, float depth) {
+    return floatBitsToUint(depth) < imageLoad(shadowWords, ivec3(pixel, layer)).r;
+}
+
+void plot(ivec2 pixel, uint layer, float depth, uint triangle) {
+    imageAtomicMin(shadowWords, ivec3(pixel, layer), floatBitsToUint(depth));
+}
