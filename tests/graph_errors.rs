@@ -175,7 +175,7 @@ impl Bench {
             other => panic!("{other}"),
         })?;
         let scene = Scene::open(&experiment.scene, &|_, _| std::ops::ControlFlow::Continue(())).unwrap();
-        let env = environment(&scene, experiment.size);
+        let env = environment(&scene, experiment.size, &self.device);
         let wanted = graph.output.iter().chain(&graph.outputs).cloned().collect();
         let input = PlanInput { params: &params, env, wanted, device: &self.device };
         plan(&graph, &linked, &input)?;
@@ -1347,7 +1347,7 @@ fn what_a_shader_may_not_decide() {
         |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 18446744073709551612)),
     "#);
     assert_snapshot!(shader("fill.comp", "imageStore(grid, ivec3(gl_GlobalInvocationID), light())", "double d = double(light().x) * 3.0LF; imageStore(grid, ivec3(gl_GlobalInvocationID), vec4(float(d)))"), @r#"
-    passes/graph.ron:20:16: error: pass 'fill' needs 64-bit numbers in shaders, which Test GPU does not have
+    passes/graph.ron:20:16: error: pass 'fill' needs 64-bit floating point in shaders, which Test GPU does not have
         |         (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),
     "#);
     // One mip is sampled and stored to at once.

@@ -53,7 +53,14 @@ fn the_furnace_keeps_its_energy() {
     // Closed box, emission 1, albedo 0.5, light reflected once: radiance 1 + 0.5 everywhere.
     let lab = lab(root());
     let mut wrong = Vec::new();
-    for (dim, voxelizer) in [("32", "raster"), ("64", "raster"), ("128", "raster"), ("64", "tessellated")] {
+    for (dim, voxelizer) in [
+        ("32", "raster"),
+        ("64", "raster"),
+        ("128", "raster"),
+        ("63", "raster"),
+        ("63", "compute"),
+        ("64", "tessellated"),
+    ] {
         let settings = [("voxel_dim", dim), ("voxelizer", voxelizer), ("bounces", "one"), QUICK];
         let mut session = frames(&lab, &experiment("furnace", (64, 48), &settings), &["radiance"], 1);
         let ratio = mean(&floats(&mut session, "radiance", 0)) / 1.5;
@@ -205,10 +212,10 @@ fn every_merge_rule_keeps_the_colours() {
 }
 
 #[test]
-fn every_warp_runs_with_both_voxelizers() {
+fn every_warp_runs_with_every_voxelizer() {
     let lab = lab(root());
     for warp in ["none", "spline", "logistic", "perspective", "spherical"] {
-        for voxelizer in ["raster", "tessellated"] {
+        for voxelizer in ["raster", "tessellated", "compute"] {
             let what = format!("{warp}, {voxelizer}");
             let mut settings = vec![("voxel_dim", "32"), ("warp", warp), ("voxelizer", voxelizer), QUICK];
             if warp == "perspective" || warp == "spherical" {
@@ -400,7 +407,7 @@ fn the_preview_shows_every_scene_on_the_plainest_device() {
     assert_eq!(warnings, []);
     let params = graph.params.clone();
     let device = DeviceInfo::imaginary(Features::default());
-    let env = environment(&scene("cornell"), (64, 48));
+    let env = environment(&scene("cornell"), (64, 48), &device);
     let input = PlanInput { params: &params, env, wanted: vec!["display".into()], device: &device };
     plan(&graph, &linked, &input).unwrap();
 }

@@ -8,7 +8,7 @@ use conelab::experiment::Experiment;
 use conelab::graph::hot_reload::Change;
 use conelab::graph::load::{Folders, Graph, load};
 use conelab::graph::param::Value;
-use conelab::lab::{Lab, Session, Workspace, values_of};
+use conelab::lab::{Lab, Session, Workspace, any_device, values_of};
 use insta::assert_snapshot;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -224,7 +224,7 @@ fn a_live_session_builds_only_what_includes_the_model() {
     let cornell = scene("cornell");
     let build = |option: &str, old: Option<&Session>| {
         let experiment = small(option);
-        let loaded = lab.home.load_for(&experiment, &cornell).unwrap();
+        let loaded = lab.home.load_for(&experiment, &cornell, &lab.gpu.info).unwrap();
         let wanted = WANTED.map(String::from).to_vec();
         let reuse = old.map(Session::reusable_parts);
         lab.build(&experiment, &loaded, cornell.clone(), wanted, reuse.as_ref()).unwrap()
@@ -423,7 +423,7 @@ fn value(graph: &Graph, name: &str, settings: &[(&str, &str)]) -> Value {
     for (name, value) in settings {
         params.set(name, value).unwrap();
     }
-    let values = values_of(graph, &params, &scene("triangles"), (64, 48));
+    let values = values_of(graph, &params, &scene("triangles"), (64, 48), &any_device());
     let index = graph.values.iter().position(|v| v.name == name).unwrap();
     values[index].clone()
 }

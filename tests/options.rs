@@ -46,7 +46,7 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
 }
 
 /// Parameters that are for speed, not for the picture.
-const SAME_PICTURE: [&str; 1] = ["volume_scroll"];
+const SAME_PICTURE: [&str; 4] = ["volume_scroll", "gbuffer", "shadow_map", "voxelizer"];
 
 /// What depends on the order in which fragments come, which no two frames of a GPU share.
 const BY_ORDER: [&str; 1] = ["merge=running_average"];

@@ -370,18 +370,8 @@ fn damaged_references_are_told_and_not_trusted() {
     let said = {
         std::fs::write(&sums, &flipped).unwrap();
         let mut command = conelab(home.path());
-        command.args([
-            "reference",
-            "configs/default.ron",
-            "--scene",
-            "cornell",
-            "--size",
-            "16x12",
-            "--spp",
-            "64",
-            "--bounces",
-            "1",
-        ]);
+        command.args(["reference", "configs/default.ron", "--scene", "cornell", "--size", "16x12"]);
+        command.args(["--spp", "64", "--bounces", "1"]);
         fails(&mut command)
     };
     assert!(said.contains("delete the folder"), "{said}");

@@ -178,7 +178,7 @@ fn a_shader_is_compiled_when_its_pass_first_runs() {
     let Err(found) = bench.lab.home.load("graph.ron") else { panic!("it must not compile") };
     assert!(found[0].place.file.ends_with("again.comp"), "{found:?}");
     let once = bench.experiment("");
-    let loaded = bench.lab.home.load_for(&once, &bench.scene).unwrap();
+    let loaded = bench.lab.home.load_for(&once, &bench.scene, &bench.lab.gpu.info).unwrap();
     assert_eq!(loaded.warnings, []);
     let wanted = || vec!["count".into(), "sized".into()];
     let build = |experiment: &Experiment, reuse: Option<&Session>| {

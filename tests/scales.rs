@@ -161,7 +161,7 @@ fn shadow_maps_move_by_whole_texels() {
         session.frame(0.0).unwrap();
         session.finish().unwrap();
         let words: Vec<f32> = bytemuck::pod_collect_to_vec(&session.buffer("shadowLayers").unwrap());
-        words.chunks(20).map(<[f32]>::to_vec).collect()
+        words.chunks(24).map(<[f32]>::to_vec).collect()
     };
     let first = layers(Vec3::ZERO);
     assert_eq!(first.len(), 4, "200 km need four maps");

@@ -82,7 +82,7 @@ fn every_volume_keeps_the_energy() {
     let lab = lab(root());
     let mut wrong = Vec::new();
     for (kind, settings) in KINDS {
-        for voxelizer in ["raster", "tessellated"] {
+        for voxelizer in ["raster", "tessellated", "compute"] {
             let settings = [settings, &[("voxel_dim", "48"), ("voxelizer", voxelizer), NO_BOUNCES, QUICK]].concat();
             let mut furnace = frames(&lab, &experiment("furnace", (48, 36), &settings), &["radiance"], 1);
             let energy = mean(&floats(&mut furnace, "radiance", 0)) / 1.5;
@@ -106,7 +106,7 @@ fn every_block_is_filled() {
     let scene = scene("cornell");
     let mut wrong = Vec::new();
     for (kind, settings) in &KINDS[1..] {
-        for (voxelizer, least) in [("raster", 0.999), ("tessellated", 0.92)] {
+        for (voxelizer, least) in [("raster", 0.999), ("tessellated", 0.92), ("compute", 1.0)] {
             let curved = usize::from(settings[0].0 == "warp");
             let cascades = settings.iter().find(|s| s.0 == "cascades").map_or(1, |s| s.1.parse::<usize>().unwrap());
             for block in curved..curved + cascades {
@@ -164,7 +164,7 @@ fn curved_blocks_are_filled() {
     let scene = scene("cornell");
     let (dim, mut wrong) = (48u32, Vec::new());
     for warp in ["perspective", "spherical"] {
-        for voxelizer in ["raster", "tessellated"] {
+        for voxelizer in ["raster", "tessellated", "compute"] {
             let set = [
                 ("voxel_dim", "48"),
                 ("warp", warp),
@@ -245,7 +245,14 @@ fn scrolling_ends_where_voxelizing_anew_does() {
         [0.0, 0.0, 0.0],
         [0.0, 0.3, 0.0],
     ];
-    for (voxelizer, cascades) in [("raster", "1"), ("tessellated", "1"), ("raster", "2"), ("tessellated", "2")] {
+    for (voxelizer, cascades) in [
+        ("raster", "1"),
+        ("tessellated", "1"),
+        ("compute", "1"),
+        ("raster", "2"),
+        ("tessellated", "2"),
+        ("compute", "2"),
+    ] {
         let set = [
             ("voxel_dim", "32"),
             ("volume", "camera"),
@@ -331,7 +338,7 @@ fn scrolling_sees_every_change() {
                 params.set("volume_offset", &format!("({x}, 0, 0)")).unwrap();
             }
             if !kept.set_params(&lab, &params).unwrap() {
-                let loaded = lab.home.load_for(&wanted, &kept.scene).unwrap();
+                let loaded = lab.home.load_for(&wanted, &kept.scene, &lab.gpu.info).unwrap();
                 let names = ["voxelIndex", "voxelColor"].map(String::from).to_vec();
                 let mut next =
                     lab.build(&wanted, &loaded, kept.scene.clone(), names, Some(&kept.reusable_parts())).unwrap();

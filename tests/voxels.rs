@@ -220,6 +220,14 @@ fn closed_meshes_in_a_hundred_poses() {
             leaky_26: (0, 0),
         },
         Known {
+            title: "compute",
+            set: &[("voxelizer", "compute")],
+            recall: (1.0, 1.0),
+            precision: 1.0,
+            leaky_6: (0, 0),
+            leaky_26: (0, 0),
+        },
+        Known {
             title: "tessellated",
             set: &[("voxelizer", "tessellated")],
             recall: (0.78, 0.82),
@@ -300,6 +308,7 @@ fn uneven_cells_are_compared_too() {
     let modes = [
         ("msaa", ("conservative", "msaa"), 0.95, 0.999),
         ("dilate", ("conservative", "dilate"), 1.0, 1.0),
+        ("compute", ("voxelizer", "compute"), 1.0, 1.0),
         ("tessellated", ("voxelizer", "tessellated"), 0.97, 0.999),
     ];
     for (warp, (title, mode, least, right)) in ["spline", "logistic"].into_iter().flat_map(|w| modes.map(|m| (w, m))) {
@@ -324,10 +333,12 @@ fn the_command_tells_every_mode() {
     println!("{out}");
     let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
     let modes = report["modes"].as_array().unwrap();
-    assert_eq!(modes.len(), 6);
+    assert_eq!(modes.len(), 7);
     let titled = |title: &str| modes.iter().find(|m| m["title"] == title).unwrap();
-    assert_eq!(titled("raster dilate")["score"]["holes"], 0);
-    assert_eq!(titled("raster dilate")["score"]["extras"], 0);
+    for exact in ["raster dilate", "compute"] {
+        assert_eq!(titled(exact)["score"]["holes"], 0);
+        assert_eq!(titled(exact)["score"]["extras"], 0);
+    }
     assert!(titled("raster off")["score"]["shapes"]["needle"]["recall"].as_f64().unwrap() < 0.2);
     let hardware = titled("raster hardware");
     assert!(

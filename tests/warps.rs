@@ -388,6 +388,7 @@ fn no_warp_loses_voxels() {
         ("msaa", [("voxelizer", "raster"), ("conservative", "msaa")]),
         ("dilate", [("voxelizer", "raster"), ("conservative", "dilate")]),
         ("tessellated", [("voxelizer", "tessellated"), ("tess_rate", "1.0")]),
+        ("compute", [("voxelizer", "compute"), ("conservative", "off")]),
     ];
     let base = [("voxel_dim", "48"), ("shadow_dim", "256")];
     for (name, scene) in &scenes {

@@ -114,28 +114,28 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
     let mut driver = small();
     let first = driver.first_picture();
     let good = driver.shows(&first);
-    let display = driver.file("shaders/display/display.frag");
+    let display = driver.file("shaders/display/display.comp");
     let cone = driver.file("shaders/cones/cone.glsl");
 
     // Saved in two ways: a new file renamed over the old one, and the old file written.
     let line = "toneMap(c * exp2(params.exposure))";
     let dimmed = with(&display, line, &format!("0.5 * {line}"));
     let mark = driver.now();
-    driver.rename_into("shaders/display/display.frag", &dimmed);
+    driver.rename_into("shaders/display/display.comp", &dimmed);
     let dim = driver.other_picture(mark, 0, &first);
     driver.shows(&dim);
     let built = driver.event(mark, "built");
     assert_eq!(number(&built, "rebuilt"), 1.0, "only the pass that shows: {built}");
     assert!(number(&built, "kept") > 5.0, "{built}");
     let mark = driver.now();
-    driver.write("shaders/display/display.frag", &display);
+    driver.write("shaders/display/display.comp", &display);
     driver.picture(mark, 0, &first);
     driver.shows(&first);
     let mark = driver.now();
-    driver.write("shaders/display/display.frag", &dimmed);
+    driver.write("shaders/display/display.comp", &dimmed);
     driver.picture(mark, 0, &dim);
     let mark = driver.now();
-    driver.rename_into("shaders/display/display.frag", &display);
+    driver.rename_into("shaders/display/display.comp", &display);
     driver.picture(mark, 0, &first);
     driver.shows(&first);
 
@@ -158,19 +158,19 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
     let source = "(of: \"radiance\"),";
     let cases = [
         (
-            "shaders/display/display.frag",
+            "shaders/display/display.comp",
             with(&display, "uniform sampler2D source;", "uniform sampler2D source"),
             None,
             "syntax",
         ),
         (
-            "shaders/display/display.frag",
+            "shaders/display/display.comp",
             with(&display, "#include \"params.glsl\"", "#include \"params.glsl\"\n#include \"parms.glsl\""),
             Some(at(&display, "#include \"params.glsl\"") + 1),
             "parms.glsl",
         ),
         (
-            "shaders/display/display.frag",
+            "shaders/display/display.comp",
             display.replace("sampler2D source", "sampler2D sourze").replace("texelFetch(source", "texelFetch(sourze"),
             Some(at(&display, "sampler2D source")),
             "sourze",
@@ -286,7 +286,7 @@ fn a_window_may_become_tiny_or_vanish_for_a_while() {
     let mut driver = small();
     let first = driver.first_picture();
     driver.shows(&first);
-    let dimmed = driver.file("shaders/display/display.frag").replace("c * exp2", "0.5 * c * exp2");
+    let dimmed = driver.file("shaders/display/display.comp").replace("c * exp2", "0.5 * c * exp2");
     for (width, height) in [(1, 1), (3000, 2), (333, 222), (1, 700)] {
         driver.resize(width, height);
         std::thread::sleep(Duration::from_millis(150));
@@ -297,7 +297,7 @@ fn a_window_may_become_tiny_or_vanish_for_a_while() {
     driver.unmap();
     std::thread::sleep(Duration::from_millis(200));
     let mark = driver.now();
-    driver.rename_into("shaders/display/display.frag", &dimmed);
+    driver.rename_into("shaders/display/display.comp", &dimmed);
     std::thread::sleep(Duration::from_millis(300));
     driver.map();
     let dim = driver.other_picture(mark, 0, &first);
@@ -332,13 +332,13 @@ fn two_hundred_reloads_leave_nothing_behind() {
     let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut driver = WindowDriver::open(SMALL, &["--size", "32x24"]);
     driver.first_picture();
-    let display = driver.file("shaders/display/display.frag");
+    let display = driver.file("shaders/display/display.comp");
     let start = Instant::now();
     let (mut memory, mut objects) = (0.0, 0.0);
     for i in 0..200 {
         let mark = driver.now();
         let factor = if i % 2 == 0 { "0.5 * c * exp2" } else { "0.6 * c * exp2" };
-        driver.rename_into("shaders/display/display.frag", &display.replace("c * exp2", factor));
+        driver.rename_into("shaders/display/display.comp", &display.replace("c * exp2", factor));
         let built = driver.event(mark, "built");
         if i == 20 {
             (memory, objects) = (driver.memory(), number(&built, "objects"));
