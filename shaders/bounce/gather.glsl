@@ -14,11 +14,12 @@ uint patternOf(uvec3 cell) {
     return ((cell.x & 3u | (cell.y & 3u) << 2 | (cell.z & 3u) << 4) * 37u) & 63u;
 }
 
-vec3 gatherAt(vec3 p, vec3 n, uint pattern) {
+// What every `of`-th ray or cone gathers, from `first` on, of the mean of all.
+vec3 gatherAt(vec3 p, vec3 n, uint pattern, int first, int of) {
     ConeOrigin o = coneOrigin(p, n, n);
     mat3 frame = frameOf(n);
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < params.bounce_cones; i++) {
+    for (int i = first; i < params.bounce_cones; i += of) {
         vec3 d = frame * cosineSample(evenPoint(uint(i) * 64u + pattern));
         sum += coneRadiance(traceBounce(o, d));
     }

@@ -10,13 +10,15 @@
 layout(local_size_x = 128) in;
 
 void main() {
-    uint i = gl_GlobalInvocationID.x, slot = i / SIDES, side = i % SIDES;
-    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
-    ivec3 cell = cellOfSlot(slot);
-    uint base = planeBase(voxelCounter.half_used, slot);
-    VolumeMap map = volume.maps[cascadeOf(cell)];
-    Side s = sideOfSlot(slot, side);
-    if (s.normal == vec3(0.0)) return;
-    vec3 p = slotPosition(map, cell, base, side, uint(axisOfSlot(slot)));
-    keepLight(gatheredWord(base, side), gatherAt(p, s.normal, patternOf(uvec3(cell))), 1.0);
+    for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.count * SIDES; i += gl_NumWorkGroups.x * 128) {
+        uint slot = i / SIDES, side = i % SIDES;
+        if (axisOfSlot(slot) < 0) continue;
+        ivec3 cell = cellOfSlot(slot);
+        uint base = planeBase(voxelCounter.half_used, slot);
+        VolumeMap map = volume.maps[cascadeOf(cell)];
+        Side s = sideOfSlot(slot, side);
+        if (s.normal == vec3(0.0)) continue;
+        vec3 p = slotPosition(map, cell, base, side, uint(axisOfSlot(slot)));
+        keepLight(gatheredWord(base, side), gatherAt(p, s.normal, patternOf(uvec3(cell)), 0, 1), 1.0);
+    }
 }

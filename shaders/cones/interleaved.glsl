@@ -26,29 +26,40 @@ float tanOfShare(int cones) {
 
 vec4 gatherDiffuse(ConeOrigin o, vec3 n, vec3 face) {
     mat3 frame = frameOf(n);
-    int cones = params.pixel_cones * gatherTimes;
     float tan_half = tanOfShare(params.pixel_cones);
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < cones; i++) {
+    for (int i = gatherShare.first; i < gatherShare.rays; i += gatherShare.of) {
         vec3 d = frame * cosineSample(pixelPoint(i));
         if (dot(d, face) <= 0.0) continue; // mapped normals lean
         CONE_BEGINS(uint(i) + 1u);
         vec4 cone = traceAny(o, d, tan_half, params.diffuse_steps);
         sum += vec4(coneRadiance(cone), 1.0 - cone.a);
     }
-    return sum / float(cones);
+    return sum / float(max(gatherShare.rays, 1));
 }
 
-// Some directions of the lobe; a cone has a sixteenth of it.
+float largest(vec3 v) {
+    return max(v.r, max(v.g, v.b));
+}
+
+// Rays into the lobe, beside those over the hemisphere: by its share of the light that the surface reflects.
+int specularRays(Surface s, vec3 v) {
+    float mirrored = largest(fresnel(s.f0, max(dot(s.normal, v), 0.0)));
+    float share = mirrored / (mirrored + largest(s.albedo));
+    return clamp(int(ceil(params.lobe_share * share * float(gatherShare.rays))), 1, max(gatherShare.rays, 1));
+}
+
+// Some directions of the lobe; a cone has a sixteenth of it. Dealt from the last thread on: the first have more of the others.
 vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    int rays = specularRays(s, v);
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < gatherTimes; i++) {
+    for (int i = gatherShare.of - 1 - gatherShare.first; i < rays; i += gatherShare.of) {
         LobeSample l = specularSample(s, face, v, blockPoint(i));
         if (l.weight == vec3(0.0)) continue;
         CONE_BEGINS(0u);
         sum += l.weight * coneRadiance(traceAny(o, l.direction, 0.5 * ggxAlpha(s.roughness), params.specular_steps));
     }
-    return sum / float(gatherTimes);
+    return sum / float(rays);
 }
 
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {

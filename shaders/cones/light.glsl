@@ -18,8 +18,13 @@ struct Gathered {
     vec3 specular; // radiance towards the viewer
 };
 
-// So many times the rays of a frame, where a surface gathers for several frames at once.
-int gatherTimes = 1;
+// The rays of a surface that are gathered here: every `of`-th of `rays`, from `first` on. What all threads gather is summed up.
+struct RayShare {
+    int rays;
+    int first;
+    int of;
+};
+RayShare gatherShare = RayShare(params.diffuse_cones, 0, 1);
 
 // Centre of the pixel that is shaded: defined by the shader.
 vec2 pixelCentre();

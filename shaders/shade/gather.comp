@@ -1,14 +1,21 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Every pixel gathers in every frame.
+// Every pixel gathers with its own set of cones, in every frame.
 #include "params.glsl"
-#include "shade/gather.glsl"
+#include "shade/gathered.glsl"
 
-uint firstNumber() {
-    return 0;
+layout(local_size_x = 8, local_size_y = 8) in;
+
+vec2 pixelCentre() {
+    return vec2(gl_GlobalInvocationID.xy) + 0.5;
 }
 
-Gathered gatherOrKeep(ivec2 pixel, GBufferSurface seen, ConeOrigin o, out float age) {
-    age = 0.0;
-    return gather(o, seen.surface, seen.face, seen.to_viewer);
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
+    GBufferSurface seen = gbufferAt(pixel);
+    Gathered light = NOTHING_GATHERED;
+    if (seen.any) light = gather(coneOrigin(seen.position, seen.face, seen.surface.normal), seen.surface, seen.face, seen.to_viewer);
+    imageStore(gatheredDiffuse, pixel, light.hemisphere);
+    imageStore(gatheredSpecular, pixel, vec4(light.specular, 0.0));
 }

@@ -11,8 +11,6 @@ void main() {
     uint now = voxelCounter.half_used;
     voxelCounter.word_groups = uvec3(min((voxelCounter.words + 3) / 4, 65535u), 1, 1);
     voxelCounter.signatures[now] = params.voxel_signature;
-    voxelCounter.count = 0;
-    voxelCounter.list_groups = voxelCounter.side_groups = uvec3(0, 1, 1);
     uint fragments = min(voxelCounter.fragments, voxelFragments.list.length());
     voxelCounter.overflow = voxelCounter.fragments - fragments;
     voxelCounter.merge_groups = uvec3(min((fragments + 127) / 128 + 1, 32768u), 1, 1);

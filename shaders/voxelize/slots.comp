@@ -47,10 +47,5 @@ void main() {
         for (uint axis = 0, slot = first; axis < 3; axis++)
             if ((axes >> axis & 1u) != 0) voxelSlots.words[slot++ * SLOT_WORDS + SLOT_CELL] = packed | (axis + 1) << 30;
         imageStore(voxelIndex, cell, uvec4(first << 3 | axes));
-        if ((occupied >> lane) == 1u) { // the word's last cell
-            atomicMax(voxelCounter.count, end);
-            atomicMax(voxelCounter.list_groups.x, min((end + 127) / 128, 65535u));
-            atomicMax(voxelCounter.side_groups.x, min((end * SIDES + 127) / 128, 65535u));
-        }
     }
 }

@@ -1,0 +1,71 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// What the sides of voxels keep of the light that they have gathered; those whose turn it is are listed. Last frame's light is found
+// by its place: `volume` says where its voxels lay, `placed` where they lie now.
+#include "params.glsl"
+#include "common/scene.glsl"
+#include "common/sides.glsl"
+#include "common/planes.glsl"
+#include "bounce/list.glsl"
+
+layout(local_size_x = 128) in;
+
+layout(std430) readonly buffer Placed { VolumeMap maps[MAX_CASCADES]; } placed;
+uniform usampler3D lastVoxelIndex;
+
+shared uint listed_here;
+shared uint first;
+
+uint before() {
+    return 1 - voxelCounter.half_used;
+}
+
+// The word of last frame's light of what lies at p and faces along an axis; 0: there was nothing.
+uint gatheredBefore(vec3 p, int cascade, uint axis, uint side) {
+    vec3 u = worldToVolume(volume.maps[cascade], p);
+    if (!inVolume(u)) return 0;
+    ivec3 cell = min(ivec3(u * float(params.voxel_dim)), ivec3(params.voxel_dim - 1));
+    uint found = texelFetch(lastVoxelIndex, storedCell(cell, cascade), 0).r;
+    if (found == CELL_FULL || (found >> axis & 1u) == 0) return 0;
+    return gatheredWord(planeBase(before(), slotOf(found, axis)), side);
+}
+
+// Bricks side by side have other turns.
+uint turnOf(uvec3 brick) {
+    return brick.x + 3u * brick.y + 5u * brick.z;
+}
+
+// Whether a side gathers. A part of the voxels each frame, and the others keep what they have; but all of them in every frame at
+// first, so that light goes round before the first pictures are seen. By bricks: neighbours gather together.
+bool gathers(uint slot, uint side) {
+    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return false;
+    ivec3 cell = cellOfSlot(slot);
+    uint axis = uint(axisOfSlot(slot)), word = gatheredWord(planeBase(voxelCounter.half_used, slot), side);
+    int cascade = cascadeOf(cell);
+    uint frames = uint(params.bounce_frames), last = gatheredBefore(volumeToWorld(placed.maps[cascade], cellCentre(cell)), cascade, axis, side);
+    float times = last == 0 ? 0.0 : timesGathered(last);
+    if (times >= float(frames) && turnOf(uvec3(cell) >> 2) % frames != camera.frame % frames) {
+        keepLight(word, lightWords(last), times);
+        return false;
+    }
+    keepLight(word, vec3(0.0), min(times + 1.0, float(frames)));
+    return true;
+}
+
+void main() {
+    if (volume.maps[0].size.x == 0.0 || !namesAll(before())) return; // there was no light
+    for (uint start = gl_WorkGroupID.x * 128; start < voxelCounter.count * SIDES; start += gl_NumWorkGroups.x * 128) {
+        uint i = start + gl_LocalInvocationIndex, place = 0;
+        if (gl_LocalInvocationIndex == 0) listed_here = 0;
+        barrier();
+        bool listed = gathers(i / SIDES, i % SIDES);
+        if (listed) place = atomicAdd(listed_here, 1);
+        barrier();
+        if (gl_LocalInvocationIndex == 0 && listed_here > 0) {
+            first = atomicAdd(bounceCounter.count, listed_here);
+            atomicMax(bounceCounter.groups.x, min((first + listed_here + BOUNCE_SIDES - 1) / BOUNCE_SIDES, 65535u));
+        }
+        barrier();
+        if (listed) bounceList.sides[first + place] = i;
+    }
+}

@@ -1,0 +1,8 @@
+// What the rays or cones of each pixel gather, to be filtered and reflected by shading.
+#include "common/gbuffer_read.glsl"
+#include "modules/trace.glsl"
+
+uniform writeonly image2D gatheredDiffuse; // mean radiance over the hemisphere; a: how open it is
+uniform writeonly image2D gatheredSpecular; // radiance towards the viewer; a: age [frames]
+
+const Gathered NOTHING_GATHERED = Gathered(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));

@@ -1,0 +1,6 @@
+// Pixels that gather although it is not their turn.
+layout(std430) buffer GatherList { uint pixels[]; } gatherList; // the pixel, and above it how
+layout(std430) buffer GatherCounter {
+    uint count;
+    uvec3 groups; // indirect dispatch over the list
+} gatherCounter;
