@@ -11,7 +11,7 @@ use std::time::Duration;
 use window_driver::{WindowDriver, centre};
 
 /// Small enough for a software device to draw several a second.
-const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": two, "gather_frames": 1 })"#;
+const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": two, "gather_frames": 1, "pixel_cones": 2 })"#;
 
 /// Four points, one of them [`SMALL`].
 const SWEEP: &str = r#"(experiments: ["configs/opened.ron"], warmup: 1, frames: 3,

@@ -103,7 +103,7 @@ fn bounces_fill_the_furnace_and_rest() {
 #[test]
 fn the_first_frames_have_no_voxels_that_wait() {
     let lab = lab(root());
-    let settings = [("voxel_dim", "32"), ("reflectance", "base"), ("gather_frames", "1"), QUICK];
+    let settings = [("voxel_dim", "32"), ("reflectance", "base"), ("gather_frames", "1"), ("pixel_cones", "2"), QUICK];
     let mut session = prepare(&lab, &experiment("furnace", (64, 48), &settings), &["diffuseIndirect"]);
     for frame in 0..8 {
         session.frame(0.0).unwrap();

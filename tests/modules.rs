@@ -86,6 +86,7 @@ fn small(opacity: &str) -> Experiment {
             ("bounces", "one"),
             ("trace", "interleaved"),
             ("gather_frames", "1"),
+            ("pixel_cones", "2"),
             ("opacity", opacity),
         ],
     );

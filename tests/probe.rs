@@ -13,7 +13,13 @@ const SIZE: (u32, u32) = (64, 48);
 #[track_caller]
 fn frame(lab: &Lab, scene: &str, at: Option<[u32; 2]>, settings: &[(&str, &str)], wanted: &[&str]) -> Session {
     let probe = at.map_or(String::from("(-1, -1)"), |[x, y]| format!("({x}.5, {y}.5)"));
-    let base = [("voxel_dim", "64"), ("shadow_dim", "512"), ("gather_frames", "1"), ("probe", probe.as_str())];
+    let base = [
+        ("voxel_dim", "64"),
+        ("shadow_dim", "512"),
+        ("gather_frames", "1"),
+        ("pixel_cones", "2"),
+        ("probe", probe.as_str()),
+    ];
     let mut session = prepare(lab, &experiment(scene, SIZE, &[&base[..], settings].concat()), wanted);
     session.frame(0.0).unwrap();
     session.finish().unwrap();

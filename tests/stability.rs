@@ -90,7 +90,7 @@ fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
     let path = home.join("small.ron");
     let text = format!(
         "(experiment: \"configs/default.ron\", warmup: 3, frames: 4, samples: 32,\n\
-         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\", \"gather_frames\": 1 }},\n\
+         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\", \"gather_frames\": 1, \"pixel_cones\": 2 }},\n\
          methods: {{\n{methods}\n}},\ncases: {{\n{cases}\n}})"
     );
     std::fs::write(&path, text).unwrap();

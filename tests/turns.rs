@@ -14,7 +14,8 @@ const TURNS: usize = 8;
 
 /// Rays of one bounce: nothing else takes more than a frame to settle.
 fn session(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Session {
-    let base = [("voxel_dim", "48"), ("shadow_dim", "512"), ("bounces", "one"), ("pixel_cones", "2")];
+    let base =
+        [("voxel_dim", "48"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "8"), ("pixel_cones", "16")];
     let base: Vec<_> = base.into_iter().filter(|(name, _)| settings.iter().all(|(n, _)| n != name)).collect();
     let e = experiment(&scene.name, SIZE, &[&base[..], settings].concat());
     lab.prepare(&e, scene.clone(), |_| Ok(vec!["radiance".into(), "gatheredDiffuse".into()])).unwrap().0
@@ -52,9 +53,9 @@ fn turns_add_up_to_all_rays_and_settle_to_the_bit() {
     let mut turns = session(&lab, &cornell, &[]);
     let first = gathered(&lab, &mut turns, 1);
     let after = gathered(&lab, &mut turns, TURNS - 1);
-    let few = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1")]), 1);
-    let all = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1"), ("pixel_cones", "16")]), 1);
-    // In the first frame an eighth has all rays and the others those of a frame, later every pixel has all.
+    let few = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1"), ("pixel_cones", "4")]), 1);
+    let all = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1")]), 1);
+    // In the first frame an eighth has all rays and the others a few, later every pixel has all.
     assert!(first.iter().zip(&few).zip(&all).all(|((f, few), all)| f == few || f == all));
     let differ: Vec<_> = first.iter().zip(&few).zip(&all).filter(|((_, few), all)| few != all).collect();
     let with_all = differ.iter().filter(|((f, _), all)| f == all).count();
@@ -134,7 +135,9 @@ fn a_moving_camera_keeps_light_where_it_belongs() {
     };
     let (first_truth, changed_truth) = (truth(&before, 23), truth(&after, 23 + TURNS + 1));
     let mut errors = Vec::new();
-    for settings in [&[][..], &[("gather_frames", "1")], &[("gather_frames", "4")]] {
+    // Of the same price: so many rays a frame for each pixel, or once in a while for some.
+    let each_frame = [("gather_frames", "1"), ("pixel_cones", "2")];
+    for settings in [&[][..], &each_frame, &[("gather_frames", "4"), ("pixel_cones", "8")]] {
         let mut live = session(&lab, &before, settings);
         let kept = follow(&mut live, 0..24);
         assert!(live.set_lights(&after.lights, after.sky));
@@ -143,7 +146,7 @@ fn a_moving_camera_keeps_light_where_it_belongs() {
         errors.push(error(&kept, &first_truth));
         println!("{settings:?}: energy {energies:.4?}, error {:.4}", error(&kept, &first_truth));
         // Two rays a pixel are too few to say so of those of one frame.
-        let sure = settings != [("gather_frames", "1")];
+        let sure = settings != each_frame;
         assert!(
             !sure || energies.iter().all(|e| (e - 1.0).abs() < 0.03),
             "{settings:?}: light is lost or made: {energies:?}"

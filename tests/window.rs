@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use window_driver::{CONTROL, F1, SHIFT, WINDOW, WindowDriver, centre, with};
 
 /// Small enough for a software device to draw several a second.
-const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "trace": interleaved, "gather_frames": 1 })"#;
+const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "trace": interleaved, "gather_frames": 1, "pixel_cones": 2 })"#;
 
 /// The test that measures how fast the program is runs without the others, which share the cores.
 static ALONE: RwLock<()> = RwLock::new(());
@@ -363,18 +363,20 @@ fn a_save_is_on_the_screen_before_one_looks_up() {
     let _alone = ALONE.write().unwrap_or_else(PoisonError::into_inner);
     let mut driver = small();
     let mut last = driver.first_picture();
+    // A slow machine needs longer for all: then the bound is a part of what building the whole graph took.
+    let limit = LIMIT.max(0.45 * number(&driver.event(0, "built"), "build_ms"));
     let cone = driver.file("shaders/cones/cone.glsl");
     // What else the machine does only adds: the best of three rounds counts.
     let mut rounds = Vec::new();
     for round in 0..3 {
         rounds.push(saves(&mut driver, &mut last, &cone, 1 + 8 * round));
-        if rounds[round as usize].0 < LIMIT + rounds[round as usize].2 {
+        if rounds[round as usize].0 < limit + rounds[round as usize].2 {
             break;
         }
     }
     let (whole, build, frame) = rounds.into_iter().min_by(|a, b| (a.0 - a.2).total_cmp(&(b.0 - b.2))).unwrap();
     println!("from save to pixels: {whole:.0} ms (build {build:.0} ms, frame {frame:.0} ms), median of 8");
-    assert!(whole < LIMIT + frame, "{whole:.0} ms, of which the frame {frame:.0}");
+    assert!(whole < limit + frame, "{whole:.0} ms, of which the frame {frame:.0}; at most {limit:.0} beside it");
     driver.close();
 }
 
