@@ -305,7 +305,7 @@ fn graph_explains_itself() {
     // What runs fits on two screens; all of it, with barriers, does not.
     for (name, stages) in [("vct", 11), ("thesis", 7), ("warps", 11), ("temporal", 11)] {
         let text = graph(&[&format!("passes/{name}.ron")]);
-        assert!(text.starts_with(&format!("graph {name}: ")) && text.lines().count() < 130, "{text}");
+        assert!(text.starts_with(&format!("graph {name}: ")) && text.lines().count() < 150, "{text}");
         assert!(text.lines().filter(|l| !l.is_empty() && !l.starts_with(' ')).count() >= stages, "{text}");
         assert!(!text.contains("COMPUTE_SHADER"), "{text}");
     }

@@ -136,7 +136,7 @@ fn sides(material: &'static str, low: [f64; 3], high: [f64; 3], inside: bool) ->
 }
 
 /// Frames until every pixel has gathered with all its rays.
-const TURNS: usize = 8;
+const TURNS: usize = 16;
 const ANY: f64 = f64::INFINITY;
 const QUICK: (&str, &str) = ("shadow_dim", "1024");
 /// What the references have.

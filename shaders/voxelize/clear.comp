@@ -19,8 +19,8 @@ void clearViews(ivec3 cell) {
 void main() {
     uint now = voxelCounter.half_used, cells = voxelCounter.clear_cells, last_cells = cellsToClear(1 - now);
     uint slots = min(voxelCounter.clear_slots, voxelSlots.words.length() / SLOT_WORDS);
-    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    for (uint i = gl_GlobalInvocationID.x; i < max(max(cells, last_cells), slots); i += stride) {
+    uint first = gl_GlobalInvocationID.x, stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    for (uint i = first; i < max(cells, last_cells); i += stride) {
         if (i < cells) {
             ivec3 cell = cellToClear(now, i);
             imageStore(voxelIndex, cell, uvec4(0));
@@ -28,7 +28,7 @@ void main() {
             voxelBricks.masks[word] = voxelBricks.masks[word + 1] = 0;
         }
         if (i < last_cells) clearViews(cellToClear(1 - now, i));
-        if (i < slots)
-            for (uint word = 0; word < SLOT_WORDS; word++) voxelSlots.words[i * SLOT_WORDS + word] = 0;
     }
+    // Word by word: threads beside each other write beside each other.
+    for (uint word = first; word < slots * SLOT_WORDS; word += stride) voxelSlots.words[word] = 0;
 }
