@@ -18,6 +18,7 @@ fn frame(lab: &Lab, scene: &str, at: Option<[u32; 2]>, settings: &[(&str, &str)]
         ("shadow_dim", "512"),
         ("gather_frames", "1"),
         ("pixel_cones", "2"),
+        ("lobe_share", "0"), // a single one
         ("probe", probe.as_str()),
     ];
     let mut session = prepare(lab, &experiment(scene, SIZE, &[&base[..], settings].concat()), wanted);

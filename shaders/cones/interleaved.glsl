@@ -56,7 +56,7 @@ vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     for (int i = gatherShare.of - 1 - gatherShare.first; i < rays; i += gatherShare.of) {
         LobeSample l = specularSample(s, face, v, blockPoint(i));
         if (l.weight == vec3(0.0)) continue;
-        CONE_BEGINS(0u);
+        CONE_BEGINS(i == 0 ? 0u : uint(params.diffuse_cones + i));
         sum += l.weight * coneRadiance(traceAny(o, l.direction, 0.5 * ggxAlpha(s.roughness), params.specular_steps));
     }
     return sum / float(rays);

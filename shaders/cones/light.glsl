@@ -2,7 +2,8 @@
 #ifndef CONE_LIGHT_GLSL
 #define CONE_LIGHT_GLSL
 
-// Before each cone; number 0 is the specular one, 1 the diffuse one on the normal or the first, then the others.
+// Before each cone; number 0 is the specular one, 1 the diffuse one on the normal or the first, then the others; last
+// come further ones of the lobe.
 #ifndef CONE_BEGINS
 #define CONE_BEGINS(number)
 #endif
