@@ -6,9 +6,11 @@
 #include "common/voxels.glsl"
 #include "common/parts.glsl"
 
-layout(std430) buffer VoxelPlanes { uint words[]; } voxelPlanes;
+layout(std430) buffer VoxelPlanes { uvec4 quads[]; } voxelPlanes;
 
-const uint PLANE_WORDS = 7 * SIDES; // by side: a plane; then by side which parts are covered, radiance, gathered light, two words each
+// By side: a plane; then by side which parts are covered, radiance, gathered light, two words each. In fours, because rays wait for
+// every load.
+const uint PLANE_WORDS = 8 * SIDES;
 
 struct Plane {
     vec3 normal; // of side 0; not unit length: 1 along its axis
@@ -16,7 +18,15 @@ struct Plane {
 };
 
 uint planeBase(uint half_used, uint slot) {
-    return (half_used * (voxelPlanes.words.length() / (2 * PLANE_WORDS)) + slot) * PLANE_WORDS;
+    return (half_used * (voxelPlanes.quads.length() / (PLANE_WORDS / 2)) + slot) * PLANE_WORDS;
+}
+
+uint planeData(uint word) {
+    return voxelPlanes.quads[word >> 2][word & 3u];
+}
+
+void keepData(uint word, uint data) {
+    voxelPlanes.quads[word >> 2][word & 3u] = data;
 }
 
 // A unit vector along an axis; and a vector of its part along the axis and the others.
@@ -34,20 +44,23 @@ uint planeWord(uint base, uint side) {
 
 // Bit 0, 1: side 0, 1 has surfaces of its own; else it is the back of the other.
 uint ownSides(uint base) {
-    return voxelPlanes.words[planeWord(base, 0)] >> 30;
+    return planeData(planeWord(base, 0)) >> 30;
 }
 
 // normal: along its axis positive.
 void keepPlane(uint word, vec3 normal, uint axis, float offset, uint own) {
     vec2 beside = besideOf(normal, axis);
     uvec2 s = uvec2(clamp(beside / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
-    voxelPlanes.words[word] = s.x | s.y << 10 | storedOffset(offset) << 20 | own << 30;
+    keepData(word, s.x | s.y << 10 | storedOffset(offset) << 20 | own << 30);
+}
+
+Plane unpackPlane(uint w, uint axis) {
+    vec2 beside = (vec2(w & 0x3ffu, w >> 10 & 0x3ffu) - 512.0) / 511.0;
+    return Plane(besideAxis(axis, 1.0, beside), offsetOfSum(float(w >> 20 & 0x3ffu), 1.0));
 }
 
 Plane planeOf(uint base, uint side, uint axis) {
-    uint w = voxelPlanes.words[planeWord(base, side)];
-    vec2 beside = (vec2(w & 0x3ffu, w >> 10 & 0x3ffu) - 512.0) / 511.0;
-    return Plane(besideAxis(axis, 1.0, beside), offsetOfSum(float(w >> 20 & 0x3ffu), 1.0));
+    return unpackPlane(planeData(planeWord(base, side)), axis);
 }
 
 uint partsWord(uint base, uint side) {
@@ -56,7 +69,7 @@ uint partsWord(uint base, uint side) {
 
 uvec2 partsOf(uint base, uint side) {
     uint word = partsWord(base, side);
-    return uvec2(voxelPlanes.words[word], voxelPlanes.words[word + 1]);
+    return uvec2(planeData(word), planeData(word + 1));
 }
 
 // A place on a plane of a slot, by the coordinates beside its axis, and the middle of its surfaces; from the cell's middle [cells].
@@ -70,18 +83,18 @@ vec3 planeMiddle(uint base, uint side, uint axis) {
 }
 
 vec3 lightWords(uint word) {
-    return vec3(unpackHalf2x16(voxelPlanes.words[word]), unpackHalf2x16(voxelPlanes.words[word + 1]).x);
+    return vec3(unpackHalf2x16(planeData(word)), unpackHalf2x16(planeData(word + 1)).x);
 }
 
 // times: how often it was gathered.
 void keepLight(uint word, vec3 light, float times) {
     light = min(light, 65504.0);
-    voxelPlanes.words[word] = packHalf2x16(light.rg);
-    voxelPlanes.words[word + 1] = packHalf2x16(vec2(light.b, times));
+    keepData(word, packHalf2x16(light.rg));
+    keepData(word + 1, packHalf2x16(vec2(light.b, times)));
 }
 
 float timesGathered(uint word) {
-    return unpackHalf2x16(voxelPlanes.words[word + 1]).y;
+    return unpackHalf2x16(planeData(word + 1)).y;
 }
 
 uint radianceWord(uint base, uint side) {

@@ -28,15 +28,17 @@ float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float ent
     word = 0;
     for (uint axis = 0; axis < 3; axis++) {
         if ((found >> axis & 1u) == 0) continue;
-        uint base = planeBase(LISTED_HALF, slot++), own = ownSides(base);
+        uint base = planeBase(LISTED_HALF, slot++);
+        uvec4 first = voxelPlanes.quads[base >> 2];
+        uint own = first.x >> 30;
         for (uint side = 0; side < SIDES; side++) {
             if ((own >> side & 1u) == 0) continue;
-            Plane plane = planeOf(base, side, axis);
+            Plane plane = unpackPlane(first[side], axis);
             vec3 middle = vec3(cell) + 0.5 + plane.offset * axisVector(axis);
             float slope = dot(plane.normal, dir), t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
             if (t < 0.0 || t < enter - NEAR_MARGIN || t > leave + NEAR_MARGIN || t >= nearest) continue;
             vec2 place = besideOf(at + t * dir - vec3(cell), axis);
-            if (!isCovered(partsOf(base, side), place)) continue;
+            if (!isCovered(SIDES == 1 ? first.yz : side == 0 ? first.zw : partsOf(base, 1), place)) continue;
             if ((side == 0) == (slope < 0.0)) {
                 nearest = t;
                 word = radianceWord(base, side);

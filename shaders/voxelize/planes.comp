@@ -24,7 +24,7 @@ void main() {
         mergedMean(sums, color, normal);
         float offset = offsetOfSum(float(voxelSlots.words[sums + SIDE_OFFSET]), float(voxelSlots.words[sums + 3]));
         keepPlane(planeWord(base, side), (seen == 0 ? normal : -normal) * axes, axis, offset, own);
-        for (uint k = 0; k < 2; k++) voxelPlanes.words[partsWord(base, side) + k] = voxelSlots.words[sums + SIDE_PARTS + k];
+        for (uint k = 0; k < 2; k++) keepData(partsWord(base, side) + k, voxelSlots.words[sums + SIDE_PARTS + k]);
         keepLight(gatheredWord(base, side), vec3(0.0), 0.0);
     }
 }
