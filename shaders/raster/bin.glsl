@@ -1,4 +1,4 @@
-// The tiles of large pieces, a group a piece.
+// The tiles of large pieces, a group a piece, which fills smaller ones itself: a tile for each costs more than they.
 #include "raster/fill.glsl"
 
 layout(local_size_x = 32) in;
@@ -13,6 +13,16 @@ void main() {
         Piece p = rasterPieces.list[i];
         Outline o;
         outlineOf(p, targetSize(), o); // pieces in the queue have one
+        if ((o.high.x - o.low.x + 1) * (o.high.y - o.low.y + 1) <= MEDIUM) {
+            Material m = materialOf(p.triangle);
+            ivec2 lane = ivec2(gl_LocalInvocationIndex & 7u, gl_LocalInvocationIndex >> 3);
+            for (int y = o.low.y; y <= o.high.y; y += 4)
+                for (int x = o.low.x; x <= o.high.x; x += 8) {
+                    ivec2 pixel = ivec2(x, y) + lane;
+                    if (all(lessThanEqual(pixel, o.high))) fillPixel(p, o, m, pixel);
+                }
+            continue;
+        }
         ivec2 first = o.low / TILE, tiles = o.high / TILE - first + 1;
         int many = tiles.x * tiles.y;
         for (int start = 0; start < many; start += int(gl_WorkGroupSize.x)) {

@@ -26,7 +26,8 @@ layout(std430) buffer RasterCounter {
 } rasterCounter;
 
 const int TILE = 32; // edge [pixels]
-const int SMALL = 64; // pixels of a bounding rectangle that a thread fills alone
+const int SMALL = 16; // pixels of a bounding rectangle that a thread fills alone
+const int MEDIUM = 1024; // that a group fills alone
 
 struct Edge {
     vec2 from;
