@@ -1,11 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Radiance leaving each voxel by direction: albedo / pi * E * max(0, n.l) * visibility, summed over all lights, plus albedo
-// times the mean radiance that the voxel has gathered, plus emission; premultiplied by opacity. Runs over the voxel list, so
-// each surface is lit once.
+// Radiance leaving each side of a voxel: albedo / pi * E * max(0, n.l) * visibility, summed over all lights, plus albedo times the
+// mean radiance that the side has gathered, plus emission. Runs over the voxel list, so each surface is lit once.
 #include "params.glsl"
 #include "common/volume.glsl"
-#include "common/directions.glsl"
 #include "common/sides.glsl"
 #include "common/planes.glsl"
 #include "common/shadow_layers.glsl"
@@ -13,9 +11,6 @@
 #include "modules/shadow_lookup.glsl"
 
 layout(local_size_x = 128) in;
-
-layout(r32ui) uniform readonly uimage3D voxelIndex;
-uniform writeonly image3D injected;
 
 const float PI = 3.14159265359;
 // Surfaces that lie nearer to each other are one [cells].
@@ -90,50 +85,16 @@ vec3 radianceOf(Side s, vec3 gathered, vec3 center, Taps taps, mat3 axes) {
     return s.color * (irradiance / PI + gathered) + s.emission;
 }
 
-// Opacity of a surface to rays along d, which cross fewer of its cells the straighter they meet it; none goes through along the
-// axis that it faces.
-float opacityTo(Side s, vec3 d) {
-    vec3 a = abs(s.normal);
-    float steepest = max(a.x, max(a.y, a.z));
-    return steepest > 0.0 ? mix(1.0, abs(dot(s.normal, d)) / steepest, params.face_opacity * s.agreement) : 1.0;
-}
-
 void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
-    ivec3 cell = cellOfSlot(slot);
-    uint found = imageLoad(voxelIndex, cell).r;
-    if (slot != firstSlot(found)) return;
-
-    VolumeMap map = volume.maps[cascadeOf(cell)];
-    vec3 center = volumeToWorld(map, cellCentre(cell));
-    mat3 axes = cellAxes(map, center);
-    vec3 light[6] = vec3[6](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    float seen[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0), opacity[6] = seen;
-    for (uint i = 0; i < slotsOf(found) * SIDES; i++) {
-        uint side = i % SIDES, base = planeBase(voxelCounter.half_used, slot + i / SIDES);
-        Side s = sideOfSlot(slot + i / SIDES, side);
-        uint axis = uint(axisOfSlot(slot + i / SIDES));
-        vec3 radiance = radianceOf(s, lightWords(gatheredWord(base, side)), center, tapsOf(slot + i / SIDES, side, base, axis), axes);
-        keepLight(radianceWord(base, side), radiance, 0.0);
-        for (int face = 0; face < 6; face++) {
-            vec3 d = normalize(axes * mipDirection(face));
-            float area = s.count * meanCosine(s, -d);
-            light[face] += area * radiance;
-            seen[face] += area;
-            if (area > 0.0) opacity[face] = min(opacity[face] + opacityTo(s, d), 1.0);
-        }
+    for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.count * SIDES; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+        uint slot = i / SIDES, side = i % SIDES;
+        if (axisOfSlot(slot) < 0) continue;
+        ivec3 cell = cellOfSlot(slot);
+        VolumeMap map = volume.maps[cascadeOf(cell)];
+        vec3 center = volumeToWorld(map, cellCentre(cell));
+        mat3 axes = cellAxes(map, center);
+        uint axis = uint(axisOfSlot(slot)), base = planeBase(voxelCounter.half_used, slot);
+        vec3 gathered = lightWords(gatheredWord(base, side));
+        keepLight(radianceWord(base, side), radianceOf(sideOfSlot(slot, side), gathered, center, tapsOf(slot, side, base, axis), axes), 0.0);
     }
-    if (params.radiance_faces == 1) {
-        vec3 sum = vec3(0.0);
-        float all = 0.0;
-        for (int face = 0; face < 6; face++) {
-            sum += light[face];
-            all += seen[face];
-        }
-        imageStore(injected, cell, vec4(sum / max(all, 1e-6), 1.0));
-        return;
-    }
-    for (int face = 0; face < 6; face++)
-        imageStore(injected, ivec3(cell.x + face * params.voxel_dim, cell.yz), vec4(light[face] / max(seen[face], 1e-6) * opacity[face], opacity[face]));
 }
