@@ -132,7 +132,7 @@ fn render_writes_a_png_and_its_measurements() {
     }
     let sum: u64 = stats["bytes"].as_object().unwrap().values().map(|b| b.as_u64().unwrap()).sum();
     assert_eq!(stats["total_bytes"], sum);
-    assert!(stats["bytes"]["voxelIndex"].as_u64().unwrap() >= 2 * 32 * 32 * 32 * 4);
+    assert!(stats["bytes"]["voxelBricks"].as_u64().unwrap() >= 2 * 32 * 32 * 16);
     assert!(stats["triangles"].as_u64().unwrap() > 0 && stats["scene_bytes"].as_u64().unwrap() > 0);
 }
 

@@ -6,7 +6,6 @@
 #include "params.glsl"
 #include "common/voxels.glsl"
 #define LISTED_HALF (1 - voxelCounter.half_used)
-#define voxelIndex lastVoxelIndex
 #include "modules/bounce_trace.glsl"
 #include "cones/near.glsl"
 #include "bounce/gather.glsl"

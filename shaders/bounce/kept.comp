@@ -6,12 +6,12 @@
 #include "common/scene.glsl"
 #include "common/sides.glsl"
 #include "common/planes.glsl"
+#include "common/bricks.glsl"
 #include "bounce/list.glsl"
 
 layout(local_size_x = 128) in;
 
 layout(std430) readonly buffer Placed { VolumeMap maps[MAX_CASCADES]; } placed;
-uniform usampler3D lastVoxelIndex;
 
 shared uint listed_here;
 shared uint first;
@@ -25,8 +25,8 @@ uint gatheredBefore(vec3 p, int cascade, uint axis, uint side) {
     vec3 u = worldToVolume(volume.maps[cascade], p);
     if (!inVolume(u)) return 0;
     ivec3 cell = min(ivec3(u * float(params.voxel_dim)), ivec3(params.voxel_dim - 1));
-    uint found = texelFetch(lastVoxelIndex, storedCell(cell, cascade), 0).r;
-    if (found == CELL_FULL || (found >> axis & 1u) == 0) return 0;
+    uint found = foundAt(before(), cell, cascade);
+    if ((found >> axis & 1u) == 0) return 0;
     return gatheredWord(planeBase(before(), slotOf(found, axis)), side);
 }
 

@@ -1,7 +1,6 @@
 // The sparse list of voxels. A slot holds the sums of what fell into a cell and faces along one axis, for its two sides apart
-// (modules/sides). The sums are integers, so their order does not matter and runs agree to the bit. A texel of `voxelIndex`
-// is 0, CELL_FULL, or says in its lowest three bits along which axes the cell's surfaces face and above them the first of as
-// many slots. The index and the list of cells are kept for two frames: light comes from last frame's voxels.
+// (modules/sides). The sums are integers, so their order does not matter and runs agree to the bit. Which slots a cell has is found
+// in common/bricks.glsl. That and the list of cells are kept for two frames: light comes from last frame's voxels.
 #ifndef VOXELS_GLSL
 #define VOXELS_GLSL
 
@@ -15,7 +14,6 @@ const uint SIDE_OUTERMOST = 11;
 const uint SIDE_PARTS = 12;
 const uint SLOT_CELL = SIDES * SIDE_WORDS; // cell, and above it the axis + 1; 0: no slot
 const uint SLOT_WORDS = SLOT_CELL + 1;
-const uint CELL_FULL = 0xffffffffu; // occupied, but a list had no room left
 
 // Fixed point, times weights. Colour and normal do not overflow before a cell is covered a thousand times; emission before
 // 2.6e5 / radiance times.
@@ -169,7 +167,7 @@ int axisOfSlot(uint slot) {
     return int(voxelSlots.words[slot * SLOT_WORDS + SLOT_CELL] >> 30) - 1;
 }
 
-// Of a texel of `voxelIndex`: how many slots the cell has, the first of them, and that of an axis.
+// Of what is found in a cell: how many slots the cell has, the first of them, and that of an axis.
 uint slotsOf(uint texel) {
     return bitCount(texel & 7u);
 }

@@ -5,8 +5,6 @@
 #include "common/planes.glsl"
 #include "common/bricks.glsl"
 
-uniform usampler3D voxelIndex;
-
 // The voxels that rays meet: this frame's, unless the shader says last frame's.
 #ifndef LISTED_HALF
 #define LISTED_HALF voxelCounter.half_used
@@ -64,7 +62,7 @@ bool meetsPlanes(ConeOrigin o) {
 }
 
 // The first surface between `from` and `range` [m] along d that a cascade has. Cells one by one (Amanatides and Woo 1987), empty
-// bricks at once.
+// bricks and blocks at once.
 Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
     VolumeMap map = volume.maps[cascade];
     float voxel;
@@ -74,28 +72,36 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
     vec3 at = worldToVolume(map, o.surface) * float(params.voxel_dim), facing = o.normal * cellAxes(map, o.surface);
     vec3 inverse = 1.0 / dir, ahead = vec3(greaterThan(dir, vec3(0.0)));
     float enter = from / voxel, end = range / voxel;
-    ivec3 cell = ivec3(floor(at + enter * dir)), brick = ivec3(-1);
-    uvec2 mask = uvec2(0);
+    ivec3 cell = ivec3(floor(at + enter * dir)), block = ivec3(-1);
+    uvec2 bricks = uvec2(0);
+    uvec4 cells = uvec4(0);
+    uint last = ~0u;
     for (int i = 0; i < 3 * params.voxel_dim && enter < end && inGrid(cell); i++) {
-        ivec3 stored = storedCell(cell, cascade);
-        if (cell >> 2 != brick) {
-            brick = cell >> 2;
-            uint word = brickWord(LISTED_HALF, cell, cascade);
-            mask = uvec2(voxelBricks.masks[word], voxelBricks.masks[word + 1]);
+        if (cell >> 4 != block) {
+            block = cell >> 4;
+            uint number = blockNumber(LISTED_HALF, cell, cascade);
+            bricks = uvec2(voxelBlocks.masks[number], voxelBlocks.masks[number + 1]);
         }
-        bool empty = mask == uvec2(0);
-        // Borders that are crossed next, of the cell or of an empty brick.
-        vec3 borders = ((empty ? vec3(brick * 4) + 4.0 * ahead : vec3(cell) + ahead) - at) * inverse;
+        ivec3 brick = cell >> 2;
+        bool empty = (bricks[wordOfCell(brick)] & bitOfCell(brick)) == 0;
+        // The edge of what is crossed at once, and where it begins; its borders that are crossed next.
+        int edge = bricks == uvec2(0) ? 16 : empty ? 4 : 1;
+        ivec3 first = cell & -edge;
+        vec3 borders = (vec3(first) + float(edge) * ahead - at) * inverse;
         float leave = min(borders.x, min(borders.y, borders.z));
-        if (!empty && (mask[wordOfCell(cell)] & bitOfCell(cell)) != 0) {
-            uint word;
-            float t = meetCell(texelFetch(voxelIndex, stored, 0).r, cell, at, dir, facing, enter, leave, end, word);
-            if (t < end) return Met(t * voxel, vec4(lightWords(word), 1.0));
+        if (!empty) {
+            uint number = wordNumber(cell, cascade), bit = bitOfCell(cell);
+            if (number != last) cells = voxelBricks.words[wordsOfHalf(LISTED_HALF) + number];
+            last = number;
+            if ((occupiedCells(cells) & bit) != 0) {
+                uint word;
+                float t = meetCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, word);
+                if (t < end) return Met(t * voxel, vec4(lightWords(word), 1.0));
+            }
         }
         bvec3 crossed = equal(borders, vec3(leave));
-        ivec3 next = empty ? clamp(ivec3(floor(at + leave * dir)), brick * 4, brick * 4 + 3) : cell;
-        ivec3 beyond = (empty ? brick * 4 + 3 * ivec3(ahead) : cell) + 2 * ivec3(ahead) - 1;
-        cell = mix(next, beyond, crossed);
+        ivec3 next = clamp(ivec3(floor(at + leave * dir)), first, first + edge - 1);
+        cell = mix(next, first + (edge + 1) * ivec3(ahead) - 1, crossed);
         enter = leave;
     }
     return Met(min(enter, end) * voxel, vec4(0.0)); // what lies behind the grid's border is not known here

@@ -6,10 +6,10 @@
 #include "common/directions.glsl"
 #include "common/sides.glsl"
 #include "common/planes.glsl"
+#include "common/bricks.glsl"
 
 layout(local_size_x = 128) in;
 
-layout(r32ui) uniform readonly uimage3D voxelIndex;
 uniform writeonly image3D injected;
 
 // Opacity of a surface to rays along d, which cross fewer of its cells the straighter they meet it; none goes through along the
@@ -24,7 +24,7 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
-    uint found = imageLoad(voxelIndex, cell).r;
+    uint found = foundAtStored(voxelCounter.half_used, cell);
     if (slot != firstSlot(found)) return;
 
     VolumeMap map = volume.maps[cascadeOf(cell)];

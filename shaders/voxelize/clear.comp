@@ -1,13 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Clears the copy of the index that this frame fills, and last frame's sums.
+// Clears what this frame fills, and last frame's sums.
 #include "params.glsl"
 #include "voxelize/clearing.glsl"
 #include "common/bricks.glsl"
 
 layout(local_size_x = 128) in;
 
-layout(r32ui) uniform writeonly uimage3D voxelIndex;
 uniform writeonly image3D voxelColor;
 uniform writeonly image3D voxelNormal;
 
@@ -23,9 +22,10 @@ void main() {
     for (uint i = first; i < max(cells, last_cells); i += stride) {
         if (i < cells) {
             ivec3 cell = cellToClear(now, i);
-            imageStore(voxelIndex, cell, uvec4(0));
-            uint word = brickWord(now, ivec3(cell.xy, cell.z % params.voxel_dim), cascadeOf(cell));
-            voxelBricks.masks[word] = voxelBricks.masks[word + 1] = 0;
+            ivec3 own = ivec3(cell.xy, cell.z % params.voxel_dim);
+            uint block = blockNumber(now, own, cascadeOf(cell));
+            voxelBricks.words[wordsOfHalf(now) + wordNumber(own, cascadeOf(cell))] = uvec4(0);
+            voxelBlocks.masks[block] = voxelBlocks.masks[block + 1] = 0;
         }
         if (i < last_cells) clearViews(cellToClear(1 - now, i));
     }

@@ -3,13 +3,12 @@
 // Merges the fragments into their voxels (thesis, Section 4.1.1, last paragraphs) under one of several rules: modules/merge.
 #include "params.glsl"
 #include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "common/bricks.glsl"
 #include "common/scene.glsl"
 #include "voxelize/parts.glsl"
 
 layout(local_size_x = 128) in;
 
-layout(r32ui) uniform readonly uimage3D voxelIndex;
 layout(std430) readonly buffer Indices { uint indices[]; } indices;
 
 // Neighbours in the list mostly hit the same voxel: neighbouring threads take fragments that lie far apart, so that
@@ -68,10 +67,10 @@ void main() {
         if (i >= count) continue;
         uvec4 fragment = voxelFragments.list[i];
         ivec3 stored = unpackCell(fragment.x);
-        uint found = imageLoad(voxelIndex, stored).r;
+        uint found = foundAtStored(voxelCounter.half_used, stored);
         vec3 normal = unpackDirection(fragment.z);
         uint axis = axisOf(normal);
-        if (found == CELL_FULL) {
+        if (found == 0) {
             atomicAdd(voxelCounter.overflow, 1);
             continue;
         }

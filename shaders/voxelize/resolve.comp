@@ -4,11 +4,10 @@
 // voxelNormal (direction * .5 + .5; alpha is the length of the mean normal, 1 where all agree and 0 where they cancel).
 #include "params.glsl"
 #include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "common/bricks.glsl"
 
 layout(local_size_x = 128) in;
 
-layout(r32ui) uniform readonly uimage3D voxelIndex;
 uniform writeonly image3D voxelColor;
 uniform writeonly image3D voxelNormal;
 
@@ -17,7 +16,7 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
-    uint found = imageLoad(voxelIndex, cell).r;
+    uint found = foundAtStored(voxelCounter.half_used, cell);
     if (slot != firstSlot(found)) return;
     vec3 color = vec3(0.0), normal = vec3(0.0);
     float count = 0.0;

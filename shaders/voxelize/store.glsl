@@ -6,17 +6,16 @@
 #include "common/voxels.glsl"
 #include "common/bricks.glsl"
 
-layout(r32ui) coherent uniform uimage3D voxelIndex;
-
 // Notes that a cell has surfaces along an axis. Only the first invocation that comes to a word of a brick lists it, and none waits
 // for it.
 void occupy(ivec3 cell, int cascade, uint axis) {
-    ivec3 stored = storedCell(cell, cascade);
-    uint bit = 1u << axis;
-    if ((imageLoad(voxelIndex, stored).r & bit) != 0) return;
-    if (imageAtomicOr(voxelIndex, stored, bit) != 0) return;
-    uint number = brickNumber(cell, cascade) + wordOfCell(cell), word = brickWord(voxelCounter.half_used, ivec3(0), 0) + number;
-    if (atomicOr(voxelBricks.masks[word], bitOfCell(cell)) == 0) voxelWords.list[atomicAdd(voxelCounter.words, 1)] = number;
+    uint number = wordNumber(cell, cascade), word = wordsOfHalf(voxelCounter.half_used) + number, bit = bitOfCell(cell);
+    if ((voxelBricks.words[word][axis] & bit) != 0) return;
+    if (atomicOr(voxelBricks.words[word][axis], bit) != 0) return;
+    if (atomicOr(voxelBricks.words[word].w, 1u) != 0) return; // which slots.comp gives its meaning
+    voxelWords.list[atomicAdd(voxelCounter.words, 1)] = number;
+    ivec3 brick = cell >> 2;
+    atomicOr(voxelBlocks.masks[blockNumber(voxelCounter.half_used, cell, cascade) + wordOfCell(brick)], bitOfCell(brick));
 }
 
 // color in [0,1], normal unit, emission radiance. `cascade`: of the volume. `at`: a point of the surface near the cell's

@@ -1,0 +1,20 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// A texture of all cells, for who looks at the voxels: what is found there; in a cell that found no room all bits are set.
+#include "params.glsl"
+#include "common/bricks.glsl"
+
+layout(local_size_x = 128) in;
+
+layout(r32ui) uniform writeonly uimage3D voxelIndex;
+
+void main() {
+    uint lane = gl_LocalInvocationIndex & 31u;
+    for (uint i = gl_GlobalInvocationID.x >> 5; i < voxelCounter.words; i += gl_NumWorkGroups.x * 4) {
+        uint number = voxelWords.list[i], bit = 1u << lane;
+        uvec4 word = voxelBricks.words[wordsOfHalf(voxelCounter.half_used) + number];
+        if ((occupiedCells(word) & bit) == 0) continue;
+        uint found = foundIn(word, bit);
+        imageStore(voxelIndex, cellOfBit(number, lane), uvec4(found == 0 ? ~0u : found));
+    }
+}
