@@ -232,7 +232,12 @@ impl WindowDriver {
     pub fn resting(&mut self, side: usize) -> String {
         let mut count = self.pictures(side).len();
         let mut since = Instant::now();
-        while since.elapsed() < Duration::from_millis(350) {
+        // The next picture of a slow device may take longer.
+        let frame = |driver: &WindowDriver| {
+            let last = driver.events.iter().rev().find(|e| e["event"] == "picture" && e["side"] == side);
+            last.and_then(|e| e["gpu_ms"].as_f64()).unwrap_or(0.0)
+        };
+        while since.elapsed() < Duration::from_secs_f64(frame(self).mul_add(2e-3, 0.35)) {
             std::thread::sleep(Duration::from_millis(10));
             let now = self.pictures(side).len();
             if now != count {
