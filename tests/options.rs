@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{assert_clean, lab, prepare, root};
+use common::{assert_clean, lab, root};
 use conelab::experiment::Experiment;
 use conelab::graph::load::load;
 use conelab::graph::param::{Kind, Param};
@@ -91,8 +91,8 @@ fn run(
         e.params.push((Loc { value: (*name).to_string(), at: At::default() }, (*value).to_string()));
     }
     let scene = common::scene(&e.scene);
-    lab.prepare(&e, scene, |_| Ok(vec!["display".into()]))?;
-    let mut session = prepare(lab, &e, wanted);
+    let all = wanted.iter().chain(&["display"]).map(|w| (*w).to_string()).collect();
+    let (mut session, _) = lab.prepare(&e, scene, |_| Ok(all))?;
     for _ in 0..2 {
         session.frame(0.0)?; // what voxels reflect to each other is seen in the second
     }

@@ -7,6 +7,7 @@ mod common;
 
 use common::{assert_clean, device, experiment, lab, root};
 use conelab::experiment::Experiment;
+use conelab::graph::source::{At, Loc};
 use conelab::lab::{Lab, parts_of};
 use conelab::metrics::{Linear, scores};
 use conelab::reference::{Goal, Reference, gather};
@@ -75,19 +76,24 @@ fn check(trial: &str, rows: &[Row]) {
     assert!(wrong.is_empty(), "docs/trials.md no longer says what is measured:\n{wrong}");
 }
 
+fn with(mut experiment: Experiment, name: &str, value: &str) -> Experiment {
+    experiment.params.push((Loc { value: name.into(), at: At::default() }, value.into()));
+    experiment
+}
+
 /// The parts of an experiment's light, and its reference after so many samples.
 fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Linear>, Reference) {
     let scene = Scene::open(&experiment.scene, &|_, _| ControlFlow::Continue(())).unwrap();
     let scene = experiment.adapted(Arc::new(scene)).unwrap();
+    // All rays in one frame: what turns add up to, bit by bit (tests/turns.rs).
+    let experiment = &with(experiment.clone(), "gather_frames", "1");
     let mut wanted = Vec::new();
     let prepared = lab.prepare(experiment, scene.clone(), |graph| {
         wanted.extend(parts_of(graph).into_iter().map(|p| p.1));
         Ok(wanted)
     });
     let (mut session, _) = prepared.unwrap_or_else(|e| panic!("{e}"));
-    for _ in 0..TURNS {
-        session.frame(0.0).unwrap();
-    }
+    session.frame(0.0).unwrap();
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
     let parts = session.parts().unwrap();
@@ -135,8 +141,6 @@ fn sides(material: &'static str, low: [f64; 3], high: [f64; 3], inside: bool) ->
         .collect()
 }
 
-/// Frames until every pixel has gathered with all its rays.
-const TURNS: usize = 16;
 const ANY: f64 = f64::INFINITY;
 const QUICK: (&str, &str) = ("shadow_dim", "1024");
 /// What the references have.
