@@ -1,0 +1,75 @@
+// What each layer of the shadow map shows this frame: the lights' views, and of directional lights `nested_maps` - 1 cubes around
+// the camera, each `shadow_step` times smaller than the one before (nested as in Zhang et al. 2006, "Parallel-Split Shadow Maps
+// for Large-scale Virtual Environments", but around the eye: turning it moves no map).
+#include "params.glsl"
+#include "common/scene.glsl"
+#include "common/shadow_views.glsl"
+#include "common/shadow_layers.glsl"
+
+layout(local_size_x = 1) in;
+
+#ifdef NESTED_MAPS
+// The direction that row i of a matrix measures along.
+vec3 directionOf(mat4 m, int i) {
+    return normalize(vec3(m[0][i], m[1][i], m[2][i]));
+}
+
+// A cube of this width around the camera, along the axes of a directional light's view. It moves by whole texels, so that what
+// stands still keeps its shadow.
+mat4 around(mat4 whole, float width) {
+    float texel = width / float(params.shadow_dim);
+    mat4 m = mat4(1.0);
+    for (int i = 0; i < 3; i++) {
+        vec3 axis = directionOf(whole, i);
+        float middle = floor(dot(axis, camera.position) / texel) * texel;
+        float scale = (i < 2 ? 2.0 : 1.0) / width; // x, y in [-1,1], depth in [0,1]
+        m[0][i] = axis.x * scale;
+        m[1][i] = axis.y * scale;
+        m[2][i] = axis.z * scale;
+        m[3][i] = (i < 2 ? 0.0 : 0.5) - middle * scale;
+    }
+    return m;
+}
+
+// Depth of a surface that reaches over all of the scene, in a map of a small part of it, is off by this many of its 24 bits: what a
+// rasteriser clips and interpolates is as large as the scene. On an NVIDIA H100 a fifth was seen.
+const float ROUNDED_BITS = 0.5;
+
+#endif
+
+// Depth is clamped, so what lies before the near plane casts shadows too, down to a tenth of its distance; w is 1 everywhere in
+// orthographic views.
+float nearOf(ShadowView view) {
+    if (view.texel_size_and_depth.z == 0.0) return 0.5;
+    mat4 m = transpose(view.view_projection); // z = scale * w - scale * near
+    float scale = length(m[2].xyz) / length(m[3].xyz);
+    return max(0.1 * (m[3].w - m[2].w / scale), 1e-7);
+}
+
+void main() {
+#ifdef NESTED_MAPS
+    int next = int(sceneInfo.shadow_views);
+#endif
+    for (uint i = 0; i < sceneInfo.light_count; i++) {
+        Light light = lights.lights[i];
+        if (light.shadow_view < 0) continue;
+        int views = light.kind == LIGHT_POINT ? 6 : 1;
+        for (int layer = light.shadow_view; layer < light.shadow_view + views; layer++) {
+            ShadowView view = shadowViews.views[layer];
+            shadowLayers.layers[layer] = ShadowLayer(view.view_projection, view.texel_size_and_depth.x, view.texel_size_and_depth.z, -1, 0.0, nearOf(view));
+        }
+#ifdef NESTED_MAPS
+        if (light.kind != LIGHT_DIRECTIONAL) continue;
+        ShadowView whole = shadowViews.views[light.shadow_view];
+        int layer = light.shadow_view;
+        float width = whole.texel_size_and_depth.x;
+        for (int k = 1; k < params.nested_maps; k++) {
+            width /= params.shadow_step;
+            shadowLayers.layers[layer].finer = next;
+            shadowLayers.layers[next] = ShadowLayer(around(whole.view_projection, width), width, 0.0, -1,
+                ROUNDED_BITS / 16777216.0 * whole.texel_size_and_depth.x / width, 0.5);
+            layer = next++;
+        }
+#endif
+    }
+}
