@@ -1,7 +1,7 @@
 //! Measurements of a run, in the one JSON schema of the program (`docs/stats.md`).
 
 use crate::graph::param::Params;
-use crate::graph::run::FrameTimes;
+use crate::graph::run::{FrameTimes, Redo};
 use crate::lab::Session;
 use crate::vulkan::DeviceInfo;
 use serde::{Deserialize, Serialize};
@@ -33,6 +33,9 @@ pub struct PassStats {
     pub gpu_ms: Spread,
     /// Frames measured.
     pub frames: usize,
+    /// In how many of them it slept, which count as 0 ms.
+    #[serde(default)]
+    pub slept: usize,
 }
 
 /// The device.
@@ -83,6 +86,9 @@ pub struct Stats {
     pub params: BTreeMap<String, serde_json::Value>,
     /// Frames run before measuring.
     pub warmup: usize,
+    /// Whether frames did all, or what changed.
+    #[serde(default)]
+    pub redo: Redo,
     /// Every pass that ran, in order.
     pub passes: Vec<PassStats>,
     /// First to last command on the GPU.
@@ -124,7 +130,8 @@ pub fn collect(
         let frames = values.len();
         let pass = &session.graph.passes[*number].value;
         let (name, stage) = (pass.name.value.clone(), pass.stage().to_string());
-        passes.push(PassStats { name, stage, gpu_ms: spread(values), frames });
+        let slept = times.iter().filter(|t| t.asleep.contains(number)).count();
+        passes.push(PassStats { name, stage, gpu_ms: spread(values), frames, slept });
     }
     let bytes: BTreeMap<String, u64> = session.program.memory(&session.graph).into_iter().collect();
     let (width, height) = session.size();
@@ -139,6 +146,7 @@ pub fn collect(
         size: [width, height],
         params: param_values(&session.params),
         warmup,
+        redo: session.redo(),
         passes,
         total_gpu_ms: spread(times.iter().map(|t| t.gpu_ms).collect()),
         cpu_ms: spread(times.iter().map(|t| t.cpu_ms).collect()),
@@ -167,7 +175,8 @@ pub fn table(stats: &Stats) -> String {
         let _ = writeln!(out, "{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);
     };
     for pass in &stats.passes {
-        row(&pass.name, &pass.gpu_ms);
+        let asleep = pass.slept == pass.frames && pass.slept > 0;
+        row(&format!("{}{}", pass.name, if asleep { " (slept)" } else { "" }), &pass.gpu_ms);
     }
     row("total", &stats.total_gpu_ms);
     row("CPU record and submit", &stats.cpu_ms);

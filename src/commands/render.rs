@@ -4,7 +4,7 @@ use super::adapt::{self, ExperimentArgs, parse_resource};
 use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
 use crate::graph::load::Graph;
-use crate::graph::run::FrameTimes;
+use crate::graph::run::{FrameTimes, Redo};
 use crate::lab::{Lab, LabError, Session, Workspace};
 use crate::{picture, stats};
 use clap::Args;
@@ -25,6 +25,9 @@ pub struct RenderArgs {
     /// Frames to run before timing starts. Where neither is given: as many as a graph that gathers over frames takes to settle.
     #[arg(long)]
     warmup: Option<usize>,
+    /// Whether each frame does all, or only passes whose outcome changes; pictures are the same, to the bit.
+    #[arg(long, value_enum, default_value_t)]
+    redo: Redo,
     /// Move the camera along this path (configs/paths) by each frame's time.
     #[arg(long, value_name = "FILE")]
     path: Option<PathBuf>,
@@ -84,6 +87,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     for warning in warnings {
         eprintln!("{warning}");
     }
+    session.set_redo(args.redo);
     let mut times = Vec::new();
     let alone = args.frames.is_none() && args.sequence.is_none() && args.path.is_none() && args.step == 0.0;
     let warmup = args.warmup.unwrap_or(if alone { session.settling_frames() - 1 } else { 0 });

@@ -40,6 +40,8 @@ pub struct Bound {
     pub resource: Resource,
     /// How the block of a buffer lies in memory.
     pub layout: Option<Arc<Layout>>,
+    /// Bytes of a uniform block that may be read; none: all of them.
+    pub reads: Option<Vec<(u32, u32)>>,
     /// What it is: one, or several of an alias, of which the first whose condition holds counts.
     pub cases: Vec<BoundCase>,
 }
@@ -185,6 +187,7 @@ impl Linker<'_> {
                         name: binding.name.clone(),
                         resource: binding.resource.clone(),
                         layout: binding.layout.clone(),
+                        reads: binding.reads.clone(),
                         cases,
                     });
                 }

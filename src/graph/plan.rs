@@ -463,7 +463,26 @@ impl Planner<'_> {
         self.attachments(pass, &mut step);
         step.work = self.work(pass, link, &mut step)?;
         step.uses = merge(std::mem::take(&mut step.uses));
+        self.covers(link, &mut step);
         Some(step)
+    }
+
+    /// Where every thread stores at its own place, and there are as many as texels, nothing is left of what was there.
+    fn covers(&self, link: &Linked, step: &mut Step) {
+        let (Work::Dispatch(groups), [shader]) = (&step.work, &link.stages[..]) else { return };
+        let threads: [u32; 3] = std::array::from_fn(|k| groups[k].saturating_mul(shader.interface.local_size[k]));
+        for binding in &step.bindings {
+            let texture = &self.textures[binding.texture];
+            let [x, y, z] = texture.extent.map(|n| (n >> binding.mips.0).max(1));
+            let texels = [x, y, if texture.volume { z } else { binding.layers.1 }];
+            let covered = shader.interface.covers.contains(&link.bound[binding.bound].binding)
+                && binding.layers.1 == texture.layers;
+            if covered && threads.iter().zip(texels).all(|(threads, texels)| *threads >= texels) {
+                let res = Res::Texture(binding.texture, binding.history);
+                let stores = |u: &&mut Use| u.res == res && u.mips == binding.mips && u.kind == UseKind::Storage;
+                step.uses.iter_mut().filter(stores).for_each(|u| u.overwrite = u.write && !u.read);
+            }
+        }
     }
 
     /// The first case whose condition holds; the last one has none.

@@ -8,6 +8,7 @@ use super::load::Graph;
 use super::param::{Params, Value};
 use super::pipelines::{Pipelines, clear_value, descriptor_pool, descriptor_type, make_pipelines, sampler_desc};
 use super::plan::{Plan, Step, Work};
+use super::sleep::Contents;
 use super::usage::{Barrier, Layouts, Res, Schedule, schedule};
 use crate::shader::{Resource, Shape};
 use crate::vulkan::{
@@ -50,6 +51,7 @@ pub struct Program {
     gpu: Arc<Gpu>,
     /// What it runs.
     pub plan: Plan,
+    linked: Arc<Vec<Linked>>,
     pub(super) schedule: Schedule,
     scene: SceneResources,
     pub(super) pipelines: Pipelines,
@@ -72,12 +74,27 @@ pub struct Program {
     shown: Option<usize>,
     /// Steps where a pass begins.
     starts: Vec<usize>,
+    /// What there is, where only what changes is done.
+    pub(super) contents: Option<Contents>,
+}
+
+/// What a frame does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Redo {
+    /// All passes run.
+    #[default]
+    All,
+    /// Passes run whose outcome would be another than what is there: with the same content, to the bit.
+    Changed,
 }
 
 /// A frame in flight.
 struct Slot {
     commands: FrameSlot,
     cpu_ms: f64,
+    /// Whether each of [`Program::starts`] has a timestamp.
+    stamped: Vec<bool>,
     /// Where the shown texture is copied to.
     readback: Option<Buffer>,
 }
@@ -93,8 +110,10 @@ struct StepGpu {
 /// Times of one frame that has finished.
 #[derive(Clone, Debug, Default)]
 pub struct FrameTimes {
-    /// (pass number, milliseconds) on the GPU, in order.
+    /// (pass number, milliseconds) on the GPU, in order; 0 for those that slept.
     pub passes: Vec<(usize, f64)>,
+    /// Numbers of the passes that slept ([`Redo::Changed`]).
+    pub asleep: Vec<usize>,
     /// First to last command of the frame on the GPU, ms.
     pub gpu_ms: f64,
     /// Recording and submitting on the CPU, ms.
@@ -115,7 +134,7 @@ impl Program {
     pub fn new(
         gpu: &Arc<Gpu>,
         graph: &Graph,
-        linked: &[Linked],
+        linked: &Arc<Vec<Linked>>,
         plan: Plan,
         params: &Params,
         scene: &SceneResources,
@@ -147,6 +166,7 @@ impl Program {
                 .filter(|i| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass)
                 .collect(),
             plan,
+            linked: linked.clone(),
             schedule,
             scene: scene.clone(),
             images,
@@ -154,10 +174,16 @@ impl Program {
             params: params_buffer,
             slots: Vec::new(),
             frame: 0,
+            contents: None,
         };
         let timestamps = u32::try_from(program.starts.len() + 1).unwrap_or(u32::MAX);
         for _ in 0..FRAMES_IN_FLIGHT {
-            program.slots.push(Slot { commands: FrameSlot::new(gpu, timestamps)?, cpu_ms: 0.0, readback: None });
+            program.slots.push(Slot {
+                commands: FrameSlot::new(gpu, timestamps)?,
+                cpu_ms: 0.0,
+                stamped: Vec::new(),
+                readback: None,
+            });
         }
         for (i, key) in made.keys.iter().enumerate() {
             let pipeline = key.map(|k| program.pipelines[k].1.clone());
@@ -378,10 +404,12 @@ impl Program {
         let mut slots = std::mem::take(&mut self.slots);
         let readback = self.readback(slots[slot].readback.take());
         let start = Instant::now();
+        let awake = self.awake(updates, parity == 1);
+        slots[slot].stamped = self.runs(&awake);
         let result = readback.and_then(|readback| {
             slots[slot].readback = readback;
-            let Slot { commands, readback, .. } = &mut slots[slot];
-            commands.submit(|commands| self.record(commands, updates, parity, readback.as_ref()))
+            let Slot { commands, stamped, readback, .. } = &mut slots[slot];
+            commands.submit(|commands| self.record(commands, updates, parity, (&awake, stamped), readback.as_ref()))
         });
         slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.slots = slots;
@@ -389,6 +417,40 @@ impl Program {
         self.frame += 1;
         self.rest(parity);
         Ok(finished)
+    }
+
+    /// From the next frame on, does all or what changes.
+    pub fn set_redo(&mut self, redo: Redo) {
+        match redo {
+            Redo::All => self.contents = None,
+            Redo::Changed if self.contents.is_none() => self.contents = Some(Contents::new(&self.linked, &self.plan)),
+            Redo::Changed => {}
+        }
+    }
+
+    /// What frames do.
+    pub fn redo(&self) -> Redo {
+        if self.contents.is_some() { Redo::Changed } else { Redo::All }
+    }
+
+    /// Which steps of the next frame run.
+    fn awake(&mut self, updates: &[(Arc<Buffer>, Vec<u8>)], odd: bool) -> Vec<bool> {
+        let Some(contents) = &mut self.contents else { return vec![true; self.plan.steps.len()] };
+        for (buffer, bytes) in updates {
+            if Arc::ptr_eq(buffer, &self.params) {
+                contents.update("params", bytes);
+            }
+            for (name, _) in self.scene.buffers.iter().filter(|(_, b)| Arc::ptr_eq(b, buffer)) {
+                contents.update(name, bytes);
+            }
+        }
+        contents.frame(&self.plan, odd)
+    }
+
+    /// Whether a step of each pass runs, in the order of `starts`.
+    fn runs(&self, awake: &[bool]) -> Vec<bool> {
+        let ends = self.starts.iter().skip(1).copied().chain([awake.len()]);
+        self.starts.iter().zip(ends).map(|(start, end)| awake[*start..end].contains(&true)).collect()
     }
 
     /// Copies this texture to the CPU with every frame from now on.
@@ -440,12 +502,16 @@ impl Program {
     }
 
     fn finish(&mut self, slot: usize) -> Result<Option<FrameTimes>> {
-        let Slot { commands, cpu_ms, readback } = &mut self.slots[slot];
+        let Slot { commands, cpu_ms, stamped, readback } = &mut self.slots[slot];
         let Some(ticks) = commands.wait()? else { return Ok(None) };
         let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
-        let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass);
+        let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass).zip(stamped.iter());
+        let mut spans = ticks.windows(2).map(|t| ms(t[0], t[1]));
+        // Devices without timestamps say nothing.
+        let timed = passes.clone().filter(|_| !ticks.is_empty());
         Ok(Some(FrameTimes {
-            passes: passes.zip(ticks.windows(2)).map(|(pass, t)| (pass, ms(t[0], t[1]))).collect(),
+            asleep: passes.filter(|p| !p.1).map(|p| p.0).collect(),
+            passes: timed.map(|(pass, ran)| (pass, if *ran { spans.next().unwrap_or(0.0) } else { 0.0 })).collect(),
             gpu_ms: ticks.first().zip(ticks.last()).map_or(0.0, |(a, b)| ms(*a, *b)),
             cpu_ms: *cpu_ms,
             picture: readback.as_ref().map(|b| {
@@ -460,6 +526,7 @@ impl Program {
         commands: &mut Commands<'_>,
         updates: &[(Arc<Buffer>, Vec<u8>)],
         parity: usize,
+        (awake, stamped): (&[bool], &[bool]),
         readback: Option<&Buffer>,
     ) {
         use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
@@ -478,18 +545,23 @@ impl Program {
             }
             commands.barrier(Some(barrier(copy, Access::TRANSFER_WRITE, all, Access::MEMORY_READ)), &[]);
         }
+        let mut labelled = false;
         for (i, step) in self.plan.steps.iter().enumerate() {
-            if self.starts.contains(&i) {
-                if i > 0 {
+            if self.starts.binary_search(&i).is_ok_and(|start| stamped[start]) {
+                if labelled {
                     commands.end_label();
                 }
                 commands.timestamp();
                 commands.begin_label(&self.names[step.pass]);
+                labelled = true;
             }
+            // Those of steps that sleep too: layouts and waits are then as in any other frame.
             self.barriers(commands, &self.schedule.barriers[parity][i]);
-            self.record_step(commands, step, &self.steps[i], parity);
+            if awake[i] {
+                self.record_step(commands, step, &self.steps[i], parity);
+            }
         }
-        if !self.plan.steps.is_empty() {
+        if labelled {
             commands.end_label();
         }
         commands.timestamp();

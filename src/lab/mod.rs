@@ -22,7 +22,7 @@ use crate::graph::link::{Linked, Target};
 use crate::graph::load::Graph;
 use crate::graph::param::{Params, Value};
 use crate::graph::plan::{Plan, PlanInput, plan};
-use crate::graph::run::{FrameTimes, Program};
+use crate::graph::run::{FrameTimes, Program, Redo};
 use crate::graph::runs::runs;
 use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::table::Table;
@@ -356,6 +356,16 @@ impl Session {
     /// The time of the next frame, s.
     pub fn set_time(&mut self, time: f64) {
         self.time = time;
+    }
+
+    /// From the next frame on, does all passes or those whose outcome changes.
+    pub fn set_redo(&mut self, redo: Redo) {
+        self.program.set_redo(redo);
+    }
+
+    /// What frames do.
+    pub fn redo(&self) -> Redo {
+        self.program.redo()
     }
 
     /// Copies this texture to the CPU with every frame ([`FrameTimes::picture`]).

@@ -30,6 +30,12 @@ const BINDING: u32 = 33;
 const NON_WRITABLE: u32 = 24;
 const NON_READABLE: u32 = 25;
 
+/// Instructions that name what there is and use none of it: OpName, OpMemberName, OpEntryPoint, OpDecorate, OpMemberDecorate,
+/// those that hold numbers or text, and those that take values with numbers, which a block is not (OpExtInst, OpVectorShuffle,
+/// OpCompositeExtract, OpCompositeInsert).
+const NAMES_ONLY: [u32; 21] =
+    [3, 4, 5, 6, 7, 8, 10, 11, 12, 14, 15, 16, 17, 21, 22, 43, DECORATE, MEMBER_DECORATE, 79, 81, 82];
+
 /// A storage buffer, image or sampler of a module.
 struct Variable {
     binding: u32,
@@ -110,6 +116,74 @@ fn variables(words: &[u32]) -> BTreeMap<u32, Variable> {
         _ => None,
     });
     bound.collect()
+}
+
+/// The members that a module may read of each of its uniform blocks, by binding number; none where it may be all of them:
+/// SPIR-V 1.6, section 3.52.8, OpAccessChain.
+pub(super) fn uniform_members(words: &[u32]) -> BTreeMap<u32, Option<BTreeSet<u32>>> {
+    const UNIFORM: u32 = 2;
+    const CONSTANT: u32 = 43;
+    let blocks: BTreeSet<u32> = instructions(words)
+        .filter_map(|i| match i {
+            [_, _, id, UNIFORM, ..] if opcode(i) == VARIABLE => Some(*id),
+            _ => None,
+        })
+        .collect();
+    let constants: BTreeMap<u32, u32> = instructions(words)
+        .filter_map(|i| match i {
+            [_, _, id, value] if opcode(i) == CONSTANT => Some((*id, *value)),
+            _ => None,
+        })
+        .collect();
+    let mut members: BTreeMap<u32, Option<BTreeSet<u32>>> =
+        blocks.iter().map(|b| (*b, Some(BTreeSet::new()))).collect();
+    for i in instructions(words) {
+        let said = NAMES_ONLY.contains(&opcode(i)) || opcode(i) == VARIABLE;
+        for (at, block) in i.iter().enumerate().skip(1).filter(|(_, id)| !said && blocks.contains(id)) {
+            let chain = (opcode(i) == 65 || opcode(i) == 66) && at == 3;
+            let member = if chain { i.get(4).and_then(|index| constants.get(index)) } else { None };
+            match (members.get_mut(block), member) {
+                (Some(Some(list)), Some(member)) => drop(list.insert(*member)),
+                // Anything else, be it a number that only looks like the block's: it may be all.
+                (Some(all), None) => *all = None,
+                _ => {}
+            }
+        }
+    }
+    let binding = |i: &[u32]| match i {
+        [_, id, BINDING, binding] if opcode(i) == DECORATE => Some((*binding, members.get(id)?.clone())),
+        _ => None,
+    };
+    instructions(words).filter_map(binding).collect()
+}
+
+/// The images, by binding number, into which every thread of a compute shader stores at its own place: in the first block of its
+/// entry point, which all threads run, at the coordinates of `gl_GlobalInvocationID` (SPIR-V 1.6, section 3.52.10,
+/// OpImageWrite). Others may be covered too, by ways that are not looked for.
+pub(super) fn stored_by_each(words: &[u32]) -> BTreeSet<u32> {
+    const ENTRY_POINT: u32 = 15;
+    const BUILT_IN: u32 = 11;
+    const GLOBAL_INVOCATION_ID: u32 = 28;
+    const FUNCTION: u32 = 54;
+    let entry = instructions(words).find(|i| opcode(i) == ENTRY_POINT).and_then(|i| i.get(2));
+    let main = instructions(words).skip_while(|i| opcode(i) != FUNCTION || i.get(2) != entry);
+    // To its first branch, return or kill.
+    let first_block = main.take_while(|i| !(249..=255).contains(&opcode(i)));
+    let is_place = |i: &&[u32]| opcode(i) == DECORATE && i[2..] == [BUILT_IN, GLOBAL_INVOCATION_ID];
+    let mut places: BTreeSet<u32> = instructions(words).filter(is_place).map(|i| i[1]).collect();
+    let (variables, mut images, mut stored) = (variables(words), BTreeMap::new(), BTreeSet::new());
+    for i in first_block {
+        match (opcode(i), i) {
+            (LOAD, [_, _, id, from, ..]) if places.contains(from) => drop(places.insert(*id)),
+            (LOAD, [_, _, id, from, ..]) => drop(variables.get(from).map(|v| images.insert(*id, v.binding))),
+            // OpBitcast; OpVectorShuffle of the first two.
+            (124, [_, _, id, from]) if places.contains(from) => drop(places.insert(*id)),
+            (79, [_, _, id, a, _, 0, 1]) if places.contains(a) => drop(places.insert(*id)),
+            (99, [_, image, at, ..]) if places.contains(at) => stored.extend(images.get(image)),
+            _ => {}
+        }
+    }
+    stored
 }
 
 /// The storage images with these binding numbers.

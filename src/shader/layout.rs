@@ -103,6 +103,18 @@ impl Layout {
         }
     }
 
+    /// (first byte, end) of members of a block by number, in order; none if it lacks one.
+    pub(super) fn bytes_of(&self, members: &std::collections::BTreeSet<u32>) -> Option<Vec<(u32, u32)>> {
+        let all = self.members();
+        members
+            .iter()
+            .map(|m| {
+                let member = all.get(*m as usize)?;
+                Some((member.offset, member.offset.checked_add(member.layout.bytes())?))
+            })
+            .collect()
+    }
+
     /// Bytes from its start to the end of what has a fixed place: all of it, but for an array without a count at the end.
     pub fn bytes(&self) -> u32 {
         match self {

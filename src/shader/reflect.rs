@@ -1,6 +1,6 @@
 //! What a compiled shader binds, by name.
 
-use super::access::{Access, accesses};
+use super::access::{Access, accesses, stored_by_each, uniform_members};
 use super::layout::Layout;
 use super::strip::instructions;
 use crate::vulkan::Stage;
@@ -78,6 +78,8 @@ pub struct Binding {
     pub resource: Resource,
     /// How the block of a buffer or uniform lies in memory.
     pub layout: Option<Arc<Layout>>,
+    /// Of a uniform block, the bytes that may be read: (first, end) of members, in order; none where it may be all of it.
+    pub reads: Option<Vec<(u32, u32)>>,
 }
 
 /// What one shader stage touches.
@@ -91,6 +93,8 @@ pub struct Interface {
     pub push: bool,
     /// Workgroup size of a compute shader.
     pub local_size: [u32; 3],
+    /// Bindings of images into which every thread of a compute shader stores, at the place of its number.
+    pub covers: Vec<u32>,
     /// Locations a fragment shader writes.
     pub outputs: Vec<u32>,
     /// SPIR-V capabilities (section 3.31) by number.
@@ -111,13 +115,14 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
         .ref_all_rscs(true)
         .reflect()
         .map_err(|e| format!("reflection failed: {e}"))?;
-    let accesses = accesses(words);
+    let (accesses, members) = (accesses(words), uniform_members(words));
     let entry = entries.first().ok_or("the shader has no entry point")?;
     let mut interface = Interface {
         bindings: vec![],
         constants: vec![],
         push: false,
         local_size: [1; 3],
+        covers: stored_by_each(words).into_iter().collect(),
         outputs: vec![],
         capabilities: capabilities(words),
     };
@@ -140,7 +145,9 @@ pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, St
                 let resource =
                     resource(desc_ty, ty, access).ok_or(format!("'{name}' is of a kind that graphs cannot bind"))?;
                 let layout = Layout::of(ty).map(Arc::new);
-                interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource, layout });
+                let reads = members.get(&desc_bind.bind()).zip(layout.as_ref());
+                let reads = reads.and_then(|(read, layout)| layout.bytes_of(read.as_ref()?));
+                interface.bindings.push(Binding { name, binding: desc_bind.bind(), resource, layout, reads });
             }
             Variable::PushConstant { ty, .. } if ty.nbyte().is_some_and(|n| n > 4) => {
                 return Err(String::from("the only push constant is pass.index of params.glsl"));

@@ -1,0 +1,214 @@
+//! What is not done twice: pictures of frames that do only what changes are those of frames that do all, to the bit, whatever is
+//! edited between them; and what nothing has changed sleeps.
+
+mod common;
+
+use common::{assert_clean, copy, experiment, lab, root, scene};
+use conelab::experiment::{Experiment, PlacedCamera};
+use conelab::graph::run::{FrameTimes, Redo};
+use conelab::graph::source::{At, Loc};
+use conelab::lab::{Lab, Session};
+use conelab::scene::Scene;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::Arc;
+
+const SIZE: (u32, u32) = (48, 36);
+const WANTED: [&str; 3] = ["display", "radiance", "direct"];
+
+/// Numbers that look random and are the same in every run (xorshift; Marsaglia 2003).
+struct Numbers(u32);
+
+impl Numbers {
+    fn below(&mut self, most: u32) -> u32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 17;
+        self.0 ^= self.0 << 5;
+        self.0 % most
+    }
+
+    fn unit(&mut self) -> f32 {
+        self.below(1 << 16) as f32 / 65536.0
+    }
+}
+
+/// One experiment in frames that do all, and in frames that do what changes.
+struct Pair {
+    experiment: Experiment,
+    scene: Arc<Scene>,
+    sides: [Session; 2],
+}
+
+fn build(lab: &Lab, e: &Experiment, scene: &Arc<Scene>, old: Option<&Session>) -> Session {
+    let loaded = lab.home.load_for(e, scene, &lab.gpu.info).unwrap();
+    let wanted = WANTED.map(String::from).to_vec();
+    lab.build(e, &loaded, scene.clone(), wanted, old.map(Session::reusable_parts).as_ref()).unwrap()
+}
+
+impl Pair {
+    fn new(lab: &Lab, scene_name: &str, settings: &[(&str, &str)]) -> Pair {
+        let base = [("voxel_dim", "24"), ("shadow_dim", "256"), ("pixel_cones", "4")];
+        let (experiment, scene) = (experiment(scene_name, SIZE, &[&base[..], settings].concat()), scene(scene_name));
+        let mut sides = [(); 2].map(|()| build(lab, &experiment, &scene, None));
+        sides[1].set_redo(Redo::Changed);
+        Pair { experiment, scene, sides }
+    }
+
+    fn set(&mut self, lab: &Lab, name: &str, value: &str) {
+        self.experiment.params.push((Loc { value: name.into(), at: At::default() }, value.into()));
+        for side in &mut self.sides {
+            let mut params = side.params.clone();
+            params.set(name, value).unwrap();
+            assert!(side.set_params(lab, &params).unwrap(), "{name} is a number");
+        }
+    }
+
+    /// Programs made anew, of what did not change and of what did.
+    fn rebuild(&mut self, lab: &Lab) {
+        for side in &mut self.sides {
+            let mut next = build(lab, &self.experiment, &self.scene, Some(side));
+            next.swap_in(side).unwrap();
+            *side = next;
+        }
+        assert_eq!(self.sides[1].redo(), Redo::Changed, "the program that follows does what this one did");
+    }
+
+    fn edit(&mut self, lab: &Lab, home: &Path, numbers: &mut Numbers) -> &'static str {
+        let (a, b) = (numbers.unit(), numbers.unit());
+        match numbers.below(12) {
+            0 | 1 => {
+                let placed = PlacedCamera::new((1.2 * a - 0.6, 1.0 + b, 2.6), (0.0, 1.0, -0.5), 60.0);
+                self.sides.iter_mut().for_each(|s| s.place_camera(&placed));
+                "the camera"
+            }
+            2 => {
+                let mut lights = self.scene.lights.clone();
+                (lights[0].color, lights[0].position.x) = (lights[0].color * (0.2 + a), lights[0].position.x + 0.2 * b);
+                let sky = self.scene.sky;
+                assert!(self.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
+                "a lamp"
+            }
+            3 => {
+                let (lights, sky) = (self.scene.lights.clone(), glam::Vec3::splat(a));
+                assert!(self.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
+                "the sky"
+            }
+            4 => {
+                self.set(lab, "exposure", &format!("{a}"));
+                "a number that the picture depends on"
+            }
+            5 => {
+                self.set(lab, "light_bias", &format!("{}", 0.1 + 0.3 * a));
+                "a number that voxels depend on"
+            }
+            6 | 7 => {
+                self.sides.iter_mut().for_each(|s| s.set_time(f64::from(3.0 * a)));
+                "an actor"
+            }
+            8 => {
+                let dim = if a < 0.5 { "24" } else { "32" };
+                self.experiment.params.push((Loc { value: "voxel_dim".into(), at: At::default() }, dim.into()));
+                self.rebuild(lab);
+                "the voxels"
+            }
+            9 => {
+                let (file, layer) = (home.join("shaders/inject/inject.comp"), if a < 0.5 { "0.12" } else { "0.01" });
+                let text = std::fs::read_to_string(&file).unwrap();
+                let (before, after) = text.split_once("LAYER = ").unwrap();
+                let (_, after) = after.split_once(';').unwrap();
+                std::fs::write(&file, format!("{before}LAYER = {layer};{after}")).unwrap();
+                self.rebuild(lab);
+                "a shader"
+            }
+            _ => "nothing",
+        }
+    }
+
+    /// A frame of each; the passes that slept.
+    fn frame(&mut self, what: &str) -> BTreeSet<String> {
+        let [all, changed] = self.sides.each_mut().map(run);
+        assert!(all.asleep.is_empty(), "{what}: {:?} slept where all is done", all.asleep);
+        for name in WANTED {
+            let [a, b] = self.sides.each_mut().map(|s| s.texels(name, 0, 0).unwrap().bytes);
+            assert!(a == b, "{what}: '{name}' differs; asleep: {:?}", names(&self.sides[1], &changed.asleep));
+        }
+        names(&self.sides[1], &changed.asleep)
+    }
+}
+
+fn run(session: &mut Session) -> FrameTimes {
+    let mut times: Vec<FrameTimes> = session.frame(0.0).unwrap().into_iter().collect();
+    times.extend(session.finish().unwrap());
+    times.pop().unwrap()
+}
+
+fn names(session: &Session, passes: &[usize]) -> BTreeSet<String> {
+    passes.iter().map(|p| session.graph.passes[*p].value.name.value.clone()).collect()
+}
+
+const BY_THREADS: [(&str, &str); 3] = [("voxelizer", "compute"), ("shadow_map", "compute"), ("gbuffer", "compute")];
+const BY_RASTER: [(&str, &str); 3] = [("voxelizer", "raster"), ("shadow_map", "raster"), ("gbuffer", "raster")];
+
+#[test]
+fn pictures_are_the_same_whatever_is_edited() {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["passes", "shaders", "configs"] {
+        copy(&root().join(folder), &home.path().join(folder));
+    }
+    let lab = lab(home.path());
+    let mut seed = 1;
+    for path in [BY_THREADS, BY_RASTER] {
+        for more in [&[][..], &[("temporal_factor", "0.5")], &[("cascades", "2"), ("volume", "camera")]] {
+            let mut pair = Pair::new(&lab, "moving-box", &[&path[..], more].concat());
+            let mut numbers = Numbers(0x9e37_79b9 + seed);
+            seed += 1;
+            let (mut slept, mut last) = (0, "the start");
+            for frame in 0..40 {
+                slept += pair.frame(&format!("{path:?} {more:?}, frame {frame}, after an edit of {last}")).len();
+                last = pair.edit(&lab, home.path(), &mut numbers);
+            }
+            println!("{path:?} {more:?}: {slept} passes slept in 40 frames");
+            assert!(slept > 40, "{slept} passes slept: nothing was tested");
+        }
+    }
+    assert_clean(&lab);
+}
+
+#[test]
+fn what_nothing_has_changed_sleeps() {
+    let lab = lab(root());
+    for (path, shadow, seen) in [
+        (BY_THREADS, &["shadow clear", "shadow triangles", "shadow bins", "shadow tiles"][..], "visibility tiles"),
+        (BY_RASTER, &["shadow map"][..], "G-buffer"),
+    ] {
+        // A lamp of one shadow map: layers are drawn one by one, and a clear of one leaves the others.
+        let mut pair = Pair::new(&lab, "cornell", &path);
+        let slept = pair.frame("the first");
+        assert!(slept.is_empty(), "{slept:?}");
+        // What the frame before left is kept beside it: both are filled first.
+        pair.frame("the second");
+        let slept = pair.frame("the third");
+        assert!(shadow.iter().chain([&seen]).all(|p| slept.contains(*p)), "{slept:?}");
+        // The camera moves: what is seen is drawn, what the lamp sees is not.
+        for number in 0..3 {
+            let placed = PlacedCamera::new((2.5 + 0.1 * number as f32, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);
+            pair.sides.iter_mut().for_each(|s| s.place_camera(&placed));
+            let slept = pair.frame("the camera moves");
+            assert!(shadow.iter().all(|p| slept.contains(*p)) && !slept.contains(seen), "{slept:?}");
+        }
+        // The lamp moves.
+        let mut lights = pair.scene.lights.clone();
+        lights[0].position.x += 0.1;
+        let sky = pair.scene.sky;
+        assert!(pair.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
+        let slept = pair.frame("the lamp moves");
+        assert!(shadow.iter().all(|p| !slept.contains(*p)), "{slept:?}");
+        // The exposure is of the picture alone.
+        pair.frame("the camera rests");
+        pair.frame("and still rests");
+        pair.set(&lab, "exposure", "1");
+        let slept = pair.frame("the exposure");
+        assert!(shadow.iter().chain([&seen]).all(|p| slept.contains(*p)), "{slept:?}");
+    }
+    assert_clean(&lab);
+}
