@@ -97,6 +97,7 @@ fn render_writes_a_png_and_its_measurements() {
         "graph",
         "params",
         "passes",
+        "redo",
         "scene",
         "scene_bytes",
         "schema",

@@ -85,15 +85,18 @@ fn with(mut experiment: Experiment, name: &str, value: &str) -> Experiment {
 fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Linear>, Reference) {
     let scene = Scene::open(&experiment.scene, &|_, _| ControlFlow::Continue(())).unwrap();
     let scene = experiment.adapted(Arc::new(scene)).unwrap();
-    // All rays in one frame: what turns add up to, bit by bit (tests/turns.rs).
-    let experiment = &with(experiment.clone(), "gather_frames", "1");
+    // All rays in one frame, but where turns are asked for: of diffuse light they add up to the same bits (tests/turns.rs).
+    let turns = experiment.params.iter().find(|p| p.0.value == "gather_frames").map(|p| p.1.clone());
+    let experiment = &with(experiment.clone(), "gather_frames", turns.as_deref().unwrap_or("1"));
     let mut wanted = Vec::new();
     let prepared = lab.prepare(experiment, scene.clone(), |graph| {
         wanted.extend(parts_of(graph).into_iter().map(|p| p.1));
         Ok(wanted)
     });
     let (mut session, _) = prepared.unwrap_or_else(|e| panic!("{e}"));
-    session.frame(0.0).unwrap();
+    for _ in 0..turns.map_or(1, |t| t.parse().unwrap()) {
+        session.frame(0.0).unwrap();
+    }
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new());
     let parts = session.parts().unwrap();
@@ -358,8 +361,11 @@ fn specular_lobe() {
         let name = format!("strip-{roughness}");
         let scene = scene.replace("NAME", &name);
         let file = quads(&name, &materials, &[("metal", floor), ("strip", strip)], &scene);
-        let (parts, reference) =
-            run(&lab, &experiment(&file, (64, 48), &[("voxel_dim", "128"), QUICK, ONE_BOUNCE]), 256);
+        let (parts, reference) = run(
+            &lab,
+            &experiment(&file, (64, 48), &[("voxel_dim", "128"), ("gather_frames", "16"), QUICK, ONE_BOUNCE]),
+            256,
+        );
         let s = scores(&parts["specular"], &reference.parts["specular"].mean).unwrap();
         let setting = format!("roughness {roughness}");
         rows.push(row(setting.clone(), "specular / reference", s.energy_ratio, (0.8, 1.2)));

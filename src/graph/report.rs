@@ -43,7 +43,11 @@ pub fn summary(graph: &Graph, plan: &Plan) -> String {
             names.join(" ")
         };
         let head = format!("  {}{times}: {}", pass.name.value, work_text(graph, first));
-        let _ = writeln!(out, "{head}\n      {} -> {}", named(false), named(true));
+        let _ = match first.work {
+            // It says what it writes.
+            Work::ClearTexture(..) | Work::ClearBuffer(..) => writeln!(out, "{head}"),
+            _ => writeln!(out, "{head}\n      {} -> {}", named(false), named(true)),
+        };
     }
     let _ = writeln!(out, "\nmemory, MiB");
     let textures = plan.textures.iter().enumerate().filter(|(_, p)| !p.usage.is_empty());
