@@ -444,7 +444,7 @@ fn a_sheet_of_failures() {
 }
 
 /// The shipped suites are right and run, small: every motion with three methods, every method where nothing moves and where what
-/// it follows turns, and two of the failures are as the physics says. The courtyard's takes a software device minutes a frame.
+/// it follows turns, and two of the failures are as the physics says. The courtyard's is too long for a software device.
 #[test]
 fn shipped_suites() {
     let home = home();

@@ -413,6 +413,10 @@ impl Program {
         });
         slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.slots = slots;
+        if result.is_err() && self.contents.is_some() {
+            // Nobody knows what such a frame has done.
+            self.contents = Some(Contents::new(&self.linked, &self.plan));
+        }
         result?;
         self.frame += 1;
         self.rest(parity);

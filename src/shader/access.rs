@@ -169,8 +169,11 @@ pub(super) fn stored_by_each(words: &[u32]) -> BTreeSet<u32> {
     let main = instructions(words).skip_while(|i| opcode(i) != FUNCTION || i.get(2) != entry);
     // To its first branch, return or kill.
     let first_block = main.take_while(|i| !(249..=255).contains(&opcode(i)));
-    let is_place = |i: &&[u32]| opcode(i) == DECORATE && i[2..] == [BUILT_IN, GLOBAL_INVOCATION_ID];
-    let mut places: BTreeSet<u32> = instructions(words).filter(is_place).map(|i| i[1]).collect();
+    let place = |i: &[u32]| match i {
+        [_, id, BUILT_IN, GLOBAL_INVOCATION_ID] if opcode(i) == DECORATE => Some(*id),
+        _ => None,
+    };
+    let mut places: BTreeSet<u32> = instructions(words).filter_map(place).collect();
     let (variables, mut images, mut stored) = (variables(words), BTreeMap::new(), BTreeSet::new());
     for i in first_block {
         match (opcode(i), i) {
