@@ -8,5 +8,5 @@ bool isNearer(ivec2 pixel, uint layer, float depth) {
 }
 
 void plot(ivec2 pixel, uint layer, float depth, uint triangle) {
-    atomicMax(visibility.words[wordOf(pixel)].x, triangle);
+    if (isNearer(pixel, layer, depth)) atomicMax(visibility.words[wordOf(pixel)].x, triangle);
 }

@@ -14,12 +14,11 @@ void main() {
         Outline o;
         outlineOf(p, targetSize(), o); // pieces in the queue have one
         if ((o.high.x - o.low.x + 1) * (o.high.y - o.low.y + 1) <= MEDIUM) {
-            Material m = materialOf(p.triangle);
             ivec2 lane = ivec2(gl_LocalInvocationIndex & 7u, gl_LocalInvocationIndex >> 3);
             for (int y = o.low.y; y <= o.high.y; y += 4)
                 for (int x = o.low.x; x <= o.high.x; x += 8) {
                     ivec2 pixel = ivec2(x, y) + lane;
-                    if (all(lessThanEqual(pixel, o.high))) fillPixel(p, o, m, pixel);
+                    if (all(lessThanEqual(pixel, o.high))) fillPixel(p, o, pixel);
                 }
             continue;
         }
@@ -41,7 +40,7 @@ void main() {
                 rasterTiles.list[k] = uvec2(i, uint(tile.x | tile.y << 16));
             } else {
                 ivec2 corner = tile * TILE;
-                fillRectangle(p, o, materialOf(p.triangle), max(o.low, corner), min(o.high, corner + TILE - 1));
+                fillRectangle(p, o, max(o.low, corner), min(o.high, corner + TILE - 1));
             }
         }
     }

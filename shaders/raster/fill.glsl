@@ -1,4 +1,5 @@
-// Filling the pixels of pieces. The including shader says where to: targetSize; isNearer, whether a depth is not hidden yet; plot.
+// Filling the pixels of pieces. The including shader says where to: targetSize; isNearer, whether a depth is not hidden yet; plot, which
+// leaves what is hidden alone.
 #ifndef RASTER_FILL_GLSL
 #define RASTER_FILL_GLSL
 #include "common/scene.glsl"
@@ -12,29 +13,26 @@ vec2 uvAt(Piece p, Outline o, vec2 at) {
     return (b.x * p.uv[0] + b.y * p.uv[1] + b.z * p.uv[2]) / (b.x + b.y + b.z);
 }
 
-bool isCutOut(Piece p, Outline o, Material m, vec2 at) {
+bool isCutOut(Piece p, Outline o, vec2 at) {
+    Material m = materials.materials[p.mask - 1];
     vec2 uv = uvAt(p, o, at);
     return baseColor(m, uv, Gradient(uvAt(p, o, at + vec2(1, 0)) - uv, uvAt(p, o, at + vec2(0, 1)) - uv)).a < m.alpha_cutoff;
 }
 
-void fillPixel(Piece p, Outline o, Material m, ivec2 pixel) {
+void fillPixel(Piece p, Outline o, ivec2 pixel) {
     vec2 at = vec2(pixel) + 0.5;
     vec3 e = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at));
     if (!isInside(o.edges[0], e.x) || !isInside(o.edges[1], e.y) || !isInside(o.edges[2], e.z)) return;
     vec2 steps = vec2(pixel - o.low);
     precise float depth = clamp(p.depth + p.slope.x * steps.x + p.slope.y * steps.y, p.range.x, p.range.y);
-    if (!isNearer(pixel, p.layer, depth)) return;
-    if (m.alpha_cutoff > 0.0 && isCutOut(p, o, m, at)) return;
+    // Only where a lookup may be spared: plot decides anyway, and nobody waits for it.
+    if (p.mask > 0 && (!isNearer(pixel, p.layer, depth) || isCutOut(p, o, at))) return;
     plot(pixel, p.layer, depth, p.triangle);
 }
 
-void fillRectangle(Piece p, Outline o, Material m, ivec2 low, ivec2 high) {
+void fillRectangle(Piece p, Outline o, ivec2 low, ivec2 high) {
     for (int y = low.y; y <= high.y; y++)
-        for (int x = low.x; x <= high.x; x++) fillPixel(p, o, m, ivec2(x, y));
-}
-
-Material materialOf(uint triangle) {
-    return materials.materials[draws.draws[triangles.list[triangle].x].material];
+        for (int x = low.x; x <= high.x; x++) fillPixel(p, o, ivec2(x, y));
 }
 
 #endif

@@ -16,6 +16,7 @@ struct Piece {
     vec2 range; // of depth
     uint triangle;
     uint layer;
+    uint mask; // the material whose alpha cuts holes, + 1; 0: none does
 };
 
 layout(std430) buffer RasterPieces { Piece list[]; } rasterPieces;

@@ -18,12 +18,13 @@ vec3 depthPlane(Corner a, Corner b, Corner c) {
     return sum / dot(normal, from);
 }
 
-void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, Material m) {
+void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, uint mask) {
     ivec2 size = targetSize();
     Piece p;
     p.uv = vec2[3](a.uv, b.uv, c.uv);
     p.triangle = triangle;
     p.layer = layer;
+    p.mask = mask;
     vec4 clip[3] = vec4[3](a.clip, b.clip, c.clip);
     float depths[3];
     for (int i = 0; i < 3; i++) {
@@ -47,7 +48,7 @@ void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, M
             return;
         }
     }
-    fillRectangle(p, o, m, o.low, o.high);
+    fillRectangle(p, o, o.low, o.high);
 }
 
 // Where the line from a corner before the near plane to one behind it is cut: from the same end for both triangles beside it.
@@ -74,8 +75,8 @@ void setUp(uint triangle, uint layer) {
     uint before = 0;
     for (int i = 0; i < 3; i++) before |= uint(corner[i].clip.w >= near) << i;
     if (before == 0) return;
-    Material m = materials.materials[d.material];
-    if (m.alpha_cutoff > 0.0)
+    bool masked = materials.materials[d.material].alpha_cutoff > 0.0;
+    if (masked)
         for (int i = 0; i < 3; i++) corner[i].uv = loadAttributes(indices.indices[t.y + i]).uv;
     vec3 plane = depthPlane(corner[0], corner[1], corner[2]);
     Corner parts[6];
@@ -97,7 +98,7 @@ void setUp(uint triangle, uint layer) {
             count = 2;
         }
     }
-    for (int i = 0; i < 3 * count; i += 3) draw(parts[i], parts[i + 1], parts[i + 2], plane, triangle, layer, m);
+    for (int i = 0; i < 3 * count; i += 3) draw(parts[i], parts[i + 1], parts[i + 2], plane, triangle, layer, masked ? d.material + 1 : 0);
 }
 
 void main() {
