@@ -1,5 +1,5 @@
-// A few narrow cones or rays a pixel, other ones in each pixel of a block of 8x8: shading filters over the block, so that each
-// surface sees 64 times as many (Segovia et al. 2006). What traces one is in modules/trace, which includes this after
+// A few narrow cones or rays a pixel, other ones in each pixel of a block of 8x8 that traces any: shading filters over the block, so
+// that each surface sees up to 64 times as many (Segovia et al. 2006). What traces one is in modules/trace, which includes this after
 // saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps).
 #include "cones/light.glsl"
 #include "common/ggx.glsl"
@@ -7,7 +7,7 @@
 
 // Point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
 vec2 pixelPoint(int i) {
-    return evenPoint(uint(i) * 64u + pixelNumber(uvec2(pixelCentre())));
+    return evenPoint(uint(i) * uint(params.ray_patterns) + pixelNumber(uvec2(pixelCentre())));
 }
 
 // The same, other ones in each block: what few directions cannot tell becomes noise and not a bias.
@@ -46,7 +46,7 @@ float largest(vec3 v) {
 int specularRays(Surface s, vec3 v) {
     float mirrored = largest(fresnel(s.f0, max(dot(s.normal, v), 0.0)));
     float share = mirrored / (mirrored + largest(s.albedo));
-    return clamp(int(ceil(params.lobe_share * share * float(gatherShare.rays))), 1, max(gatherShare.rays, 1));
+    return clamp(int(ceil(params.lobe_share * share * float(gatherShare.lobe))), 1, max(gatherShare.lobe, 1));
 }
 
 // Some directions of the lobe; a cone has a sixteenth of it. Dealt from the last thread on: the first have more of the others.

@@ -1,7 +1,7 @@
-// A pixel's rays, dealt to several threads of a group. Threads beside each other take the same ray of different pixels.
+// A pixel's rays, dealt to GATHER_THREADS threads of a group, which the shader says. Threads beside each other take the same ray of
+// different pixels.
 #include "shade/gathered.glsl"
 
-const uint GATHER_THREADS = 4;
 const uint GATHER_PIXELS = 32; // of a group
 
 layout(local_size_x = GATHER_PIXELS, local_size_y = GATHER_THREADS) in;
@@ -16,8 +16,8 @@ vec2 pixelCentre() {
 }
 
 // All threads of a group come here. `rays`: of the pixel, over the hemisphere; 0: its reflection alone, what it has gathered of the
-// hemisphere stays.
-void gatherPixel(ivec2 pixel, bool gathers, int rays, float age) {
+// hemisphere stays. `lobe`: those of a surface that reflects by its lobe alone.
+void gatherPixel(ivec2 pixel, bool gathers, int rays, int lobe, float age) {
     uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x;
     gathers = gathers && all(lessThan(pixel, ivec2(camera.size)));
     gathering = pixel;
@@ -26,7 +26,7 @@ void gatherPixel(ivec2 pixel, bool gathers, int rays, float age) {
     if (gathers) seen = gbufferAt(pixel);
     Gathered light = Gathered(vec4(0.0), vec3(0.0));
     if (seen.any) {
-        gatherShare = RayShare(rays, int(part), int(GATHER_THREADS));
+        gatherShare = RayShare(rays, lobe, int(part), int(GATHER_THREADS));
         light = gather(coneOrigin(seen.position, seen.face, seen.surface.normal), seen.surface, seen.face, seen.to_viewer);
     }
     shared_hemisphere[part][lane] = light.hemisphere;

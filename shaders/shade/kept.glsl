@@ -8,18 +8,24 @@ uniform sampler2D lastSpecular;
 uniform sampler2D lastDistance;
 
 // How a listed pixel gathers.
-const uint GATHER_FEW = 0; // nothing is known of it: some rays, until its turn comes
+const uint GATHER_FEW = 0; // nothing is known of it: FEW_RAYS, until its turn comes
 const uint GATHER_ALL = 1; // as in its turn, which it has missed
-const uint GATHER_MIRRORED = 2; // its reflection alone
+const uint GATHER_MIRRORED = 2; // its reflection alone, not in its turn
+const uint GATHER_LOBE = 3; // its reflection alone, all of it
+const int FEW_RAYS = 4;
 
-// The pixel of last frame's picture that saw a surface.
-bool seenBefore(ivec2 pixel, GBufferSurface seen, out ivec2 at) {
+// Of what a pixel has not gathered for itself, as opacity or age.
+const float NOT_GATHERED = -1.0;
+
+// The pixel of last frame's picture that saw a surface, of those that lie so many pixels apart.
+bool seenBefore(ivec2 pixel, GBufferSurface seen, int apart, out ivec2 at) {
     vec4 clip = camera.previous_view_projection * vec4(seen.position, 1.0);
     if (clip.w <= 0.0) return false;
     // To the nearest pixel, by chance as the point lies between them: what is kept neither blurs nor sticks to the picture.
     Random r = Random(uvec4(pixel, camera.frame, 0u));
     vec2 chance = next4(r).xy - 0.5;
-    at = ivec2(floor((clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) + 0.98 * chance));
+    vec2 middle = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) - 0.5;
+    at = apart * ivec2(floor(middle / float(apart) + 0.5 + 0.98 * chance));
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(camera.size)))) return false;
     // As far away as it was then, but for what a surface seen at a slant goes on in a pixel or two.
     float range = distance(seen.position, camera.previous_position), before = texelFetch(lastDistance, at, 0).r;

@@ -1,4 +1,4 @@
-// Pixels that gather although it is not their turn.
+// Pixels that gather for themselves, or although it is not their turn.
 layout(std430) buffer GatherList { uint pixels[]; } gatherList; // the pixel, and above it how
 layout(std430) buffer GatherCounter {
     uint count;

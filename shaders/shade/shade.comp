@@ -10,6 +10,11 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+uniform sampler2D gatheredDiffuse;
+uniform sampler2D gatheredSpecular;
+uniform sampler2D smoothedDiffuse;
+uniform sampler2D smoothedSpecular;
+
 uniform writeonly image2D radiance; // everything, emission included
 uniform writeonly image2D direct;
 uniform writeonly image2D diffuseIndirect;
@@ -21,6 +26,39 @@ float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
     return shadowVisibility(light, p, face, to_light);
 }
 
+Filtered unfiltered(ivec2 pixel) {
+    return Filtered(texelFetch(gatheredDiffuse, pixel, 0), texelFetch(gatheredSpecular, pixel, 0).rgb);
+}
+
+// What the lattice has gathered around a pixel, and the pixel itself where it has gathered.
+Filtered filtered(ivec2 pixel, GBufferSurface seen) {
+    vec4 diffuse = vec4(0.0);
+    vec3 specular = vec3(0.0);
+    float weights = 0.0, specular_weights = 0.0, lobe = blurs(seen);
+    if (latticeBefore(pixel) != pixel) {
+        vec4 own = texelFetch(gatheredDiffuse, pixel, 0), reflected = texelFetch(gatheredSpecular, pixel, 0);
+        if (own.a >= 0.0) {
+            diffuse = own;
+            weights = 1.0;
+        }
+        if (reflected.a >= 0.0) {
+            specular = reflected.rgb;
+            specular_weights = 1.0;
+        }
+    }
+    for (int i = 0; i < 4; i++) {
+        ivec2 at = latticeBefore(pixel) + params.ray_step * ivec2(i & 1, i >> 1), place = at / params.ray_step;
+        bool own = at == pixel;
+        float weight = own ? 1.0 : likeness(at, seen);
+        diffuse += weight * texelFetch(smoothedDiffuse, place, 0);
+        weights += weight;
+        weight *= own ? 1.0 : lobe;
+        specular += weight * texelFetch(smoothedSpecular, place, 0).rgb;
+        specular_weights += weight;
+    }
+    return Filtered(diffuse / max(weights, 1e-6), specular / max(specular_weights, 1e-6));
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
@@ -28,7 +66,7 @@ void main() {
     vec3 total = sceneInfo.sky, normal = vec3(-1.0), lit = vec3(0.0), diffuse = vec3(0.0);
     Filtered light = Filtered(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));
     if (seen.any) {
-        light = params.pattern == 1 ? unfiltered(pixel) : filterGathered(pixel, seen, 0, 1, 2);
+        light = params.pattern == 1 ? unfiltered(pixel) : filtered(pixel, seen);
         lit = directLight(seen.surface, seen.position, seen.face, seen.to_viewer);
         diffuse = seen.surface.albedo * light.hemisphere.rgb;
         total = lit + diffuse + light.specular + seen.emission;

@@ -1,22 +1,36 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The first half of the filter over what pixels have gathered: every other pixel of 8x8. Shading takes the mean of 2x2 of what
-// this leaves, so that both together have each pixel of the pattern once, for 20 lookups and not 64.
+// The first half of the filter over what pixels of the lattice have gathered: every other one of those in 8x8 pixels. Shading takes
+// the mean of 2x2 of what this leaves, so that both together have each pixel of the pattern once, for 20 lookups and not 64.
 #include "params.glsl"
 #include "common/gbuffer_read.glsl"
 #include "shade/filter.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+uniform sampler2D gatheredDiffuse;
+uniform sampler2D gatheredSpecular;
 uniform writeonly image2D smoothedDiffuse;
 uniform writeonly image2D smoothedSpecular;
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 place = ivec2(gl_GlobalInvocationID.xy), pixel = params.ray_step * place;
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     GBufferSurface seen = gbufferAt(pixel);
-    Filtered light = Filtered(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));
-    if (seen.any) light = filterGathered(pixel, seen, -4, 2, 4);
-    imageStore(smoothedDiffuse, pixel, light.hemisphere);
-    imageStore(smoothedSpecular, pixel, vec4(light.specular, 1.0));
+    int stride = 2 * params.ray_step, across = 4 / params.ray_step;
+    vec4 diffuse = vec4(0.0);
+    vec3 specular = vec3(0.0);
+    float weights = 0.0, specular_weights = 0.0, lobe = seen.any ? blurs(seen) : 0.0;
+    for (int i = 0; seen.any && i < across * across; i++) {
+        ivec2 at = pixel + stride * (ivec2(i % across, i / across) - across / 2);
+        bool own = at == pixel;
+        float weight = own ? 1.0 : likeness(at, seen);
+        diffuse += weight * texelFetch(gatheredDiffuse, at, 0);
+        weights += weight;
+        weight *= own ? 1.0 : lobe;
+        specular += weight * texelFetch(gatheredSpecular, at, 0).rgb;
+        specular_weights += weight;
+    }
+    imageStore(smoothedDiffuse, place, seen.any ? diffuse / weights : vec4(0.0, 0.0, 0.0, 1.0));
+    imageStore(smoothedSpecular, place, vec4(seen.any ? specular / specular_weights : vec3(0.0), 1.0));
 }
