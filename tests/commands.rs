@@ -325,7 +325,7 @@ fn graph_explains_itself() {
 
     let dot = graph(&["passes/vct.ron", "--dot"]);
     assert!(dot.starts_with("digraph ") && dot.ends_with("}\n"), "{dot}");
-    assert!(dot.contains("\"pass inject\" -> \"voxelPlanes\";"), "{dot}");
+    assert!(dot.contains("\"pass inject\" -> \"sideRadiance\";"), "{dot}");
 
     let params = graph(&["passes/vct.ron", "--params"]);
     assert!(

@@ -1023,7 +1023,7 @@ fn keys_of_bind_that_no_shader_uses() {
         = help: known: count, grid, last
     "#);
     assert_snapshot!(graph("bind: { \"src\": (of: \"grid\", mip: \"mip - 1\")", "bind: { \"src\": (of: \"work\", mip: \"mip - 1\")"), @r#"
-    passes/graph.ron:22:33: error: 'work' is a buffer: it has no mip, layer, format, history or sampler
+    passes/graph.ron:22:33: error: 'work' is a buffer: it has no mip, layer, format or sampler
         |             bind: { "src": (of: "work", mip: "mip - 1"), "dst": (of: "grid", mip: "mip") }),
     "#);
 }
@@ -1754,7 +1754,7 @@ fn aliases_and_samplers() {
         = help: declare it as 3D
     ");
     assert_snapshot!(alias("\"ghost\": [(when: \"bright\", of: \"work\", mip: 1), (of: \"depth\", history: true)]"), @r#"
-    passes/graph.ron:9:47: error: 'work' is a buffer: it has no mip, layer, format, history or sampler
+    passes/graph.ron:9:47: error: 'work' is a buffer: it has no mip, layer, format or sampler
         |     aliases: { "ghost": [(when: "bright", of: "work", mip: 1), (of: "depth", history: true)] },
     passes/graph.ron:9:69: error: 'depth' is not declared with `history: true`
         |     aliases: { "ghost": [(when: "bright", of: "work", mip: 1), (of: "depth", history: true)] },

@@ -181,6 +181,7 @@ fn what_nothing_has_changed_sleeps() {
         (BY_THREADS, &["shadow clear", "shadow triangles", "shadow bins", "shadow tiles"][..], "visibility tiles"),
         (BY_RASTER, &["shadow map"][..], "G-buffer"),
     ] {
+        let voxels = ["volume", "voxel slots clear", "voxel list", "voxel slots", "voxel merge", "voxel planes"];
         // A lamp of one shadow map: layers are drawn one by one, and a clear of one leaves the others.
         let mut pair = Pair::new(&lab, "cornell", &path);
         let slept = pair.frame("the first");
@@ -194,7 +195,7 @@ fn what_nothing_has_changed_sleeps() {
             let placed = PlacedCamera::new((2.5 + 0.1 * number as f32, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);
             pair.sides.iter_mut().for_each(|s| s.place_camera(&placed));
             let slept = pair.frame("the camera moves");
-            assert!(shadow.iter().all(|p| slept.contains(*p)) && !slept.contains(seen), "{slept:?}");
+            assert!(shadow.iter().chain(&voxels).all(|p| slept.contains(*p)) && !slept.contains(seen), "{slept:?}");
         }
         // The lamp moves.
         let mut lights = pair.scene.lights.clone();
@@ -202,7 +203,7 @@ fn what_nothing_has_changed_sleeps() {
         let sky = pair.scene.sky;
         assert!(pair.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
         let slept = pair.frame("the lamp moves");
-        assert!(shadow.iter().all(|p| !slept.contains(*p)), "{slept:?}");
+        assert!(shadow.iter().all(|p| !slept.contains(*p)) && voxels.iter().all(|p| slept.contains(*p)), "{slept:?}");
         // The exposure is of the picture alone.
         pair.frame("the camera rests");
         pair.frame("and still rests");

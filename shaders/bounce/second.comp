@@ -14,11 +14,11 @@ void main() {
         uint slot = i / SIDES, side = i % SIDES;
         if (axisOfSlot(slot) < 0) continue;
         ivec3 cell = cellOfSlot(slot);
-        uint base = planeBase(voxelCounter.half_used, slot);
+        uint base = planeBase(slot);
         VolumeMap map = volume.maps[cascadeOf(cell)];
         Side s = sideOfSlot(slot, side);
         if (s.normal == vec3(0.0)) continue;
         vec3 p = slotPosition(map, cell, base, side, uint(axisOfSlot(slot)));
-        keepLight(gatheredWord(base, side), gatherAt(p, s.normal, patternOf(uvec3(cell)), 0, 1), 1.0);
+        sideGathered.list[sideNumber(slot, side)] = packLight(gatherAt(p, s.normal, patternOf(uvec3(cell)), 0, 1), 1.0);
     }
 }

@@ -1,24 +1,24 @@
-// What rays need of a slot: the surfaces of each side as a plane, in cells, and the radiance that leaves it; beside them what its
-// cones have gathered. A few words, because rays read many. As the list of cells, this frame's in one half of the buffer and
-// last frame's in the other.
+// What rays need of a slot: the surfaces of each side as a plane, in cells. A few words, because rays read many. And by side, apart
+// from that because it changes with the light: the radiance that leaves it, and what its cones have gathered.
 #ifndef PLANES_GLSL
 #define PLANES_GLSL
 #include "common/voxels.glsl"
 #include "common/parts.glsl"
 
 layout(std430) buffer VoxelPlanes { uvec4 quads[]; } voxelPlanes;
+layout(std430) buffer SideRadiance { uvec2 list[]; } sideRadiance;
+layout(std430) buffer SideGathered { uvec2 list[]; } sideGathered;
 
-// By side: a plane; then by side which parts are covered, radiance, gathered light, two words each. In fours, because rays wait for
-// every load.
-const uint PLANE_WORDS = 8 * SIDES;
+// By side: a plane; then by side which parts are covered, two words. In fours, because rays wait for every load.
+const uint PLANE_WORDS = 4 * SIDES;
 
 struct Plane {
     vec3 normal; // of side 0; not unit length: 1 along its axis
     float offset; // from the cell's middle, along its axis
 };
 
-uint planeBase(uint half_used, uint slot) {
-    return (half_used * (voxelPlanes.quads.length() / (PLANE_WORDS / 2)) + slot) * PLANE_WORDS;
+uint planeBase(uint slot) {
+    return slot * PLANE_WORDS;
 }
 
 uint planeData(uint word) {
@@ -82,27 +82,23 @@ vec3 planeMiddle(uint base, uint side, uint axis) {
     return onPlane(base, side, axis, middleOf(partsOf(base, side)));
 }
 
-vec3 lightWords(uint word) {
-    return vec3(unpackHalf2x16(planeData(word)), unpackHalf2x16(planeData(word + 1)).x);
+// Where a side's light is.
+uint sideNumber(uint slot, uint side) {
+    return slot * SIDES + side;
 }
 
 // times: how often it was gathered.
-void keepLight(uint word, vec3 light, float times) {
+uvec2 packLight(vec3 light, float times) {
     light = min(light, 65504.0);
-    keepData(word, packHalf2x16(light.rg));
-    keepData(word + 1, packHalf2x16(vec2(light.b, times)));
+    return uvec2(packHalf2x16(light.rg), packHalf2x16(vec2(light.b, times)));
 }
 
-float timesGathered(uint word) {
-    return unpackHalf2x16(planeData(word + 1)).y;
+vec3 lightOf(uvec2 packed) {
+    return vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x);
 }
 
-uint radianceWord(uint base, uint side) {
-    return base + SIDES + 2 * (SIDES + side);
-}
-
-uint gatheredWord(uint base, uint side) {
-    return base + SIDES + 2 * (2 * SIDES + side);
+float timesOf(uvec2 packed) {
+    return unpackHalf2x16(packed.y).y;
 }
 
 #endif

@@ -18,7 +18,7 @@ struct VolumeMap {
     vec3 axis_y; // half its height, downwards
     vec3 axis_z; // view direction
     vec2 range; // near, far [m]
-    vec3 seen_from; // the camera, which `eye` follows in steps
+    vec3 seen_from; // the camera, which `eye` follows in steps; where nothing follows, 0
     ivec3 kept_from; // cells from here ...
     ivec3 kept_to; // ... to before here hold what they held last frame, wherever they were then
     ivec3 shift; // in cells, since last frame
@@ -26,7 +26,10 @@ struct VolumeMap {
 
 const uint MAX_CASCADES = 6;
 
-layout(std430) buffer Volume { VolumeMap maps[MAX_CASCADES]; } volume;
+layout(std430) buffer Volume {
+    VolumeMap maps[MAX_CASCADES];
+    uint signature; // of the settings that decide about its voxels
+} volume;
 
 bool inVolume(vec3 u) {
     return all(equal(clamp(u, 0.0, 1.0), u));

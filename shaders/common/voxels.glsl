@@ -1,6 +1,6 @@
 // The sparse list of voxels. A slot holds the sums of what fell into a cell and faces along one axis, for its two sides apart
 // (modules/sides). The sums are integers, so their order does not matter and runs agree to the bit. Which slots a cell has is found
-// in common/bricks.glsl. That and the list of cells are kept for two frames: light comes from last frame's voxels.
+// in common/bricks.glsl.
 #ifndef VOXELS_GLSL
 #define VOXELS_GLSL
 
@@ -23,29 +23,15 @@ const float EMISSION_SCALE = 16.0;
 const float EMISSION_MAX = 1024.0;
 
 layout(std430) buffer VoxelSlots { uint words[]; } voxelSlots;
-// Occupied cells: this frame's in one half of the list, last frame's in the other. Those of a word of a brick are neighbours, and
-// so are their slots: threads beside each other read what lies beside each other.
-layout(std430) buffer VoxelCells { uint list[]; } voxelCells;
 layout(std430) buffer VoxelCounter {
-    uint half_used; // by this frame, 0 or 1
-    uint cells[2]; // occupied, by half
-    uint signatures[2]; // of the settings that a half was listed with; 0: it does not name every set cell
-    uint allocated; // slots asked for, this frame
     uint overflow; // fragments that were lost: the list of voxels or of fragments was full
     uint count; // slots in the list
-    uint fragments; // stored, this frame
-    uint words; // of bricks that are set, this frame
+    uint fragments; // stored
+    uint words; // of bricks that are set
     uvec3 word_groups; // indirect dispatch over the words of bricks that are set, 4 a group
     uvec3 list_groups; // over the slots
     uvec3 side_groups; // over their sides
-    uint clear_cells; // of the half that this frame takes; all, where that does not name them
-    uint clear_slots; // last frame's
-    uvec3 clear_groups; // indirect dispatch that clears a list
-    uvec3 dim_groups; // that clears last frame's light
-    uint signature; // of this frame's settings
-    uint kept; // slots that stay as they are, this frame
-    uvec3 merge_groups; // indirect dispatch over the fragments
-    uvec3 kept_groups; // indirect dispatch over what is kept
+    uvec3 merge_groups; // over the fragments
 } voxelCounter;
 
 // What fell into cells, in no order: cell, colour, normal and offset, emission; and beside it the triangle that it is of: its
@@ -188,20 +174,6 @@ uint sideBase(uint slot, uint side) {
 vec3 meanEmission(uint base) {
     float weight = float(max(voxelSlots.words[base + 3], 1u));
     return vec3(voxelSlots.words[base + 7], voxelSlots.words[base + 8], voxelSlots.words[base + 9]) / (EMISSION_SCALE * weight);
-}
-
-// Cells that a half of the list names.
-uint roomForCells() {
-    return voxelCells.list.length() / 2;
-}
-
-uint cellsListed(uint half_used) {
-    return min(voxelCounter.cells[half_used], roomForCells());
-}
-
-// Whether a half names every cell that was set, under the settings of now.
-bool namesAll(uint half_used) {
-    return voxelCounter.signatures[half_used] == params.voxel_signature;
 }
 
 #endif

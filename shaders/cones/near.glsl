@@ -5,9 +5,12 @@
 #include "common/planes.glsl"
 #include "common/bricks.glsl"
 
-// The voxels that rays meet: this frame's, unless the shader says last frame's.
-#ifndef LISTED_HALF
-#define LISTED_HALF voxelCounter.half_used
+// What rays meet, unless the shader has other names for it.
+#ifndef MET_PLANES
+#define MET_PLANES voxelPlanes
+#define MET_RADIANCE sideRadiance
+#define MET_BRICKS voxelBricks
+#define MET_BLOCKS voxelBlocks
 #endif
 
 // How far planes reach beyond their cell, so that rays find no gaps where neighbours lean differently [voxels].
@@ -19,15 +22,15 @@ struct Met {
 };
 
 // Which surface of a cell a ray from `at` along `dir` meets between `enter` and `leave`: its distance, less than `end`, or `end`
-// [cells]. `facing`: the normal of the surface that the ray leaves. `word`: of the radiance.
-float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float enter, float leave, float end, out uint word) {
-    uint slot = firstSlot(found), behind_word = 0;
+// [cells]. `facing`: the normal of the surface that the ray leaves. `met`: the number of the side that it meets.
+float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float enter, float leave, float end, out uint met) {
+    uint slot = firstSlot(found), met_behind = 0;
     float nearest = end, behind = end;
-    word = 0;
+    met = 0;
     for (uint axis = 0; axis < 3; axis++) {
         if ((found >> axis & 1u) == 0) continue;
-        uint base = planeBase(LISTED_HALF, slot++);
-        uvec4 first = voxelPlanes.quads[base >> 2];
+        uint quad = planeBase(slot) >> 2, number = sideNumber(slot++, 0);
+        uvec4 first = MET_PLANES.quads[quad];
         uint own = first.x >> 30;
         for (uint side = 0; side < SIDES; side++) {
             if ((own >> side & 1u) == 0) continue;
@@ -36,23 +39,23 @@ float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float ent
             float slope = dot(plane.normal, dir), t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
             if (t < 0.0 || t < enter - NEAR_MARGIN || t > leave + NEAR_MARGIN || t >= nearest) continue;
             vec2 place = besideOf(at + t * dir - vec3(cell), axis);
-            if (!isCovered(SIDES == 1 ? first.yz : side == 0 ? first.zw : partsOf(base, 1), place)) continue;
+            if (!isCovered(SIDES == 1 ? first.yz : side == 0 ? first.zw : MET_PLANES.quads[quad + 1].xy, place)) continue;
             if ((side == 0) == (slope < 0.0)) {
                 nearest = t;
-                word = radianceWord(base, side);
+                met = number + side;
                 continue;
             }
             // From behind: where the other side has a surface, back to back, the ray meets that one. Nor the back of the surface
             // that is left: within a voxel or two its plane may lie before it.
-            if (t >= behind || own == 3 && isCovered(partsOf(base, 1 - side), place)) continue;
+            if (t >= behind || own == 3 && isCovered(side == 0 ? MET_PLANES.quads[quad + 1].xy : first.zw, place)) continue;
             if (t < 1.5 && dot(plane.normal, facing) * slope > 0.0) continue;
             behind = t;
-            behind_word = radianceWord(base, 1 - side);
+            met_behind = number + 1 - side;
         }
     }
     // At an edge a ray may pass the back of one face just before it meets the front of the other: planes are not that exact.
     if (nearest < end) return nearest;
-    word = behind_word;
+    met = met_behind;
     return behind;
 }
 
@@ -79,8 +82,8 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
     for (int i = 0; i < 3 * params.voxel_dim && enter < end && inGrid(cell); i++) {
         if (cell >> 4 != block) {
             block = cell >> 4;
-            uint number = blockNumber(LISTED_HALF, cell, cascade);
-            bricks = uvec2(voxelBlocks.masks[number], voxelBlocks.masks[number + 1]);
+            uint number = blockNumber(cell, cascade);
+            bricks = uvec2(MET_BLOCKS.masks[number], MET_BLOCKS.masks[number + 1]);
         }
         ivec3 brick = cell >> 2;
         bool empty = (bricks[wordOfCell(brick)] & bitOfCell(brick)) == 0;
@@ -91,12 +94,12 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
         float leave = min(borders.x, min(borders.y, borders.z));
         if (!empty) {
             uint number = wordNumber(cell, cascade), bit = bitOfCell(cell);
-            if (number != last) cells = voxelBricks.words[wordsOfHalf(LISTED_HALF) + number];
+            if (number != last) cells = MET_BRICKS.words[number];
             last = number;
             if ((occupiedCells(cells) & bit) != 0) {
-                uint word;
-                float t = meetCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, word);
-                if (t < end) return Met(t * voxel, vec4(lightWords(word), 1.0));
+                uint met;
+                float t = meetCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, met);
+                if (t < end) return Met(t * voxel, vec4(lightOf(MET_RADIANCE.list[met]), 1.0));
             }
         }
         bvec3 crossed = equal(borders, vec3(leave));

@@ -24,7 +24,7 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
-    uint found = foundAtStored(voxelCounter.half_used, cell);
+    uint found = foundAtStored(cell);
     if (slot != firstSlot(found)) return;
 
     VolumeMap map = volume.maps[cascadeOf(cell)];
@@ -33,9 +33,9 @@ void main() {
     vec3 light[6] = vec3[6](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     float seen[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0), opacity[6] = seen;
     for (uint i = 0; i < slotsOf(found) * SIDES; i++) {
-        uint side = i % SIDES, base = planeBase(voxelCounter.half_used, slot + i / SIDES);
+        uint side = i % SIDES;
         Side s = sideOfSlot(slot + i / SIDES, side);
-        vec3 radiance = lightWords(radianceWord(base, side));
+        vec3 radiance = lightOf(sideRadiance.list[sideNumber(slot, i)]);
         for (int face = 0; face < 6; face++) {
             vec3 d = normalize(axes * mipDirection(face));
             float area = s.count * meanCosine(s, -d);

@@ -93,8 +93,8 @@ void main() {
         VolumeMap map = volume.maps[cascadeOf(cell)];
         vec3 center = volumeToWorld(map, cellCentre(cell));
         mat3 axes = cellAxes(map, center);
-        uint axis = uint(axisOfSlot(slot)), base = planeBase(voxelCounter.half_used, slot);
-        vec3 gathered = lightWords(gatheredWord(base, side));
-        keepLight(radianceWord(base, side), radianceOf(sideOfSlot(slot, side), gathered, center, tapsOf(slot, side, base, axis), axes), 0.0);
+        uint axis = uint(axisOfSlot(slot)), base = planeBase(slot);
+        vec3 gathered = lightOf(sideGathered.list[i]);
+        sideRadiance.list[i] = packLight(radianceOf(sideOfSlot(slot, side), gathered, center, tapsOf(slot, side, base, axis), axes), 0.0);
     }
 }

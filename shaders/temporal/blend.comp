@@ -10,7 +10,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
 uniform sampler3D voxelLight; // this frame's
 uniform sampler3D lastHistory;
-layout(std430) readonly buffer LastVolume { VolumeMap maps[MAX_CASCADES]; uint frames; uint signature; } lastVolume;
+layout(std430) readonly buffer LastVolume { VolumeMap maps[MAX_CASCADES]; uint signature; } lastVolume;
 uniform writeonly image3D voxelHistory;
 uniform writeonly image3D voxelRadiance;
 
@@ -27,7 +27,7 @@ void main() {
     int cascade = cascadeOf(cell);
     vec4 value = texelFetch(voxelLight, texel, 0);
     VolumeMap g = volume.maps[cascade], last = lastVolume.maps[cascade];
-    if (lastVolume.frames > 0 && lastVolume.signature == voxelCounter.signature && !isCut(g, last)) {
+    if (lastVolume.signature == volume.signature && !isCut(g, last)) {
         vec3 u = worldToVolume(last, volumeToWorld(g, cellCentre(cell)));
         // A volume that moved by whole voxels finds its cell's centre again, to rounding.
         if (inVolume(u)) {

@@ -12,7 +12,7 @@ void main() {
     uint lane = gl_LocalInvocationIndex & 31u;
     for (uint i = gl_GlobalInvocationID.x >> 5; i < voxelCounter.words; i += gl_NumWorkGroups.x * 4) {
         uint number = voxelWords.list[i], bit = 1u << lane;
-        uvec4 word = voxelBricks.words[wordsOfHalf(voxelCounter.half_used) + number];
+        uvec4 word = voxelBricks.words[number];
         if ((occupiedCells(word) & bit) == 0) continue;
         uint found = foundIn(word, bit);
         imageStore(voxelIndex, cellOfBit(number, lane), uvec4(found == 0 ? ~0u : found));

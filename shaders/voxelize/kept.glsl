@@ -3,5 +3,9 @@
 #define VOXEL_KEPT_GLSL
 
 layout(std430) buffer VoxelKept { uint words[]; } voxelKept;
+layout(std430) buffer KeptCounter {
+    uint count;
+    uvec3 groups; // indirect dispatch over them
+} keptCounter;
 
 #endif

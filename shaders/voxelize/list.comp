@@ -1,17 +1,37 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Arguments of the passes that run over cells and fragments.
+// How many slots there are, before each chunk and in all, and the arguments of the passes that run over slots and fragments.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
+#include "voxelize/chunks.glsl"
 
-layout(local_size_x = 1) in;
+layout(local_size_x = CHUNK_THREADS) in;
+
+shared uint sums[CHUNK_THREADS];
 
 void main() {
-    uint now = voxelCounter.half_used;
-    voxelCounter.word_groups = uvec3(min((voxelCounter.words + 3) / 4, 65535u), 1, 1);
-    voxelCounter.signatures[now] = params.voxel_signature;
-    uint fragments = min(voxelCounter.fragments, voxelFragments.list.length());
+    uint chunks = voxelChunks.slots.length(), thread = gl_LocalInvocationIndex, share = (chunks + CHUNK_THREADS - 1) / CHUNK_THREADS;
+    uint first = min(thread * share, chunks), end = min(first + share, chunks), own = 0;
+    for (uint i = first; i < end; i++) own += voxelChunks.slots[i];
+    uint sum = own;
+    for (uint distance = 1; distance < CHUNK_THREADS; distance *= 2) {
+        sums[thread] = sum;
+        barrier();
+        if (thread >= distance) sum += sums[thread - distance];
+        barrier();
+    }
+    uint before = sum - own;
+    for (uint i = first; i < end; i++) {
+        voxelStarts.slots[i] = before;
+        before += voxelChunks.slots[i];
+    }
+    if (thread < CHUNK_THREADS - 1) return;
+    uint count = min(sum, uint(params.voxel_capacity)), fragments = min(voxelCounter.fragments, voxelFragments.list.length());
+    voxelCounter.count = count;
     voxelCounter.overflow = voxelCounter.fragments - fragments;
+    voxelCounter.word_groups = uvec3(min((voxelCounter.words + 3) / 4, 65535u), 1, 1);
+    voxelCounter.list_groups = uvec3((count + 127) / 128, 1, 1);
+    voxelCounter.side_groups = uvec3(min((count * SIDES + 127) / 128, 65535u), 1, 1);
     voxelCounter.merge_groups = uvec3(min((fragments + 127) / 128 + 1, 32768u), 1, 1);
 }

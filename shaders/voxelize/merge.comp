@@ -67,7 +67,7 @@ void main() {
         if (i >= count) continue;
         uvec4 fragment = voxelFragments.list[i];
         ivec3 stored = unpackCell(fragment.x);
-        uint found = foundAtStored(voxelCounter.half_used, stored);
+        uint found = foundAtStored(stored);
         vec3 normal = unpackDirection(fragment.z);
         uint axis = axisOf(normal);
         if (found == 0) {

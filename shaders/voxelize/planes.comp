@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The planes of each slot: the mean of all that the surfaces of a side say. Nothing has been gathered yet.
+// The planes of each slot: the mean of all that the surfaces of a side say.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
@@ -13,7 +13,7 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
-    uint axis = uint(axisOfSlot(slot)), base = planeBase(voxelCounter.half_used, slot);
+    uint axis = uint(axisOfSlot(slot)), base = planeBase(slot);
     VolumeMap map = volume.maps[cascadeOf(cell)];
     mat3 axes = cellAxes(map, volumeToWorld(map, cellCentre(cell)));
     uint own = 0;
@@ -25,6 +25,5 @@ void main() {
         float offset = offsetOfSum(float(voxelSlots.words[sums + SIDE_OFFSET]), float(voxelSlots.words[sums + 3]));
         keepPlane(planeWord(base, side), (seen == 0 ? normal : -normal) * axes, axis, offset, own);
         for (uint k = 0; k < 2; k++) keepData(partsWord(base, side) + k, voxelSlots.words[sums + SIDE_PARTS + k]);
-        keepLight(gatheredWord(base, side), vec3(0.0), 0.0);
     }
 }

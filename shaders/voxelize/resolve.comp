@@ -16,7 +16,7 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
     ivec3 cell = cellOfSlot(slot);
-    uint found = foundAtStored(voxelCounter.half_used, cell);
+    uint found = foundAtStored(cell);
     if (slot != firstSlot(found)) return;
     vec3 color = vec3(0.0), normal = vec3(0.0);
     float count = 0.0;

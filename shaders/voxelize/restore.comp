@@ -9,7 +9,7 @@ layout(local_size_x = 128) in;
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= voxelCounter.kept) return;
+    if (i >= keptCounter.count) return;
     uint word = voxelKept.words[i * SLOT_WORDS + SLOT_CELL];
     ivec3 stored = unpackCell(word);
     int cascade = cascadeOf(stored);

@@ -10,8 +10,8 @@ layout(local_size_x = 128) in;
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= voxelCounter.kept) return;
-    uint packed = voxelKept.words[i * SLOT_WORDS + SLOT_CELL], found = foundAtStored(voxelCounter.half_used, unpackCell(packed));
+    if (i >= keptCounter.count) return;
+    uint packed = voxelKept.words[i * SLOT_WORDS + SLOT_CELL], found = foundAtStored(unpackCell(packed));
     if (found == 0) return;
     uint slot = slotOf(found, (packed >> 30) - 1);
     for (uint word = 0; word < SLOT_CELL; word++) voxelSlots.words[slot * SLOT_WORDS + word] = voxelKept.words[i * SLOT_WORDS + word];

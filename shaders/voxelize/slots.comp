@@ -1,34 +1,28 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Lists the cells, and gives each a slot for every axis that its surfaces face along: a thread a bit, 32 a word of a brick.
+// Gives each cell a slot for every axis that its surfaces face along: a thread a bit, 32 a word of a brick.
 #include "params.glsl"
 #include "common/bricks.glsl"
+#include "voxelize/chunks.glsl"
 
 layout(local_size_x = 128) in;
 
-shared uint first_slot[4];
-shared uint first_cell[4];
+// The slots of a cell say whose they are.
+void nameSlots(uint number, uvec4 word, uint bit) {
+    uint packed = packCell(cellOfBit(number, bit)), found = foundIn(word, 1u << bit);
+    for (uint axis = 0; axis < 3; axis++)
+        if ((found >> axis & 1u) != 0) voxelSlots.words[slotOf(found, axis) * SLOT_WORDS + SLOT_CELL] = packed | (axis + 1) << 30;
+}
 
 void main() {
-    uint now = voxelCounter.half_used, lane = gl_LocalInvocationIndex & 31u, part = gl_LocalInvocationIndex >> 5;
+    uint lane = gl_LocalInvocationIndex & 31u, part = gl_LocalInvocationIndex >> 5, bit = 1u << lane;
     for (uint start = gl_WorkGroupID.x * 4; start < voxelCounter.words; start += gl_NumWorkGroups.x * 4) {
         bool listed = start + part < voxelCounter.words;
         uint number = listed ? voxelWords.list[start + part] : 0;
-        uvec4 word = listed ? voxelBricks.words[wordsOfHalf(now) + number] : uvec4(0);
-        uint occupied = occupiedCells(word), bit = 1u << lane;
+        uvec4 word = listed ? voxelBricks.words[number] : uvec4(0);
         barrier();
-        if (lane == 0 && listed) {
-            first_slot[part] = atomicAdd(voxelCounter.allocated, bitCount(word.x) + bitCount(word.y) + bitCount(word.z));
-            first_cell[part] = atomicAdd(voxelCounter.cells[now], bitCount(occupied));
-            voxelBricks.words[wordsOfHalf(now) + number].w = first_slot[part];
-        }
-        barrier();
-        if ((occupied & bit) == 0) continue;
-        uint packed = packCell(cellOfBit(number, lane)), i = first_cell[part] + bitCount(occupied & (bit - 1u));
-        if (i < roomForCells()) voxelCells.list[now * roomForCells() + i] = packed;
-        else voxelCounter.signatures[now] = 0; // it does not name all
-        uint found = foundIn(uvec4(word.xyz, first_slot[part]), bit);
-        for (uint axis = 0; axis < 3; axis++)
-            if ((found >> axis & 1u) != 0) voxelSlots.words[slotOf(found, axis) * SLOT_WORDS + SLOT_CELL] = packed | (axis + 1) << 30;
+        word.w += voxelStarts.slots[number / CHUNK_WORDS];
+        if (lane == 0 && listed) voxelBricks.words[number].w = word.w;
+        if ((occupiedCells(word) & bit) != 0) nameSlots(number, word, lane);
     }
 }

@@ -9,13 +9,13 @@
 // Notes that a cell has surfaces along an axis. Only the first invocation that comes to a word of a brick lists it, and none waits
 // for it.
 void occupy(ivec3 cell, int cascade, uint axis) {
-    uint number = wordNumber(cell, cascade), word = wordsOfHalf(voxelCounter.half_used) + number, bit = bitOfCell(cell);
+    uint word = wordNumber(cell, cascade), bit = bitOfCell(cell);
     if ((voxelBricks.words[word][axis] & bit) != 0) return;
     if (atomicOr(voxelBricks.words[word][axis], bit) != 0) return;
-    if (atomicOr(voxelBricks.words[word].w, 1u) != 0) return; // which slots.comp gives its meaning
-    voxelWords.list[atomicAdd(voxelCounter.words, 1)] = number;
+    if (atomicOr(voxelBricks.words[word].w, 1u) != 0) return; // which count.comp gives its meaning
+    voxelWords.list[atomicAdd(voxelCounter.words, 1)] = word;
     ivec3 brick = cell >> 2;
-    atomicOr(voxelBlocks.masks[blockNumber(voxelCounter.half_used, cell, cascade) + wordOfCell(brick)], bitOfCell(brick));
+    atomicOr(voxelBlocks.masks[blockNumber(cell, cascade) + wordOfCell(brick)], bitOfCell(brick));
 }
 
 // color in [0,1], normal unit, emission radiance. `cascade`: of the volume. `at`: a point of the surface near the cell's

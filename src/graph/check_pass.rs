@@ -146,17 +146,17 @@ impl Check<'_> {
     }
 
     pub(super) fn bind(&mut self, bind: &super::file::Bind) {
-        let buffer = self.graph.buffers.iter().any(|b| b.0 == bind.of.value);
-        if buffer {
-            if bind.mip.is_some()
-                || bind.layer.is_some()
-                || bind.format.is_some()
-                || bind.history
-                || bind.sampler.is_some()
-            {
+        let history = |declared: bool, this: &mut Self| {
+            if bind.history && !declared {
+                this.error(bind.of.at, format!("'{}' is not declared with `history: true`", bind.of.value));
+            }
+        };
+        if let Some((_, buffer)) = self.graph.buffers.iter().find(|b| b.0 == bind.of.value) {
+            history(buffer.value.history, self);
+            if bind.mip.is_some() || bind.layer.is_some() || bind.format.is_some() || bind.sampler.is_some() {
                 self.error(
                     bind.of.at,
-                    format!("'{}' is a buffer: it has no mip, layer, format, history or sampler", bind.of.value),
+                    format!("'{}' is a buffer: it has no mip, layer, format or sampler", bind.of.value),
                 );
             }
             return;
@@ -166,9 +166,7 @@ impl Check<'_> {
         }
         self.exprs(bind.mip.iter().chain(&bind.layer));
         let Some((_, texture)) = self.graph.textures.iter().find(|t| t.0 == bind.of.value) else { return };
-        if bind.history && !texture.value.history {
-            self.error(bind.of.at, format!("'{}' is not declared with `history: true`", bind.of.value));
-        }
+        history(texture.value.history, self);
         if let Some(format) = &bind.format {
             let known: Vec<&str> = texture.value.views.0.iter().map(|v| v.value.as_str()).collect();
             if !known.contains(&format.value.as_str()) && texture.value.format.value != format.value {

@@ -359,6 +359,9 @@ pub struct BufferDecl {
     /// Whether dispatches and draws read their size from it.
     #[serde(default)]
     pub indirect: bool,
+    /// Two copies, this frame's and last frame's; see [`Bind`].
+    #[serde(default)]
+    pub history: bool,
 }
 
 /// An item of `passes`.

@@ -7,13 +7,16 @@ use crate::vulkan::{Buffer, Commands, Image, ImageDesc, Result, vk};
 use std::collections::HashMap;
 use std::sync::Arc;
 
+/// A buffer's one or two copies.
+type Copies = [Option<Arc<Buffer>>; 2];
+
 /// What a running program has made, to make another from while it runs on.
 #[derive(Clone, Default)]
 pub struct Parts {
     pub(super) pipelines: Pipelines,
     images: HashMap<String, [Option<Arc<Image>>; 2]>,
     /// By name, with the size asked for.
-    buffers: HashMap<String, (u64, Arc<Buffer>)>,
+    buffers: HashMap<String, (u64, Copies)>,
 }
 
 /// What a new program took over and what it had to make.
@@ -38,8 +41,9 @@ impl Parts {
         self.images.get(name)?[copy].clone().filter(|i| i.desc == *desc)
     }
 
-    pub(super) fn buffer(&self, name: &str, size: u64) -> Option<Arc<Buffer>> {
-        self.buffers.get(name).filter(|b| b.0 == size).map(|b| b.1.clone())
+    /// The buffer of that name and copy, if it is of that size.
+    pub(super) fn buffer(&self, name: &str, copy: usize, size: u64) -> Option<Arc<Buffer>> {
+        self.buffers.get(name).filter(|b| b.0 == size).and_then(|b| b.1[copy].clone())
     }
 
     /// Whether there was a resource of that name, whatever its size.
@@ -52,7 +56,7 @@ impl Parts {
     }
 
     pub(super) fn holds_buffer(&self, buffer: &Arc<Buffer>) -> bool {
-        self.buffers.values().any(|(_, b)| Arc::ptr_eq(b, buffer))
+        self.buffers.values().flat_map(|(_, copies)| copies.iter().flatten()).any(|b| Arc::ptr_eq(b, buffer))
     }
 }
 
@@ -60,13 +64,12 @@ impl Program {
     /// What a new program can take over. The program may run on while the new program is made.
     pub fn parts(&self, graph: &super::load::Graph) -> Parts {
         let images = graph.textures.iter().zip(&self.images).filter(|(_, i)| i[0].is_some());
-        let buffers = graph.buffers.iter().zip(&self.buffers).zip(&self.plan.buffers);
+        let buffers =
+            graph.buffers.iter().zip(&self.buffers).zip(&self.plan.buffers).filter(|((_, b), _)| b[0].is_some());
         Parts {
             pipelines: self.pipelines.clone(),
             images: images.map(|(t, i)| (t.0.clone(), i.clone())).collect(),
-            buffers: buffers
-                .filter_map(|((b, made), plan)| made.as_ref().map(|m| (b.0.clone(), (plan.size, m.clone()))))
-                .collect(),
+            buffers: buffers.map(|((b, made), plan)| (b.0.clone(), (plan.size, made.clone()))).collect(),
         }
     }
 

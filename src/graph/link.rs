@@ -384,6 +384,9 @@ impl Linker<'_> {
                 Some(Target::External(i))
             }
             (_, Some(i), _) => match resource {
+                Resource::Buffer { write: true, .. } if decl.is_some_and(|d| d.history) => {
+                    fail(self, format!("the history of '{resource_name}' is read-only"), None)
+                }
                 Resource::Buffer { .. } | Resource::Uniform => Some(Target::Buffer(i)),
                 other => fail(
                     self,

@@ -7,19 +7,19 @@ use super::usage::{Res, Use, UseKind};
 use crate::shader::Resource;
 use std::collections::BTreeSet;
 
-/// A subresource: (is a buffer, index, mip). The history of a texture is needed as its content at the end of a frame.
+/// A subresource: (is a buffer, index, mip). What is read as history is needed as its content at the end of a frame.
 type Part = (bool, usize, u32);
 
 fn parts(u: &Use) -> impl Iterator<Item = Part> + use<> {
     let (buffer, index) = match u.res {
         Res::Texture(t, _) => (false, t),
-        Res::Buffer(b) => (true, b),
+        Res::Buffer(b, _) => (true, b),
     };
     (u.mips.0..u.mips.0 + u.mips.1).map(move |mip| (buffer, index, mip))
 }
 
 fn is_history(u: &Use) -> bool {
-    matches!(u.res, Res::Texture(_, true))
+    matches!(u.res, Res::Texture(_, true) | Res::Buffer(_, true))
 }
 
 /// Keeps the steps that the wanted resources depend on, over frames too, and tells why the others were left out.

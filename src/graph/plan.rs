@@ -58,6 +58,15 @@ pub struct BufferPlan {
     pub size: u64,
     /// Whether any step uses it.
     pub used: bool,
+    /// Two copies, this frame's and last frame's.
+    pub history: bool,
+}
+
+impl BufferPlan {
+    /// Bytes of all copies.
+    pub fn bytes(&self) -> u64 {
+        self.size * (1 + u64::from(self.history))
+    }
 }
 
 /// The work of a step.
@@ -228,6 +237,7 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
         }
         steps.extend(planner.steps(number, &pass.value, link));
     }
+    written_anew(&planner.buffers, &mut steps);
     planner.checks();
     let max_edge = planner.max_edge();
     if !planner.errors.is_empty() {
@@ -240,6 +250,16 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     let features = super::needs::check(graph, linked, &plan, input);
     errors.extend(features);
     if errors.is_empty() { Ok(plan) } else { Err(errors) }
+}
+
+/// Of a buffer with a history nothing is left of two frames ago, by its declaration: who stores first replaces everything.
+fn written_anew(buffers: &[BufferPlan], steps: &mut [Step]) {
+    for b in (0..buffers.len()).filter(|b| buffers[*b].history) {
+        let this = |u: &&mut Use| u.res == Res::Buffer(b, false);
+        if let Some(first) = steps.iter_mut().flat_map(|s| &mut s.uses).filter(this).find(|u| u.write) {
+            first.overwrite |= !first.read;
+        }
+    }
 }
 
 struct Planner<'a> {
@@ -352,7 +372,7 @@ impl Planner<'_> {
                 }
                 // One whose size was told as wrong holds everything.
                 let size = if self.errors.len() == before { bytes as u64 } else { u64::MAX };
-                BufferPlan { size, used: false }
+                BufferPlan { size, used: false, history: buffer.value.history }
             })
             .collect()
     }
@@ -501,7 +521,8 @@ impl Planner<'_> {
                     Resource::Buffer { read, write } => (read, write),
                     _ => (true, false),
                 };
-                step.uses.push(Use::buffer(b, stage, read, write, bound.resource == Resource::Uniform));
+                let history = decl.is_some_and(|d| d.history);
+                step.uses.push(Use::buffer(b, history, stage, read, write, bound.resource == Resource::Uniform));
             }
             Target::Texture(t) => {
                 let all = (self.textures[t].mips, self.textures[t].layers);
@@ -658,7 +679,7 @@ impl Planner<'_> {
         if let Some(target) = &pass.clear {
             let v = pass.value.unwrap_or_default();
             if let Some(buffer) = self.buffer(&target.value) {
-                step.uses.push(Use::transfer(Res::Buffer(buffer), (0, 1), false, true));
+                step.uses.push(Use::transfer(Res::Buffer(buffer, false), (0, 1), false, true));
                 return Some(Work::ClearBuffer(buffer, v.0 as u32));
             }
             let texture = self.texture(&target.value)?;
@@ -671,9 +692,9 @@ impl Planner<'_> {
         }
         let copy = &pass.copy.as_ref()?.value;
         if let (Some(from), Some(to)) = (self.buffer(&copy.from.value), self.buffer(&copy.to.value)) {
-            step.uses.push(Use::transfer(Res::Buffer(from), (0, 1), true, false));
+            step.uses.push(Use::transfer(Res::Buffer(from, false), (0, 1), true, false));
             // The target may be longer, so what it held stays needed.
-            let target = Use::transfer(Res::Buffer(to), (0, 1), true, true);
+            let target = Use::transfer(Res::Buffer(to, false), (0, 1), true, true);
             step.uses.push(Use { overwrite: false, ..target });
             return Some(Work::CopyBuffer(from, to));
         }

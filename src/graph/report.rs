@@ -11,7 +11,8 @@ fn resource_name(graph: &Graph, res: Res) -> String {
     match res {
         Res::Texture(t, false) => graph.textures[t].0.clone(),
         Res::Texture(t, true) => format!("{} (last frame)", graph.textures[t].0),
-        Res::Buffer(b) => graph.buffers[b].0.clone(),
+        Res::Buffer(b, false) => graph.buffers[b].0.clone(),
+        Res::Buffer(b, true) => format!("{} (last frame)", graph.buffers[b].0),
     }
 }
 
@@ -53,7 +54,7 @@ pub fn summary(graph: &Graph, plan: &Plan) -> String {
     let textures = plan.textures.iter().enumerate().filter(|(_, p)| !p.usage.is_empty());
     let textures = textures.map(|(t, _)| (graph.textures[t].0.as_str(), texture_bytes(plan, t)));
     let buffers = plan.buffers.iter().enumerate().filter(|(_, p)| p.used);
-    let buffers = buffers.map(|(b, p)| (graph.buffers[b].0.as_str(), p.size));
+    let buffers = buffers.map(|(b, p)| (graph.buffers[b].0.as_str(), p.bytes()));
     let mut memory: Vec<(&str, u64)> = textures.chain(buffers).collect();
     memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
@@ -120,15 +121,15 @@ pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
         );
     }
     for (b, p) in plan.buffers.iter().enumerate().filter(|(_, p)| p.used) {
-        total += p.size;
+        total += p.bytes();
         let _ = writeln!(
             out,
             "{:<28} {:>22}  {:<10} {:>7.1}  {}",
             graph.buffers[b].0,
             format!("{} bytes", p.size),
             "buffer",
-            p.size as f64 / 1048576.0,
-            lifetime(plan, |r| r == Res::Buffer(b), false)
+            p.bytes() as f64 / 1048576.0,
+            lifetime(plan, |r| matches!(r, Res::Buffer(x, _) if x == b), p.history)
         );
     }
     let _ = writeln!(out, "{:<62} {:>10.1}", "total", total as f64 / 1048576.0);
@@ -184,7 +185,8 @@ fn work_text(graph: &Graph, step: &Step) -> String {
 fn barrier_text(graph: &Graph, b: &Barrier) -> String {
     let layouts =
         if b.layouts.0 == b.layouts.1 { String::new() } else { format!(", {:?} to {:?}", b.layouts.0, b.layouts.1) };
-    let mips = if matches!(b.res, Res::Buffer(_)) { String::new() } else { format!(" mips {}+{}", b.mips.0, b.mips.1) };
+    let mips =
+        if matches!(b.res, Res::Buffer(..)) { String::new() } else { format!(" mips {}+{}", b.mips.0, b.mips.1) };
     format!("{}{mips}: {:?} to {:?}{layouts}", resource_name(graph, b.res), b.src.0, b.dst.0)
 }
 

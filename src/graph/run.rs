@@ -62,7 +62,7 @@ pub struct Program {
     views: Vec<View>,
     names: Vec<String>,
     pub(super) images: Vec<[Option<Arc<Image>>; 2]>,
-    pub(super) buffers: Vec<Option<Arc<Buffer>>>,
+    pub(super) buffers: Vec<[Option<Arc<Buffer>>; 2]>,
     /// Layouts of all images between frames.
     pub(super) resting: Layouts,
     /// What was taken over from the program before.
@@ -202,13 +202,13 @@ impl Program {
         }
         // A submission waits for the frames that run: nothing is submitted for nothing.
         let images = self.images.iter().flatten().flatten();
-        if self.buffers.iter().flatten().all(|b| parts.holds_buffer(b))
+        if self.buffers.iter().flatten().flatten().all(|b| parts.holds_buffer(b))
             && images.into_iter().all(|i| parts.holds_image(i))
         {
             return Ok(());
         }
         Commands::once(&self.gpu, |commands| {
-            for buffer in self.buffers.iter().flatten().filter(|b| !parts.holds_buffer(b)) {
+            for buffer in self.buffers.iter().flatten().flatten().filter(|b| !parts.holds_buffer(b)) {
                 commands.fill(buffer, 0);
             }
             for (t, copies) in self.images.iter().enumerate() {
@@ -271,6 +271,11 @@ impl Program {
             what: format!("find texture {texture} of the plan"),
             code: vk::Result::ERROR_UNKNOWN,
         })
+    }
+
+    fn buffer(&self, buffer: usize, history: bool, parity: usize) -> Option<&Arc<Buffer>> {
+        let copy = usize::from(self.plan.buffers[buffer].history && (history != (parity == 1)));
+        self.buffers[buffer][copy].as_ref()
     }
 
     fn attachment(&self, plan: &super::plan::AttachmentPlan, parity: usize) -> Result<View> {
@@ -340,9 +345,10 @@ impl Program {
         let mut writes = Vec::new();
         for (i, bound) in link.bound.iter().enumerate() {
             let kind = descriptor_type(&bound.resource);
-            let write = match bound.cases[step.cases[i]].target {
+            let case = &bound.cases[step.cases[i]];
+            let write = match case.target {
                 Target::External(e) => self.external(EXTERNALS[e].name)?,
-                Target::Buffer(b) => match &self.buffers[b] {
+                Target::Buffer(b) => match self.buffer(b, case.bind.as_ref().is_some_and(|d| d.history), parity) {
                     Some(buffer) => DescriptorWrite::Buffer(buffer),
                     None => continue,
                 },
@@ -590,7 +596,7 @@ impl Program {
         let mut images = Vec::new();
         for b in list {
             match b.res {
-                Res::Buffer(_) => {
+                Res::Buffer(..) => {
                     let m = memory.get_or_insert_default();
                     m.src_stage_mask |= b.src.0;
                     m.src_access_mask |= b.src.1;
@@ -642,14 +648,14 @@ impl Program {
         match &step.work {
             Work::Dispatch(groups) => commands.dispatch(*groups),
             Work::DispatchIndirect(b, offset) => {
-                if let Some(buffer) = &self.buffers[*b] {
+                if let Some(buffer) = self.buffer(*b, false, parity) {
                     commands.dispatch_indirect(buffer, *offset);
                 }
             }
             Work::Scene(which) => self.draw_scene(commands, *which),
             Work::Vertices(n) => commands.draw(*n, 1),
             Work::DrawIndirect(b, offset) => {
-                if let Some(buffer) = &self.buffers[*b] {
+                if let Some(buffer) = self.buffer(*b, false, parity) {
                     commands.draw_indirect(buffer, *offset);
                 }
             }
@@ -659,7 +665,7 @@ impl Program {
                 }
             }
             Work::ClearBuffer(b, value) => {
-                if let Some(buffer) = &self.buffers[*b] {
+                if let Some(buffer) = self.buffer(*b, false, parity) {
                     commands.fill(buffer, *value);
                 }
             }
@@ -673,7 +679,7 @@ impl Program {
                 }
             }
             Work::CopyBuffer(a, b) => {
-                if let (Some(from), Some(to)) = (&self.buffers[*a], &self.buffers[*b]) {
+                if let (Some(from), Some(to)) = (self.buffer(*a, false, parity), self.buffer(*b, false, parity)) {
                     commands.copy_buffer(from, to, from.size.min(to.size));
                 }
             }
@@ -736,7 +742,8 @@ impl Program {
     /// The device was lost, out of memory.
     pub fn read_buffer(&mut self, buffer: usize) -> Result<Vec<u8>> {
         self.finish_all()?;
-        let Some(from) = self.buffers[buffer].clone() else { return Ok(Vec::new()) };
+        let parity = usize::try_from((self.frame + 1) % 2).unwrap_or(0);
+        let Some(from) = self.buffer(buffer, false, parity).cloned() else { return Ok(Vec::new()) };
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         let target = Buffer::new(&self.gpu, "readback", from.size, usage, MemoryLocation::GpuToCpu)?;
         Commands::once(&self.gpu, |commands| {
@@ -754,8 +761,11 @@ impl Program {
             .iter()
             .zip(&self.images)
             .map(|(t, copies)| (t.0.clone(), copies.iter().flatten().map(|i| i.bytes).sum::<u64>()));
-        let buffers =
-            graph.buffers.iter().zip(&self.buffers).map(|(b, made)| (b.0.clone(), made.as_ref().map_or(0, |m| m.size)));
+        let buffers = graph
+            .buffers
+            .iter()
+            .zip(&self.buffers)
+            .map(|(b, copies)| (b.0.clone(), copies.iter().flatten().map(|m| m.size).sum::<u64>()));
         textures.chain(buffers).filter(|(_, bytes)| *bytes > 0).collect()
     }
 }
@@ -850,25 +860,25 @@ fn make_buffers(
     plan: &Plan,
     parts: &Parts,
     change: &mut Change,
-) -> Result<Vec<Option<Arc<Buffer>>>> {
+) -> Result<Vec<[Option<Arc<Buffer>>; 2]>> {
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER
         | vk::BufferUsageFlags::UNIFORM_BUFFER
         | vk::BufferUsageFlags::INDIRECT_BUFFER
         | vk::BufferUsageFlags::TRANSFER_SRC
         | vk::BufferUsageFlags::TRANSFER_DST;
-    graph
-        .buffers
-        .iter()
-        .zip(&plan.buffers)
-        .map(|((name, _), b)| {
-            if !b.used {
-                return Ok(None);
-            }
-            if let Some(kept) = parts.buffer(name, b.size) {
-                return Ok(Some(kept));
-            }
-            change.resized += usize::from(parts.had(name));
-            Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly).map(|made| Some(Arc::new(made)))
-        })
-        .collect()
+    let mut list = Vec::new();
+    for ((name, _), b) in graph.buffers.iter().zip(&plan.buffers) {
+        let mut copies = [None, None];
+        for (c, slot) in copies.iter_mut().enumerate().take(usize::from(b.used) * (1 + usize::from(b.history))) {
+            *slot = Some(match parts.buffer(name, c, b.size) {
+                Some(kept) => kept,
+                None => {
+                    change.resized += usize::from(parts.had(name));
+                    Arc::new(Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly)?)
+                }
+            });
+        }
+        list.push(copies);
+    }
+    Ok(list)
 }

@@ -36,7 +36,7 @@ struct Reads {
 /// Ids of all content, from frame to frame.
 pub(super) struct Contents {
     held: Vec<Content>,
-    /// Where the parts of each texture's two copies begin in `held`: a part a mip. Buffers follow, a part each.
+    /// Where the parts of each texture's two copies begin in `held`: a part a mip. Those of buffers follow, one a copy.
     textures: Vec<[usize; 2]>,
     buffers: usize,
     /// What steps read of externals, each of them once.
@@ -63,7 +63,7 @@ impl Contents {
             parts - count
         };
         let textures = plan.textures.iter().map(|t| [next(t.mips as usize), next(t.mips as usize)]).collect();
-        let buffers = next(plan.buffers.len());
+        let buffers = next(2 * plan.buffers.len());
         let read_by = |step: &Step| {
             let bound = linked[step.pass].bound.iter().zip(&step.cases);
             let reads: BTreeSet<Reads> = bound
@@ -141,10 +141,14 @@ impl Contents {
         }
     }
 
-    /// Where the content of a use lies, of textures in the copy of this frame or of the one before.
+    /// Where the content of a use lies, in the copy of this frame or of the one before.
     fn parts(&self, plan: &Plan, u: &Use, odd: bool) -> std::ops::Range<usize> {
         match u.res {
-            Res::Buffer(b) => self.buffers + b..self.buffers + b + 1,
+            Res::Buffer(b, history) => {
+                let copy = usize::from(plan.buffers[b].history && (history != odd));
+                let part = self.buffers + 2 * b + copy;
+                part..part + 1
+            }
             Res::Texture(t, history) => {
                 let copy = usize::from(plan.textures[t].history && (history != odd));
                 let first = self.textures[t][copy] + u.mips.0 as usize;

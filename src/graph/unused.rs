@@ -28,12 +28,6 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
         let d = graph.sources.error(at, message);
         findings.push(Diagnostic { severity: Severity::Warning, ..d });
     };
-    let resources = graph.textures.iter().map(|t| (&t.0, t.1.at)).chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
-    for (name, at) in resources.chain(graph.aliases.iter().map(|a| (&a.name, a.at))) {
-        if !used.contains(name) && !wanted.contains(name.as_str()) {
-            warn(at, format!("'{name}' is declared and never used"));
-        }
-    }
     let texts: HashSet<&String> =
         shaders.iter().flat_map(|t| t.iter()).filter(|(f, _)| *f != "params.glsl").map(|(_, t)| t).collect();
     let in_texts = |in_shader: &str| {
@@ -41,6 +35,14 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
         let names = |text: &str| text.match_indices(in_shader).any(|(at, _)| end(&text[at + in_shader.len()..]));
         texts.iter().any(|t| names(t))
     };
+    let resources = graph.textures.iter().map(|t| (&t.0, t.1.at)).chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
+    // One option of a module may read what another does not.
+    let aliases = graph.aliases.iter().filter(|a| !in_texts(&a.name)).map(|a| (&a.name, a.at));
+    for (name, at) in resources.chain(aliases) {
+        if !used.contains(name) && !wanted.contains(name.as_str()) {
+            warn(at, format!("'{name}' is declared and never used"));
+        }
+    }
     for (i, param) in graph.params.list.iter().enumerate() {
         let in_shader = if param.constant { param.name.to_uppercase() } else { format!("params.{}", param.name) };
         let in_graph = super::plan::all_expressions(graph).any(|e| {

@@ -6,13 +6,13 @@ use super::source::Diagnostic;
 use crate::vulkan::vk;
 use vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stages};
 
-/// A resource of the graph; `true` is last frame's copy of a texture.
+/// A resource of the graph; `true` is last frame's copy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Res {
     /// A texture.
     Texture(usize, bool),
     /// A buffer.
-    Buffer(usize),
+    Buffer(usize, bool),
 }
 
 /// How a texture is used.
@@ -68,7 +68,7 @@ impl Use {
     }
 
     /// A buffer in a shader.
-    pub fn buffer(buffer: usize, stages: Stages, read: bool, write: bool, uniform: bool) -> Use {
+    pub fn buffer(buffer: usize, history: bool, stages: Stages, read: bool, write: bool, uniform: bool) -> Use {
         let mut access = Access::empty();
         if read {
             access |= if uniform { Access::UNIFORM_READ } else { Access::SHADER_STORAGE_READ };
@@ -76,7 +76,7 @@ impl Use {
         if write {
             access |= Access::SHADER_STORAGE_WRITE;
         }
-        Use { read, write, ..Use::new(Res::Buffer(buffer), (0, 1), UseKind::Buffer, stages, access) }
+        Use { read, write, ..Use::new(Res::Buffer(buffer, history), (0, 1), UseKind::Buffer, stages, access) }
     }
 
     /// A texture in a shader.
@@ -127,7 +127,8 @@ impl Use {
 
     /// Sizes of a dispatch or draw.
     pub fn indirect(buffer: usize) -> Use {
-        Use::new(Res::Buffer(buffer), (0, 1), UseKind::Indirect, Stages::DRAW_INDIRECT, Access::INDIRECT_COMMAND_READ)
+        let access = Access::INDIRECT_COMMAND_READ;
+        Use::new(Res::Buffer(buffer, false), (0, 1), UseKind::Indirect, Stages::DRAW_INDIRECT, access)
     }
 }
 
@@ -185,7 +186,7 @@ pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
             binding.layout = if stored[binding.texture] { Layout::GENERAL } else { Layout::SHADER_READ_ONLY_OPTIMAL };
         }
         for u in &step.uses {
-            if let Res::Buffer(b) = u.res {
+            if let Res::Buffer(b, _) = u.res {
                 plan.buffers[b].used = true;
             }
         }
@@ -219,7 +220,7 @@ fn conflicts(graph: &Graph, step: &super::plan::Step, errors: &mut Vec<Diagnosti
 /// One barrier before a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Barrier {
-    /// Texture (with the number of its copy, 0 or 1) or buffer.
+    /// Texture or buffer, with the number of its copy, 0 or 1.
     pub res: Res,
     /// First mip and their number.
     pub mips: (u32, u32),
@@ -231,7 +232,7 @@ pub struct Barrier {
     pub layouts: (Layout, Layout),
 }
 
-/// State of one mip of one copy, or of a buffer.
+/// State of one mip of one copy, or of one copy of a buffer.
 #[derive(Clone, Default)]
 struct State {
     layout: Layout,
@@ -248,7 +249,7 @@ pub type Layouts = Vec<[Vec<Layout>; 2]>;
 
 /// Barriers before each step, and the layouts that frames leave behind.
 pub struct Schedule {
-    /// `[parity][step]`: even and odd frames differ where a texture has a history.
+    /// `[parity][step]`: even and odd frames differ where something has a history.
     pub barriers: [Vec<Vec<Barrier>>; 2],
     /// `[parity]`: after even and odd frames. Those after an odd frame must hold before the first.
     pub ends: [Layouts; 2],
@@ -258,7 +259,7 @@ pub struct Schedule {
 pub fn schedule(plan: &Plan) -> Schedule {
     let mut textures: Vec<[Vec<State>; 2]> =
         plan.textures.iter().map(|t| std::array::from_fn(|_| vec![State::default(); t.mips as usize])).collect();
-    let mut buffers = vec![State::default(); plan.buffers.len()];
+    let mut buffers = vec![<[State; 2]>::default(); plan.buffers.len()];
     let mut barriers = [Vec::new(), Vec::new()];
     let mut ends = [Vec::new(), Vec::new()];
     // Two rounds settle the states at the frame's border, two more record.
@@ -279,17 +280,19 @@ fn before(
     step: &super::plan::Step,
     odd: bool,
     textures: &mut [[Vec<State>; 2]],
-    buffers: &mut [State],
+    buffers: &mut [[State; 2]],
 ) -> Vec<Barrier> {
     let mut list: Vec<Barrier> = Vec::new();
     // Reads first: a step that takes its size from a buffer that it writes has not waited for that write.
     let (writes, reads): (Vec<&Use>, Vec<&Use>) = step.uses.iter().partition(|u| u.write);
     for u in reads.into_iter().chain(writes) {
         match u.res {
-            Res::Buffer(b) => {
-                if let Some((src, _)) = advance(&mut buffers[b], u) {
+            // With history, odd frames write the second copy and read the first.
+            Res::Buffer(b, history) => {
+                let copy = usize::from(plan.buffers[b].history && (history != odd));
+                if let Some((src, _)) = advance(&mut buffers[b][copy], u) {
                     list.push(Barrier {
-                        res: u.res,
+                        res: Res::Buffer(b, copy == 1),
                         mips: (0, 1),
                         src,
                         dst: (u.stages, u.access),
@@ -298,7 +301,6 @@ fn before(
                 }
             }
             Res::Texture(t, history) => {
-                // With history, odd frames write the second copy and read the first.
                 let copy = usize::from(plan.textures[t].history && (history != odd));
                 for mip in u.mips.0..u.mips.0 + u.mips.1 {
                     let Some((src, old)) = advance(&mut textures[t][copy][mip as usize], u) else { continue };

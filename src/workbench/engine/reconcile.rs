@@ -183,7 +183,7 @@ fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
         for u in step.uses.iter().filter(|u| u.write) {
             let name = match u.res {
                 Res::Texture(t, _) => session.graph.textures[t].0.clone(),
-                Res::Buffer(b) => session.graph.buffers[b].0.clone(),
+                Res::Buffer(b, _) => session.graph.buffers[b].0.clone(),
             };
             if let Some((_, list)) = writes.iter_mut().find(|w| w.0 == step.pass)
                 && !list.contains(&name)

@@ -1,0 +1,7 @@
+// Sums over the words of bricks, in the order of the words: slots lie where they lie in every frame, whoever was first.
+layout(std430) buffer VoxelChunks { uint slots[]; } voxelChunks; // of each chunk
+layout(std430) buffer VoxelStarts { uint slots[]; } voxelStarts; // of all before it
+
+const uint CHUNK_THREADS = 256;
+const uint THREAD_WORDS = 4;
+const uint CHUNK_WORDS = CHUNK_THREADS * THREAD_WORDS;
