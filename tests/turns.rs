@@ -114,7 +114,7 @@ fn a_cut_takes_no_light_along() {
     assert!(cut_error < 1.5 * first_error + 1e-6, "the first frame after a cut is worse than a first frame");
 }
 
-/// A quarter or a sixteenth of the pixels trace for the others: with as many rays in all, the same light to a few percent.
+/// A quarter or a sixteenth of the pixels trace for the others: the same light to a few percent.
 #[test]
 fn few_pixels_gather_for_all() {
     let lab = lab(root());

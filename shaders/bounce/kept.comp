@@ -37,8 +37,10 @@ uint turnOf(uvec3 brick) {
 bool gathers(uint slot, uint side, bool was_lit) {
     if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return false;
     uint number = sideNumber(slot, side), frames = uint(params.bounce_frames);
-    sideGathered.list[number] = uvec2(0);
-    if (!was_lit) return false;
+    if (!was_lit) {
+        sideGathered.list[number] = uvec2(0);
+        return false;
+    }
     ivec3 cell = cellOfSlot(slot);
     int cascade = cascadeOf(cell);
     uvec2 last = gatheredBefore(volumeToWorld(placed.maps[cascade], cellCentre(cell)), cascade, uint(axisOfSlot(slot)), side);

@@ -5,3 +5,20 @@ layout(std430) buffer VoxelStarts { uint slots[]; } voxelStarts; // of all befor
 const uint CHUNK_THREADS = 256;
 const uint THREAD_WORDS = 4;
 const uint CHUNK_WORDS = CHUNK_THREADS * THREAD_WORDS;
+
+#ifdef SUMS_CHUNKS
+layout(local_size_x = CHUNK_THREADS) in;
+
+shared uint sums[CHUNK_THREADS];
+
+// The sum over the threads of a group up to this one. All of them come here.
+uint sumUpTo(uint thread, uint sum) {
+    for (uint distance = 1; distance < CHUNK_THREADS; distance *= 2) {
+        sums[thread] = sum;
+        barrier();
+        if (thread >= distance) sum += sums[thread - distance];
+        barrier();
+    }
+    return sum;
+}
+#endif

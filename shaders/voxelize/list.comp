@@ -4,24 +4,14 @@
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
+#define SUMS_CHUNKS
 #include "voxelize/chunks.glsl"
-
-layout(local_size_x = CHUNK_THREADS) in;
-
-shared uint sums[CHUNK_THREADS];
 
 void main() {
     uint chunks = voxelChunks.slots.length(), thread = gl_LocalInvocationIndex, share = (chunks + CHUNK_THREADS - 1) / CHUNK_THREADS;
     uint first = min(thread * share, chunks), end = min(first + share, chunks), own = 0;
     for (uint i = first; i < end; i++) own += voxelChunks.slots[i];
-    uint sum = own;
-    for (uint distance = 1; distance < CHUNK_THREADS; distance *= 2) {
-        sums[thread] = sum;
-        barrier();
-        if (thread >= distance) sum += sums[thread - distance];
-        barrier();
-    }
-    uint before = sum - own;
+    uint sum = sumUpTo(thread, own), before = sum - own;
     for (uint i = first; i < end; i++) {
         voxelStarts.slots[i] = before;
         before += voxelChunks.slots[i];

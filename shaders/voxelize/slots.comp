@@ -15,7 +15,7 @@ void nameSlots(uint number, uvec4 word, uint bit) {
 }
 
 void main() {
-    uint lane = gl_LocalInvocationIndex & 31u, part = gl_LocalInvocationIndex >> 5, bit = 1u << lane;
+    uint lane = gl_LocalInvocationIndex & 31u, part = gl_LocalInvocationIndex >> 5;
     for (uint start = gl_WorkGroupID.x * 4; start < voxelCounter.words; start += gl_NumWorkGroups.x * 4) {
         bool listed = start + part < voxelCounter.words;
         uint number = listed ? voxelWords.list[start + part] : 0;
@@ -23,6 +23,6 @@ void main() {
         barrier();
         word.w += voxelStarts.slots[number / CHUNK_WORDS];
         if (lane == 0 && listed) voxelBricks.words[number].w = word.w;
-        if ((occupiedCells(word) & bit) != 0) nameSlots(number, word, lane);
+        if ((occupiedCells(word) >> lane & 1u) != 0) nameSlots(number, word, lane);
     }
 }
