@@ -1692,7 +1692,7 @@ fn groups_of_passes() {
     assert_snapshot!(group("(name: \"s\", passes: [FILL]),"), @r#"
     passes/graph.ron:20:10: error: unknown field 'name'
         |         (name: "s", passes: [(name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
-        = help: known: passes, stage, when
+        = help: known: passes, settles, stage, when
     "#);
     assert_snapshot!(group("(when: \"method == rows\", passes: [FILL]),"), @r#"
     passes/graph.ron:20:16: error: unknown variable 'rows' in 'method == rows'
@@ -1705,6 +1705,45 @@ fn groups_of_passes() {
     passes/graph.ron:20:70: error: unknown field 'nam'
         |         (when: "bright", passes: [(name: "prepare", clear: "work"), (nam: "x"), (name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
         = help: did you mean 'name'?
+    "#);
+}
+
+#[test]
+fn what_settles() {
+    let settles = |pass: &str, frames: &str| {
+        graph(&format!("(name: \"{pass}\","), &format!("(name: \"{pass}\", settles: \"{frames}\","))
+    };
+    assert_eq!(settles("paint", "cells / 16"), "");
+    assert_snapshot!(settles("paint", "cells - 64"), @r#"
+    passes/graph.ron:25:34: error: settles 'cells - 64' is 0, and must be at least 1
+        |         (name: "paint", settles: "cells - 64", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(settles("paint", "frames"), @r#"
+    passes/graph.ron:25:34: error: unknown variable 'frames' in 'frames'
+        |         (name: "paint", settles: "frames", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(settles("fill", "4"), @r#"
+    passes/graph.ron:21:16: error: 'grid' is written by pass 'fill' too, which settles
+        |         (name: "reduce", each_mip: (texture: "grid", from: 1), shaders: ["reduce.comp"], dispatch: Cover("dst"),
+    "#);
+    assert_snapshot!(settles("scatter", "4"), @r#"
+    passes/graph.ron:25:16: error: 'count' is read here and written by pass 'scatter', which settles: give it a history, so that it is kept
+        |         (name: "paint", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
+    "#);
+    // Two passes rest together, and another reads what they keep before both are through.
+    let raster = "draw: Fullscreen, raster: (size: (\"cells\", \"cells\"), samples: \"4\")),";
+    let scatter = |name: &str| format!("(name: \"{name}\", shaders: [\"full.vert\", \"scatter.frag\"], {raster}");
+    let group = format!("    passes: [(settles: \"4\", passes: [{} {}])],\n)", scatter("scatter"), scatter("again"));
+    let old = GRAPH.lines().position(|l| l.contains("\"scatter\"")).unwrap();
+    let old: String = GRAPH.lines().skip(old).take(2).map(|l| format!("{l}\n")).collect();
+    let between = bench()
+        .edit("passes/graph.ron", "views: [\"r32i\"]),", "views: [\"r32i\"], history: true),")
+        .edit("passes/graph.ron", &old, "")
+        .edit("passes/shared.ron", "    ],\n)", &format!("    ],\n{group}"))
+        .edit("passes/graph.ron", "(name: \"paint\",", "(name: \"paint\", after: \"scatter\",");
+    assert_snapshot!(between.findings(), @r#"
+    passes/graph.ron:23:16: error: 'count' is read here before pass 'again', which settles, is through
+        |         (name: "paint", after: "scatter", when: "method == fast", shaders: ["full.vert", "paint.frag"], draw: Fullscreen,
     "#);
 }
 

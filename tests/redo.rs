@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{assert_clean, copy, experiment, lab, root, scene};
+use common::{assert_clean, copy, experiment, floats, lab, mean, root, scene};
 use conelab::experiment::{Experiment, PlacedCamera};
 use conelab::graph::run::{FrameTimes, Redo};
 use conelab::graph::source::{At, Loc};
@@ -136,6 +136,15 @@ impl Pair {
     }
 }
 
+/// Writes another number of frames after which passes rest.
+fn settles(home: &Path, part: &str, from: &str, to: &str) {
+    let file = home.join(format!("passes/parts/{part}.ron"));
+    let text = std::fs::read_to_string(&file).unwrap();
+    let (from, to) = (format!("settles: \"{from}\""), format!("settles: \"{to}\""));
+    assert!(text.contains(&from), "{part} says {from}");
+    std::fs::write(&file, text.replace(&from, &to)).unwrap();
+}
+
 fn run(session: &mut Session) -> FrameTimes {
     let mut times: Vec<FrameTimes> = session.frame(0.0).unwrap().into_iter().collect();
     times.extend(session.finish().unwrap());
@@ -155,6 +164,9 @@ fn pictures_are_the_same_whatever_is_edited() {
     for folder in ["passes", "shaders", "configs"] {
         copy(&root().join(folder), &home.path().join(folder));
     }
+    // So that what gathers rests now and then between two edits.
+    settles(home.path(), "bounces", "32 * bounce_frames", "5");
+    settles(home.path(), "shade", "turns + 1", "3");
     let lab = lab(home.path());
     let mut seed = 1;
     for path in [BY_THREADS, BY_RASTER] {
@@ -162,13 +174,20 @@ fn pictures_are_the_same_whatever_is_edited() {
             let mut pair = Pair::new(&lab, "moving-box", &[&path[..], more].concat());
             let mut numbers = Numbers(0x9e37_79b9 + seed);
             seed += 1;
-            let (mut slept, mut last) = (0, "the start");
-            for frame in 0..40 {
-                slept += pair.frame(&format!("{path:?} {more:?}, frame {frame}, after an edit of {last}")).len();
+            let (mut slept, mut rested, mut last) = (0, 0, "the start");
+            for edit in 0..40 {
+                for frame in 0..1 + numbers.below(4) * numbers.below(4) {
+                    let what = format!("{path:?} {more:?}, edit {edit}, of {last}, frame {frame}");
+                    let asleep = pair.frame(&what);
+                    slept += asleep.len();
+                    rested += usize::from(asleep.contains("gather"));
+                }
                 last = pair.edit(&lab, home.path(), &mut numbers);
             }
-            println!("{path:?} {more:?}: {slept} passes slept in 40 frames");
-            assert!(slept > 40, "{slept} passes slept: nothing was tested");
+            println!("{path:?} {more:?}: {slept} passes slept, gathering rested {rested} times");
+            // Voxels that are the mean of frames, or lie around the camera, depend on what they were: they are never still.
+            let rests = rested > 5 || !more.is_empty();
+            assert!(slept > 200 && rests, "{slept} passes slept, {rested} times rested: nothing was tested");
         }
     }
     assert_clean(&lab);
@@ -204,12 +223,55 @@ fn what_nothing_has_changed_sleeps() {
         assert!(pair.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
         let slept = pair.frame("the lamp moves");
         assert!(shadow.iter().all(|p| !slept.contains(*p)), "{slept:?}");
+        assert!(voxels.iter().all(|p| slept.contains(*p)), "{slept:?}");
         // The exposure is of the picture alone.
         pair.frame("the camera rests");
         pair.frame("and still rests");
         pair.set(&lab, "exposure", "1");
         let slept = pair.frame("the exposure");
         assert!(shadow.iter().chain([&seen]).all(|p| slept.contains(*p)), "{slept:?}");
+    }
+    assert_clean(&lab);
+}
+
+/// Light that goes round settles and rests; so do the pixels, and then everything.
+#[test]
+fn what_gathers_over_frames_rests() {
+    let lab = lab(root());
+    let gathering = ["bounces begin", "kept bounces", "gather", "inject"];
+    for path in [BY_THREADS, BY_RASTER] {
+        // Light has gone round 32 times after 64 frames.
+        let settings = [("bounce_frames", "2"), ("gather_frames", "4")];
+        let mut pair = Pair::new(&lab, "cornell", &[&path[..], &settings].concat());
+        let mut pictures = Vec::new();
+        let mut slept = BTreeSet::new();
+        for frame in 0..64 + 16 {
+            slept = pair.frame(&format!("frame {frame}"));
+            assert!(frame > 64 || !slept.contains("gather"), "frame {frame}: {slept:?}");
+            pictures.push(mean(&floats(&mut pair.sides[0], "radiance", 0)));
+        }
+        let passes: BTreeSet<usize> = pair.sides[1].program.plan.steps.iter().map(|s| s.pass).collect();
+        assert_eq!(slept, names(&pair.sides[1], &passes.into_iter().collect::<Vec<_>>()), "everything sleeps");
+        // Half of the frames would have done: what is missing at the end is less than that.
+        let (half, end) = (pictures[32], pictures[79]);
+        println!("{path:?}: light of frame 32 {half}, of frame 79 {end}");
+        assert!((half / end - 1.0).abs() < 0.002, "the light of frame 32, {half}, and of the last, {end}");
+        // The camera moves: pixels gather, voxels rest.
+        let placed = PlacedCamera::new((2.4, 2.5, 9.0), (2.5, 2.5, 0.0), 40.0);
+        pair.sides.iter_mut().for_each(|s| s.place_camera(&placed));
+        for frame in 0..3 {
+            let slept = pair.frame(&format!("the camera moved, frame {frame}"));
+            assert!(gathering.iter().all(|p| slept.contains(*p)) && !slept.contains("rays"), "{slept:?}");
+        }
+        // The lamp moves: in the same frame it is injected, and all gather.
+        let mut lights = pair.scene.lights.clone();
+        lights[0].color *= 2.0;
+        let sky = pair.scene.sky;
+        assert!(pair.sides.iter_mut().all(|s| s.set_lights(&lights, sky)));
+        let slept = pair.frame("the lamp is brighter");
+        assert!(!slept.contains("inject") && !slept.contains("rays"), "{slept:?}");
+        let slept = pair.frame("the lamp was made brighter");
+        assert!(gathering.iter().all(|p| !slept.contains(*p)), "{slept:?}");
     }
     assert_clean(&lab);
 }

@@ -369,7 +369,7 @@ pub struct BufferDecl {
 pub enum PassItem {
     /// A pass.
     Pass(Box<PassDecl>),
-    /// Passes that share a stage or a condition.
+    /// Passes that share a stage, a condition, or when they rest.
     Group(Group),
 }
 
@@ -389,7 +389,7 @@ impl<'de> Deserialize<'de> for PassItem {
     }
 }
 
-/// Passes that share a stage or a condition.
+/// Passes that share a stage, a condition, or when they rest.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Group {
@@ -397,6 +397,8 @@ pub struct Group {
     pub stage: Option<String>,
     /// Condition of all, beside their own.
     pub when: Option<Ex>,
+    /// Frames after which they rest; see [`PassDecl::settles`].
+    pub settles: Option<Ex>,
     /// The passes, or groups again.
     pub passes: Items<PassItem>,
 }
@@ -410,6 +412,7 @@ pub fn ungrouped(items: Items<PassItem>) -> Vec<Loc<PassDecl>> {
             for pass in &mut passes {
                 pass.value.stage = pass.value.stage.take().or_else(|| group.stage.clone());
                 pass.value.outer.splice(0..0, group.when.clone());
+                pass.value.settles = pass.value.settles.take().or_else(|| group.settles.clone());
             }
             passes
         }
@@ -433,6 +436,9 @@ pub struct PassDecl {
     /// Conditions of the groups that it stands in.
     #[serde(skip)]
     pub outer: Vec<Ex>,
+    /// It gathers over frames, and rests once nothing has changed for so many but what it leaves to itself. Those of a group
+    /// rest together.
+    pub settles: Option<Ex>,
     /// Shader files.
     #[serde(default)]
     pub shaders: Items<String>,

@@ -88,6 +88,10 @@ block! {
     }
 }
 
+/// Where `camera` counts frames.
+pub(super) const CAMERA_FRAME: std::ops::Range<usize> =
+    offset_of!(CameraBlock, frame)..offset_of!(CameraBlock, delta_time);
+
 block! {
     /// The uniform block `sceneInfo` (std140).
     SceneInfoBlock {

@@ -1,7 +1,7 @@
 //! Reload: a program hands over what its new program can use as it is, so that an edit costs what it changes.
 
 use super::pipelines::Pipelines;
-use super::run::{Program, Redo, relayout};
+use super::run::{Program, relayout};
 use super::usage::Layouts;
 use crate::vulkan::{Buffer, Commands, Image, ImageDesc, Result, vk};
 use std::collections::HashMap;
@@ -81,9 +81,7 @@ impl Program {
     pub fn swap_in(&mut self, old: &mut Program) -> Result<()> {
         old.finish_all()?;
         self.frame = old.frame;
-        if old.contents.is_some() {
-            self.set_redo(Redo::Changed);
-        }
+        self.set_redo(old.redo);
         let before = usize::try_from((self.frame + 1) % 2).unwrap_or(0);
         let mut wanted: Layouts = self.schedule.ends[before].clone();
         let mut from = self.resting.clone();

@@ -8,9 +8,9 @@ use crate::shader::Resource;
 use std::collections::BTreeSet;
 
 /// A subresource: (is a buffer, index, mip). What is read as history is needed as its content at the end of a frame.
-type Part = (bool, usize, u32);
+pub(super) type Part = (bool, usize, u32);
 
-fn parts(u: &Use) -> impl Iterator<Item = Part> + use<> {
+pub(super) fn parts(u: &Use) -> impl Iterator<Item = Part> + use<> {
     let (buffer, index) = match u.res {
         Res::Texture(t, _) => (false, t),
         Res::Buffer(b, _) => (true, b),

@@ -19,6 +19,7 @@ pub mod plan;
 pub mod report;
 pub mod run;
 pub mod runs;
+pub mod settle;
 mod sleep;
 pub mod source;
 pub mod table;

@@ -6,10 +6,12 @@ use super::layouts::{DISPATCH_WORDS, DRAW_WORDS, Layouts};
 use super::link::{Bound, BoundCase, Linked, Target};
 use super::load::Graph;
 use super::param::{Params, Value};
+use super::settle::Settling;
 use super::source::{At, Diagnostic};
 use super::usage::{Res, Use, UseKind, merge};
 use crate::shader::Resource;
 use crate::vulkan::{DeviceInfo, Format, Stage, vk};
+use std::collections::BTreeMap;
 
 /// Outside facts that a plan depends on.
 #[derive(Clone, Debug)]
@@ -163,6 +165,8 @@ pub struct Plan {
     pub buffers: Vec<BufferPlan>,
     /// Steps in order.
     pub steps: Vec<Step>,
+    /// Those that gather over frames.
+    pub settling: Vec<Settling>,
     /// Passes left out, and why.
     pub dropped: Vec<(usize, String)>,
     /// Edge length above which triangles must be split, if needed.
@@ -189,7 +193,7 @@ pub fn all_expressions(graph: &Graph) -> impl Iterator<Item = &Ex> {
 }
 
 fn pass_expressions(pass: &PassDecl) -> Vec<&Ex> {
-    let mut list: Vec<&Ex> = pass.conditions().chain(&pass.repeat).chain(&pass.mip).collect();
+    let mut list: Vec<&Ex> = pass.conditions().chain(&pass.settles).chain(&pass.repeat).chain(&pass.mip).collect();
     if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = pass.dispatch.as_ref().map(|d| &d.value) {
         list.extend([x, y, z]);
     }
@@ -230,32 +234,44 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     planner.buffers = planner.buffers();
     let mut dropped = Vec::new();
     let mut steps = Vec::new();
+    let mut settles = BTreeMap::new();
     for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
         if let Some(when) = pass.value.conditions().find(|when| !planner.condition(when)) {
             dropped.push((number, format!("{} is false", when.value.text)));
             continue;
         }
         steps.extend(planner.steps(number, &pass.value, link));
+        if let Some(ex) = &pass.value.settles {
+            settles.insert(number, (ex.at, planner.count(ex, 1, "settles")));
+        }
     }
-    written_anew(&planner.buffers, &mut steps);
+    written_anew(&planner.textures, &planner.buffers, &mut steps);
     planner.checks();
     let max_edge = planner.max_edge();
     if !planner.errors.is_empty() {
         return Err(planner.errors);
     }
     let mut errors = Vec::new();
-    let mut plan = Plan { textures: planner.textures, buffers: planner.buffers, steps, dropped, max_edge };
+    let (textures, buffers, settling) = (planner.textures, planner.buffers, Vec::new());
+    let mut plan = Plan { textures, buffers, steps, settling, dropped, max_edge };
     super::live::prune(graph, linked, &mut plan, &input.wanted);
     super::usage::layouts(graph, &mut plan, &mut errors);
+    match super::settle::find(graph, &plan.steps, (&plan.textures, &plan.buffers), &settles) {
+        Ok(settling) => plan.settling = settling,
+        Err(found) => errors.extend(found),
+    }
     let features = super::needs::check(graph, linked, &plan, input);
     errors.extend(features);
     if errors.is_empty() { Ok(plan) } else { Err(errors) }
 }
 
-/// Of a buffer with a history nothing is left of two frames ago, by its declaration: who stores first replaces everything.
-fn written_anew(buffers: &[BufferPlan], steps: &mut [Step]) {
-    for b in (0..buffers.len()).filter(|b| buffers[*b].history) {
-        let this = |u: &&mut Use| u.res == Res::Buffer(b, false);
+/// Of what has a history nothing is left of two frames ago, by its declaration: who stores first replaces everything.
+fn written_anew(textures: &[TexturePlan], buffers: &[BufferPlan], steps: &mut [Step]) {
+    let buffers = (0..buffers.len()).filter(|b| buffers[*b].history).map(|b| (Res::Buffer(b, false), 0));
+    let kept = textures.iter().enumerate().filter(|(_, texture)| texture.history);
+    let mips = kept.flat_map(|(t, texture)| (0..texture.mips).map(move |mip| (Res::Texture(t, false), mip)));
+    for (res, mip) in buffers.chain(mips) {
+        let this = |u: &&mut Use| u.res == res && u.mips == (mip, 1);
         if let Some(first) = steps.iter_mut().flat_map(|s| &mut s.uses).filter(this).find(|u| u.write) {
             first.overwrite |= !first.read;
         }
@@ -693,9 +709,10 @@ impl Planner<'_> {
         let copy = &pass.copy.as_ref()?.value;
         if let (Some(from), Some(to)) = (self.buffer(&copy.from.value), self.buffer(&copy.to.value)) {
             step.uses.push(Use::transfer(Res::Buffer(from, false), (0, 1), true, false));
-            // The target may be longer, so what it held stays needed.
-            let target = Use::transfer(Res::Buffer(to, false), (0, 1), true, true);
-            step.uses.push(Use { overwrite: false, ..target });
+            // Of a longer target what it held stays needed.
+            let longer = self.buffers[to].size > self.buffers[from].size;
+            let target = Use::transfer(Res::Buffer(to, false), (0, 1), longer, true);
+            step.uses.push(Use { overwrite: !longer, ..target });
             return Some(Work::CopyBuffer(from, to));
         }
         let (from, to) = (self.texture(&copy.from.value)?, self.texture(&copy.to.value)?);

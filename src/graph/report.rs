@@ -7,7 +7,7 @@ use super::plan::{Plan, Step, Work};
 use super::usage::{Barrier, Res, schedule};
 use std::fmt::Write;
 
-fn resource_name(graph: &Graph, res: Res) -> String {
+pub(super) fn resource_name(graph: &Graph, res: Res) -> String {
     match res {
         Res::Texture(t, false) => graph.textures[t].0.clone(),
         Res::Texture(t, true) => format!("{} (last frame)", graph.textures[t].0),
@@ -49,6 +49,12 @@ pub fn summary(graph: &Graph, plan: &Plan) -> String {
             Work::ClearTexture(..) | Work::ClearBuffer(..) => writeln!(out, "{head}"),
             _ => writeln!(out, "{head}\n      {} -> {}", named(false), named(true)),
         };
+    }
+    for settling in &plan.settling {
+        let mut passes: Vec<&str> =
+            settling.steps.iter().map(|i| graph.passes[plan.steps[*i].pass].value.name.value.as_str()).collect();
+        passes.dedup();
+        let _ = writeln!(out, "after {} still frames rest: {}", settling.frames, passes.join(", "));
     }
     let _ = writeln!(out, "\nmemory, MiB");
     let textures = plan.textures.iter().enumerate().filter(|(_, p)| !p.usage.is_empty());

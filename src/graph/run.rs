@@ -8,7 +8,7 @@ use super::load::Graph;
 use super::param::{Params, Value};
 use super::pipelines::{Pipelines, clear_value, descriptor_pool, descriptor_type, make_pipelines, sampler_desc};
 use super::plan::{Plan, Step, Work};
-use super::sleep::Contents;
+use super::sleep::{Contents, Frame};
 use super::usage::{Barrier, Layouts, Res, Schedule, schedule};
 use crate::shader::{Resource, Shape};
 use crate::vulkan::{
@@ -74,8 +74,10 @@ pub struct Program {
     shown: Option<usize>,
     /// Steps where a pass begins.
     starts: Vec<usize>,
-    /// What there is, where only what changes is done.
-    pub(super) contents: Option<Contents>,
+    /// What frames do.
+    pub(super) redo: Redo,
+    /// What there is, where only what changes is done or something settles.
+    contents: Option<Contents>,
 }
 
 /// What a frame does.
@@ -174,8 +176,10 @@ impl Program {
             params: params_buffer,
             slots: Vec::new(),
             frame: 0,
+            redo: Redo::All,
             contents: None,
         };
+        program.set_redo(Redo::All);
         let timestamps = u32::try_from(program.starts.len() + 1).unwrap_or(u32::MAX);
         for _ in 0..FRAMES_IN_FLIGHT {
             program.slots.push(Slot {
@@ -410,18 +414,19 @@ impl Program {
         let mut slots = std::mem::take(&mut self.slots);
         let readback = self.readback(slots[slot].readback.take());
         let start = Instant::now();
-        let awake = self.awake(updates, parity == 1);
-        slots[slot].stamped = self.runs(&awake);
+        let frame = self.work(updates, parity == 1);
+        slots[slot].stamped = self.runs(&frame.awake);
         let result = readback.and_then(|readback| {
             slots[slot].readback = readback;
             let Slot { commands, stamped, readback, .. } = &mut slots[slot];
-            commands.submit(|commands| self.record(commands, updates, parity, (&awake, stamped), readback.as_ref()))
+            commands.submit(|commands| self.record(commands, updates, parity, (&frame, stamped), readback.as_ref()))
         });
         slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.slots = slots;
-        if result.is_err() && self.contents.is_some() {
+        if result.is_err() {
             // Nobody knows what such a frame has done.
-            self.contents = Some(Contents::new(&self.linked, &self.plan));
+            self.contents = None;
+            self.set_redo(self.redo);
         }
         result?;
         self.frame += 1;
@@ -431,21 +436,24 @@ impl Program {
 
     /// From the next frame on, does all or what changes.
     pub fn set_redo(&mut self, redo: Redo) {
-        match redo {
-            Redo::All => self.contents = None,
-            Redo::Changed if self.contents.is_none() => self.contents = Some(Contents::new(&self.linked, &self.plan)),
-            Redo::Changed => {}
+        self.redo = redo;
+        if redo == Redo::All && self.plan.settling.is_empty() {
+            self.contents = None;
+        } else if self.contents.is_none() {
+            self.contents = Some(Contents::new(&self.linked, &self.plan));
         }
     }
 
     /// What frames do.
     pub fn redo(&self) -> Redo {
-        if self.contents.is_some() { Redo::Changed } else { Redo::All }
+        self.redo
     }
 
-    /// Which steps of the next frame run.
-    fn awake(&mut self, updates: &[(Arc<Buffer>, Vec<u8>)], odd: bool) -> Vec<bool> {
-        let Some(contents) = &mut self.contents else { return vec![true; self.plan.steps.len()] };
+    /// What the next frame does.
+    fn work(&mut self, updates: &[(Arc<Buffer>, Vec<u8>)], odd: bool) -> Frame {
+        let Some(contents) = &mut self.contents else {
+            return Frame { awake: vec![true; self.plan.steps.len()], keeping: Vec::new() };
+        };
         for (buffer, bytes) in updates {
             if Arc::ptr_eq(buffer, &self.params) {
                 contents.update("params", bytes);
@@ -454,7 +462,7 @@ impl Program {
                 contents.update(name, bytes);
             }
         }
-        contents.frame(&self.plan, odd)
+        contents.frame(&self.plan, odd, self.redo)
     }
 
     /// Whether a step of each pass runs, in the order of `starts`.
@@ -536,7 +544,7 @@ impl Program {
         commands: &mut Commands<'_>,
         updates: &[(Arc<Buffer>, Vec<u8>)],
         parity: usize,
-        (awake, stamped): (&[bool], &[bool]),
+        (frame, stamped): (&Frame, &[bool]),
         readback: Option<&Buffer>,
     ) {
         use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
@@ -567,8 +575,13 @@ impl Program {
             }
             // Those of steps that sleep too: layouts and waits are then as in any other frame.
             self.barriers(commands, &self.schedule.barriers[parity][i]);
-            if awake[i] {
+            if frame.awake[i] {
                 self.record_step(commands, step, &self.steps[i], parity);
+            }
+            for (group, _) in self.plan.settling.iter().zip(&frame.keeping).filter(|(_, keeps)| **keeps) {
+                if group.steps.last() == Some(&i) {
+                    self.keep(commands, &group.kept, i, parity);
+                }
             }
         }
         if labelled {
@@ -585,6 +598,48 @@ impl Program {
                 copy_out(commands, image, layout, (0, 0), None, to);
             }
         }
+    }
+
+    /// Brings what the frame before left into this frame's copies, after a step. Rare, or thrown away: it waits for all.
+    fn keep(&self, commands: &mut Commands<'_>, kept: &[Res], step: usize, parity: usize) {
+        let (src, dst) = (vk::ImageLayout::TRANSFER_SRC_OPTIMAL, vk::ImageLayout::TRANSFER_DST_OPTIMAL);
+        commands.full_barrier();
+        for res in kept {
+            match *res {
+                Res::Buffer(b, _) => {
+                    if let (Some(last), Some(new)) = (self.buffer(b, true, parity), self.buffer(b, false, parity)) {
+                        commands.copy_buffer(last, new, new.size);
+                    }
+                }
+                Res::Texture(t, _) => {
+                    let (Ok(last), Ok(new)) = (self.image(t, true, parity), self.image(t, false, parity)) else {
+                        continue;
+                    };
+                    let layouts = |history: bool, mip: u32| self.layout_after(step, t, (history, mip), parity);
+                    let mips = 0..self.plan.textures[t].mips;
+                    let there: Vec<_> =
+                        mips.clone().map(|mip| (layouts(true, mip), layouts(false, mip), mip)).collect();
+                    for (of_last, of_new, mip) in &there {
+                        commands.barrier(None, &[(&**last, relayout(last, *of_last, src, *mip))]);
+                        commands.barrier(None, &[(&**new, relayout(new, *of_new, dst, *mip))]);
+                    }
+                    commands.copy_image(last, src, new, dst);
+                    for (of_last, of_new, mip) in &there {
+                        commands.barrier(None, &[(&**last, relayout(last, src, *of_last, *mip))]);
+                        commands.barrier(None, &[(&**new, relayout(new, dst, *of_new, *mip))]);
+                    }
+                }
+            }
+        }
+        commands.full_barrier();
+    }
+
+    /// The layout of a mip of a texture's copy between a step and the next.
+    fn layout_after(&self, step: usize, t: usize, (history, mip): (bool, u32), parity: usize) -> vk::ImageLayout {
+        let mut before = self.plan.steps[..=step].iter().rev().flat_map(|s| &s.uses);
+        let used = before.find(|u| u.res == Res::Texture(t, history) && (u.mips.0..u.mips.0 + u.mips.1).contains(&mip));
+        let copy = usize::from(self.plan.textures[t].history && (history != (parity == 1)));
+        used.map_or(self.resting[t][copy][mip as usize], |u| u.layout)
     }
 
     fn barriers(&self, commands: &mut Commands<'_>, list: &[Barrier]) {

@@ -1,20 +1,24 @@
 //! Which steps of a frame would write again what is there already. Every texture mip and buffer has an id of its content, made
 //! of the step that wrote it and of all that this step read: the ids of its inputs, and the bytes of uniform blocks that its
 //! shaders can read. A frame is gone through with ids alone first, and what comes out with the ids that are held already
-//! sleeps. Nothing is declared for it; what depends on a count of frames, or on itself, never sleeps.
+//! sleeps. Nothing is declared for it; what depends on the count of frames, or on itself, never does, unless it rests
+//! ([`Settling`](super::settle::Settling)).
 
 use super::externals::{EXTERNALS, ExternalKind};
+use super::host::CAMERA_FRAME;
 use super::link::{Linked, Target};
 use super::plan::{Plan, Step};
-use super::usage::{Res, Use};
+use super::run::Redo;
+use super::usage::Res;
 use crate::shader::Resource;
 use std::collections::BTreeSet;
-use std::collections::hash_map::DefaultHasher;
-use std::hash::{Hash, Hasher};
+use std::hash::{BuildHasher, Hash, Hasher};
 
 /// What a mip of a texture or a buffer holds.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug)]
 struct Content {
+    /// Of the rest.
+    id: u64,
     /// The last that replaced it or changed it.
     base: u64,
     /// Who stored into it since and read nothing of it, the last one last. A store that is repeated changes nothing, and covers
@@ -36,34 +40,86 @@ struct Reads {
 /// Ids of all content, from frame to frame.
 pub(super) struct Contents {
     held: Vec<Content>,
-    /// Where the parts of each texture's two copies begin in `held`: a part a mip. Those of buffers follow, one a copy.
-    textures: Vec<[usize; 2]>,
-    buffers: usize,
     /// What steps read of externals, each of them once.
     reads: Vec<Reads>,
-    /// For each step, which of those.
-    of_step: Vec<Vec<usize>>,
+    /// Ids of what those read, with the count of frames and without.
+    inputs: Vec<[u64; 2]>,
     /// Last bytes of uniform blocks, and a hash of those of other buffers; empty before the first are sent.
     externals: Vec<Vec<u8>>,
+    /// Where content goes in even frames and in odd ones.
+    flows: [Flow; 2],
+    /// How long nothing has changed of what each of the plan's settling groups gathers from.
+    still: Vec<Still>,
 }
 
+/// Where content goes in a frame. A part is a mip of a copy of a texture, or a copy of a buffer; it has a life from where it is
+/// replaced to where it is replaced again.
+struct Flow {
+    steps: Vec<StepFlow>,
+    /// The last life of each part.
+    last: Vec<usize>,
+    lives: usize,
+    /// For each settling group, the parts of this frame's copies and of last frame's.
+    kept: Vec<Vec<(usize, usize)>>,
+}
+
+struct StepFlow {
+    /// Which of [`Contents::reads`].
+    externals: Vec<usize>,
+    reads: Vec<Part>,
+    writes: Vec<Write>,
+}
+
+struct Part {
+    part: usize,
+    life: usize,
+}
+
+struct Write {
+    to: Part,
+    /// Nothing is left of what was there, or that is in the id already.
+    replaces: bool,
+    /// What it is among the step's.
+    what: u64,
+}
+
+/// What a settling group's ring reads that it has not written.
+struct Still {
+    /// Which parts it writes.
+    own: Vec<bool>,
+    /// Ids of the rest, by step of the ring, in the last frame.
+    inputs: Vec<u64>,
+    /// Frames since they changed.
+    frames: u32,
+}
+
+/// What there is to do in a frame.
+pub(super) struct Frame {
+    /// Steps that run.
+    pub awake: Vec<bool>,
+    /// Settling groups whose outcome is what they left in the frame before, and that have to bring it here.
+    pub keeping: Vec<bool>,
+}
+
+/// A frame gone through with ids.
+struct Walk {
+    now: Vec<Content>,
+    /// Of each step's reads, whether it is as at the start of the frame.
+    is_held: Vec<Vec<bool>>,
+    /// By settling group and step of its ring.
+    inputs: Vec<Vec<u64>>,
+}
+
+/// Ids are the same in every run.
+const IDS: foldhash::quality::FixedState = foldhash::quality::FixedState::with_seed(0);
+
 fn hashed(value: impl Hash) -> u64 {
-    // The keys of this one are the same in every run.
-    let mut hasher = DefaultHasher::new();
-    value.hash(&mut hasher);
-    hasher.finish()
+    IDS.hash_one(value)
 }
 
 impl Contents {
     /// Of resources that hold anything: each step runs once.
     pub(super) fn new(linked: &[Linked], plan: &Plan) -> Contents {
-        let mut parts = 0;
-        let mut next = |count: usize| {
-            parts += count;
-            parts - count
-        };
-        let textures = plan.textures.iter().map(|t| [next(t.mips as usize), next(t.mips as usize)]).collect();
-        let buffers = next(2 * plan.buffers.len());
         let read_by = |step: &Step| {
             let bound = linked[step.pass].bound.iter().zip(&step.cases);
             let reads: BTreeSet<Reads> = bound
@@ -80,89 +136,238 @@ impl Contents {
         let of_steps: Vec<BTreeSet<Reads>> = plan.steps.iter().map(read_by).collect();
         let reads: Vec<Reads> = of_steps.iter().flatten().cloned().collect::<BTreeSet<_>>().into_iter().collect();
         let number = |r: &Reads| reads.binary_search(r).unwrap_or(0);
-        let of_step = of_steps.iter().map(|list| list.iter().map(number).collect()).collect();
+        let of_steps: Vec<Vec<usize>> = of_steps.iter().map(|list| list.iter().map(number).collect()).collect();
+        let parts = Parts::new(plan);
+        let flows = [false, true].map(|odd| Flow::new(plan, &of_steps, &parts, odd));
+        let still = plan.settling.iter().map(|group| {
+            let mut own = vec![false; parts.count];
+            let written =
+                |flow: &Flow| group.ring.iter().flat_map(|i| &flow.steps[*i].writes).map(|w| w.to.part).collect();
+            flows.iter().flat_map(|flow| -> Vec<usize> { written(flow) }).for_each(|part| own[part] = true);
+            Still { own, inputs: Vec::new(), frames: 0 }
+        });
+        let unknown = |i| Content { id: hashed(("unknown", i)), base: hashed(("unknown", i)), stores: Vec::new() };
         Contents {
-            held: (0..parts).map(|i| Content { base: hashed(("unknown", i)), stores: Vec::new() }).collect(),
-            textures,
-            buffers,
+            held: (0..parts.count).map(unknown).collect(),
+            inputs: vec![[0; 2]; reads.len()],
             reads,
-            of_step,
             externals: vec![Vec::new(); EXTERNALS.len()],
+            still: still.collect(),
+            flows,
         }
     }
 
     /// New bytes of an external resource, from the next frame on.
     pub(super) fn update(&mut self, name: &str, bytes: &[u8]) {
-        if let Some(i) = EXTERNALS.iter().position(|e| e.name == name) {
-            self.externals[i] = match EXTERNALS[i].kind {
-                ExternalKind::Uniform => bytes.to_vec(),
-                _ => hashed(bytes).to_ne_bytes().to_vec(),
-            };
+        let Some(external) = EXTERNALS.iter().position(|e| e.name == name) else { return };
+        self.externals[external] = match EXTERNALS[external].kind {
+            ExternalKind::Uniform => bytes.to_vec(),
+            _ => hashed(bytes).to_ne_bytes().to_vec(),
+        };
+        let mut uncounted = self.externals[external].clone();
+        if name == "camera" {
+            uncounted.get_mut(CAMERA_FRAME).into_iter().for_each(|frame| frame.fill(0));
+        }
+        for (reads, ids) in self.reads.iter().zip(&mut self.inputs).filter(|(reads, _)| reads.external == external) {
+            *ids = [&self.externals[external], &uncounted].map(|bytes| reads.id(bytes));
         }
     }
 
-    /// Which steps of the next frame have work to do; from then on content is as after that frame.
-    pub(super) fn frame(&mut self, plan: &Plan, odd: bool) -> Vec<bool> {
-        let inputs: Vec<u64> = self.reads.iter().map(|r| self.external(r)).collect();
+    /// What the next frame has to do; from then on content is as after that frame. Where it does all, groups that rest do their
+    /// work too, and what they leave is thrown away: pictures are the same, and times are of all work.
+    pub(super) fn frame(&mut self, plan: &Plan, odd: bool, redo: Redo) -> Frame {
+        let flow = &self.flows[usize::from(odd)];
+        let mut resting: Vec<bool> =
+            plan.settling.iter().zip(&self.still).map(|(group, still)| still.frames >= group.frames).collect();
+        let walk = loop {
+            let walk = self.walk(plan, flow, &resting);
+            // A change before the last of them wakes them in this frame, a later one in the next.
+            let is_woken = |k: usize| {
+                let group = &plan.settling[k];
+                let before = group.ring.iter().take_while(|i| Some(*i) <= group.steps.last()).count();
+                walk.inputs[k][..before] != self.still[k].inputs[..before]
+            };
+            let woken: Vec<usize> = (0..resting.len()).filter(|k| resting[*k] && is_woken(*k)).collect();
+            if woken.is_empty() {
+                break walk;
+            }
+            woken.iter().for_each(|k| resting[*k] = false);
+        };
+        let frame = match redo {
+            Redo::All => Frame { awake: vec![true; plan.steps.len()], keeping: resting },
+            Redo::Changed => {
+                let is_new = |part: usize| walk.now[part].id != self.held[part].id;
+                let keeps =
+                    |(kept, rests): (&Vec<(usize, usize)>, &bool)| *rests && kept.iter().any(|(new, _)| is_new(*new));
+                let mut rests = vec![false; plan.steps.len()];
+                for (group, _) in plan.settling.iter().zip(&resting).filter(|(_, resting)| **resting) {
+                    group.steps.iter().for_each(|i| rests[*i] = true);
+                }
+                let keeping = flow.kept.iter().zip(&resting).map(keeps).collect();
+                Frame { awake: flow.awake(&walk.is_held, &rests, is_new), keeping }
+            }
+        };
+        for (still, inputs) in self.still.iter_mut().zip(walk.inputs) {
+            still.frames = if still.inputs == inputs { still.frames.saturating_add(1) } else { 0 };
+            still.inputs = inputs;
+        }
+        self.held = walk.now;
+        frame
+    }
+
+    fn walk(&self, plan: &Plan, flow: &Flow, resting: &[bool]) -> Walk {
         let mut now = self.held.clone();
-        let mut lives = vec![0; now.len()];
-        let (mut reads, mut writes): (Vec<Vec<Read>>, Vec<Vec<Life>>) = (Vec::new(), Vec::new());
-        for (i, step) in plan.steps.iter().enumerate() {
-            let read: Vec<usize> = step.uses.iter().filter(|u| u.read).flat_map(|u| self.parts(plan, u, odd)).collect();
-            let mut hasher = DefaultHasher::new();
-            i.hash(&mut hasher);
-            self.of_step[i].iter().for_each(|r| inputs[*r].hash(&mut hasher));
-            read.iter().for_each(|p| now[*p].hash(&mut hasher));
-            let input = hasher.finish();
-            let there = |p: usize| Read { life: (p, lives[p]), is_held: now[p] == self.held[p] };
-            reads.push(read.into_iter().map(there).collect());
-            let mut written = Vec::new();
-            for u in step.uses.iter().filter(|u| u.write) {
-                for (place, part) in self.parts(plan, u, odd).enumerate() {
-                    now[part].write(hashed((input, u.res, u.mips.0 as usize + place)), u);
-                    lives[part] += usize::from(u.overwrite && !u.read);
-                    written.push((part, lives[part]));
+        let mut inputs: Vec<Vec<u64>> = vec![Vec::new(); plan.settling.len()];
+        let mut is_held = Vec::with_capacity(flow.steps.len());
+        for (i, step) in flow.steps.iter().enumerate() {
+            is_held.push(step.reads.iter().map(|r| now[r.part].id == self.held[r.part].id).collect());
+            let mut rests = false;
+            for (k, (group, still)) in plan.settling.iter().zip(&self.still).enumerate() {
+                if group.ring.binary_search(&i).is_ok() {
+                    let mut hasher = IDS.build_hasher();
+                    step.externals.iter().for_each(|r| self.inputs[*r][1].hash(&mut hasher));
+                    let others = step.reads.iter().filter(|r| !still.own[r.part]);
+                    others.for_each(|r| now[r.part].id.hash(&mut hasher));
+                    inputs[k].push(hasher.finish());
+                }
+                if resting[k] && group.steps.contains(&i) {
+                    rests = true;
+                    if group.steps.last() == Some(&i) {
+                        flow.kept[k].iter().for_each(|(new, last)| now[*new] = now[*last].clone());
+                    }
                 }
             }
-            writes.push(written);
+            if rests {
+                continue;
+            }
+            let mut hasher = IDS.build_hasher();
+            i.hash(&mut hasher);
+            step.externals.iter().for_each(|r| self.inputs[*r][0].hash(&mut hasher));
+            step.reads.iter().for_each(|r| now[r.part].id.hash(&mut hasher));
+            let input = hasher.finish();
+            step.writes.iter().for_each(|w| now[w.to.part].write(hashed((input, w.what)), w.replaces));
         }
-        let changed = (0..now.len()).filter(|p| now[*p] != self.held[*p]).map(|p| (p, lives[p])).collect();
-        let awake = awake(&reads, &writes, &lives, changed);
-        self.held = now;
-        awake
+        Walk { now, is_held, inputs }
     }
+}
 
-    fn external(&self, reads: &Reads) -> u64 {
-        let bytes = &self.externals[reads.external];
+impl Reads {
+    fn id(&self, bytes: &[u8]) -> u64 {
         let within = |(first, end): &(u32, u32)| bytes.get(*first as usize..*end as usize);
-        match reads.bytes.as_ref().map(|list| list.iter().map(within).collect::<Option<Vec<_>>>()) {
+        match self.bytes.as_ref().map(|list| list.iter().map(within).collect::<Option<Vec<_>>>()) {
             Some(Some(parts)) => hashed(parts),
             _ => hashed(bytes),
         }
     }
+}
 
-    /// Where the content of a use lies, in the copy of this frame or of the one before.
-    fn parts(&self, plan: &Plan, u: &Use, odd: bool) -> std::ops::Range<usize> {
-        match u.res {
+/// Numbers of all parts.
+struct Parts {
+    /// Where those of the two copies of each texture begin: one a mip. Those of buffers follow, one a copy.
+    textures: Vec<[usize; 2]>,
+    buffers: usize,
+    count: usize,
+}
+
+impl Parts {
+    fn new(plan: &Plan) -> Parts {
+        let mut count = 0;
+        let mut next = |parts: usize| {
+            count += parts;
+            count - parts
+        };
+        let textures = plan.textures.iter().map(|t| [next(t.mips as usize), next(t.mips as usize)]).collect();
+        let buffers = next(2 * plan.buffers.len());
+        Parts { textures, buffers, count }
+    }
+
+    /// Of mips of the copy of this frame or of the one before.
+    fn of(&self, plan: &Plan, res: Res, mips: (u32, u32), odd: bool) -> std::ops::Range<usize> {
+        match res {
             Res::Buffer(b, history) => {
-                let copy = usize::from(plan.buffers[b].history && (history != odd));
-                let part = self.buffers + 2 * b + copy;
+                let part = self.buffers + 2 * b + usize::from(plan.buffers[b].history && (history != odd));
                 part..part + 1
             }
             Res::Texture(t, history) => {
                 let copy = usize::from(plan.textures[t].history && (history != odd));
-                let first = self.textures[t][copy] + u.mips.0 as usize;
-                first..first + u.mips.1 as usize
+                let first = self.textures[t][copy] + mips.0 as usize;
+                first..first + mips.1 as usize
+            }
+        }
+    }
+}
+
+impl Flow {
+    fn new(plan: &Plan, externals: &[Vec<usize>], parts: &Parts, odd: bool) -> Flow {
+        let mut last: Vec<usize> = (0..parts.count).collect();
+        let mut lives = parts.count;
+        let mut steps = Vec::new();
+        for (step, externals) in plan.steps.iter().zip(externals) {
+            let read = step.uses.iter().filter(|u| u.read).flat_map(|u| parts.of(plan, u.res, u.mips, odd));
+            let reads = read.map(|part| Part { part, life: last[part] }).collect();
+            let mut writes = Vec::new();
+            for u in step.uses.iter().filter(|u| u.write) {
+                for (mip, part) in (u.mips.0..).zip(parts.of(plan, u.res, u.mips, odd)) {
+                    if u.overwrite && !u.read {
+                        last[part] = lives;
+                        lives += 1;
+                    }
+                    let to = Part { part, life: last[part] };
+                    writes.push(Write { to, replaces: u.overwrite || u.read, what: hashed((u.res, mip)) });
+                }
+            }
+            steps.push(StepFlow { externals: externals.clone(), reads, writes });
+        }
+        let of = |res, mips| parts.of(plan, res, mips, odd);
+        let copies = |res: &Res| match *res {
+            Res::Buffer(b, _) => of(*res, (0, 1)).zip(of(Res::Buffer(b, true), (0, 1))),
+            Res::Texture(t, _) => {
+                let mips = (0, plan.textures[t].mips);
+                of(*res, mips).zip(of(Res::Texture(t, true), mips))
+            }
+        };
+        let kept = plan.settling.iter().map(|group| group.kept.iter().flat_map(copies).collect()).collect();
+        Flow { steps, last, lives, kept }
+    }
+
+    /// Steps that run: who writes a life that ends up changed, and who writes the lives that these read or write, unless that is
+    /// there already. Of those that write a life all run or none, and where one life is written the last one is too, so that at
+    /// each step that runs all is as ids say, and after the frame.
+    fn awake(&self, is_held: &[Vec<bool>], rests: &[bool], is_new: impl Fn(usize) -> bool) -> Vec<bool> {
+        let (mut wanted, mut touched) = (vec![false; self.lives], vec![false; self.last.len()]);
+        let mut awake = vec![false; self.steps.len()];
+        (0..self.last.len()).filter(|part| is_new(*part)).for_each(|part| wanted[self.last[part]] = true);
+        loop {
+            let mut more = false;
+            // What is read was mostly written before.
+            for (i, step) in self.steps.iter().enumerate().rev().filter(|(i, _)| !rests[*i]) {
+                if !awake[i] && step.writes.iter().any(|w| wanted[w.to.life]) {
+                    (awake[i], more) = (true, true);
+                    for w in &step.writes {
+                        touched[w.to.part] = true;
+                        wanted[w.to.life] = true;
+                        wanted[self.last[w.to.part]] = true;
+                    }
+                }
+                if awake[i] {
+                    for (read, _) in step.reads.iter().zip(&is_held[i]).filter(|(r, held)| !**held || touched[r.part]) {
+                        more |= !std::mem::replace(&mut wanted[read.life], true);
+                    }
+                }
+            }
+            if !more {
+                return awake;
             }
         }
     }
 }
 
 impl Content {
-    fn write(&mut self, id: u64, u: &Use) {
-        if u.overwrite || u.read {
+    fn write(&mut self, id: u64, replaces: bool) {
+        if replaces {
             // Of one that reads what was there, that is part of its id.
-            *self = Content { base: id, stores: Vec::new() };
+            (self.id, self.base) = (id, id);
+            self.stores.clear();
             return;
         }
         self.stores.retain(|s| *s != id);
@@ -170,41 +375,6 @@ impl Content {
         if self.stores.len() > MOST_STORES {
             self.base = hashed((self.base, self.stores.remove(0)));
         }
-    }
-}
-
-/// A part from where it is replaced to where it is replaced again: (part, how often it was before in this frame).
-type Life = (usize, usize);
-
-/// What a step reads.
-struct Read {
-    life: Life,
-    /// Whether it is as at the start of the frame.
-    is_held: bool,
-}
-
-/// Steps that run: who writes a life that ends up changed, and who writes the lives that these read or write, unless that is
-/// there already. Of those that write a life all run or none, and where one life is written the last one is too, so that at
-/// each step that runs all is as ids say, and after the frame.
-fn awake(reads: &[Vec<Read>], writes: &[Vec<Life>], last: &[usize], changed: BTreeSet<Life>) -> Vec<bool> {
-    let (mut wanted, mut awake) = (changed, vec![false; writes.len()]);
-    let mut touched = vec![false; last.len()];
-    loop {
-        let before = wanted.len();
-        for (step, lives) in writes.iter().enumerate() {
-            if !awake[step] && lives.iter().any(|life| wanted.contains(life)) {
-                awake[step] = true;
-                lives.iter().for_each(|(part, _)| touched[*part] = true);
-                wanted.extend(lives.iter().flat_map(|life| [*life, (life.0, last[life.0])]));
-            }
-        }
-        for read in reads.iter().zip(&awake).filter(|(_, awake)| **awake).flat_map(|(reads, _)| reads) {
-            if !read.is_held || touched[read.life.0] {
-                wanted.insert(read.life);
-            }
-        }
-        if wanted.len() == before {
-            return awake;
-        }
+        self.id = hashed((self.base, &self.stores));
     }
 }

@@ -312,6 +312,11 @@ impl Session {
     /// The device was lost.
     pub fn swap_in(&mut self, old: &mut Session) -> Result<(), LabError> {
         self.program.swap_in(&mut old.program)?;
+        if Arc::ptr_eq(&self.scene_gpu.camera, &old.scene_gpu.camera) {
+            // Poses and lights were sent since this one was made.
+            self.scene_gpu = old.scene_gpu.clone();
+            self.light_updates.append(&mut old.light_updates);
+        }
         self.viewpoint = old.viewpoint.clone();
         self.time = old.time;
         self.frame = old.frame;
@@ -333,10 +338,13 @@ impl Session {
         {
             return Ok(false);
         }
-        let plan = plan_of(&self.graph, &self.linked, params, &self.scene, size, &self.wanted, &lab.gpu.info)?;
+        let mut plan = plan_of(&self.graph, &self.linked, params, &self.scene, size, &self.wanted, &lab.gpu.info)?;
+        // When passes rest is nothing that anything is made by.
+        let settling = std::mem::replace(&mut plan.settling, self.program.plan.settling.clone());
         if plan != self.program.plan {
             return Ok(false);
         }
+        self.program.plan.settling = settling;
         self.params = params.clone();
         self.values = values_of(&self.graph, params, &self.scene, size, &lab.gpu.info);
         self.sent_params = false;
@@ -384,6 +392,8 @@ impl Session {
         updates.push((self.scene_gpu.camera.clone(), camera));
         if !self.sent_params {
             updates.push((self.program.params_buffer(), self.params.uniform_bytes(&self.values)));
+            // So that it is known which part of it lights change.
+            updates.extend(self.scene_gpu.info());
             self.sent_params = true;
         }
         self.frame += 1;

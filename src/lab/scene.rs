@@ -208,6 +208,12 @@ impl SceneGpu {
         let buffer = |name: &str| self.resources.buffers.get(name).cloned();
         contents.iter().filter_map(|(name, bytes)| Some((buffer(name)?, bytes.to_vec()))).collect()
     }
+
+    /// The block `sceneInfo` as it is.
+    pub fn info(&self) -> Option<(Arc<Buffer>, Vec<u8>)> {
+        let buffer = self.resources.buffers.get("sceneInfo")?;
+        Some((buffer.clone(), bytemuck::bytes_of(&self.info).to_vec()))
+    }
 }
 
 /// The hierarchy over triangles in the pose of these instances.
