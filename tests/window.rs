@@ -429,6 +429,26 @@ fn the_window_answers_and_closes_while_a_slow_device_renders() {
 }
 
 #[test]
+fn what_nothing_changes_sleeps_at_a_click() {
+    let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
+    let mut driver = small();
+    let first = driver.first_picture();
+    driver.click("", "keep rendering");
+    driver.click("", "Time");
+    let mark = driver.now();
+    driver.event(mark, "picture");
+    assert!(driver.events.iter().all(|e| e["event"] != "picture" || e["asleep"] == 0), "all is done");
+    driver.click("", "what changes");
+    let asleep = |e: &Value| e["event"] == "picture" && e["asleep"].as_u64().is_some_and(|n| n > 20);
+    let still = driver.wait(mark, "most passes sleep", asleep);
+    assert_eq!(still["fingerprint"], first, "the same picture");
+    let mark = driver.now();
+    driver.click("", "what changes");
+    let all = driver.wait(mark, "all passes run", |e| e["event"] == "picture" && e["asleep"] == 0);
+    assert_eq!(all["fingerprint"], first);
+}
+
+#[test]
 fn what_was_saved_is_there_after_a_restart_and_captures_replay() {
     let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut driver = small();

@@ -2,6 +2,7 @@
 
 use super::DeviceArgs;
 use super::adapt::parse_size;
+use crate::graph::run::Redo;
 use crate::lab::{LabError, Workspace};
 use crate::screenshot::{Edit, Script, take};
 use crate::workbench::Options;
@@ -84,8 +85,8 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     };
     let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
     let size = args.size.as_deref().map(parse_size).transpose()?;
-    let options =
-        Options { home, gpu: gpu.clone(), experiment, scene: args.scene.clone(), size, events: args.events.clone() };
+    let (scene, events) = (args.scene.clone(), args.events.clone());
+    let options = Options { home, gpu: gpu.clone(), experiment, scene, size, redo: Redo::All, events };
     let shot = take(options, &gpu, script)?;
     let rgb: Vec<u8> = shot.bytes.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
     let mut file = Cursor::new(Vec::new());

@@ -1,6 +1,7 @@
 //! `conelab view`.
 
 use super::DeviceArgs;
+use crate::graph::run::Redo;
 use crate::lab::{LabError, Workspace};
 use crate::vulkan::GpuOptions;
 use crate::window::{self, WindowOptions};
@@ -19,6 +20,9 @@ pub struct ViewArgs {
     /// Size of the picture in pixels; that of the viewport when absent.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
+    /// Whether each frame does all, or only passes whose outcome changes.
+    #[arg(long, value_enum, default_value_t)]
+    redo: Redo,
     /// Size of the window.
     #[arg(long, value_name = "WxH", default_value = "1600x900")]
     window: String,
@@ -42,6 +46,7 @@ pub fn run(args: &ViewArgs) -> Result<(), LabError> {
         size: super::adapt::parse_size(&args.window)?,
     };
     let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
-    let options = Options { home, gpu, experiment, scene: args.scene.clone(), size, events: args.events.clone() };
+    let (scene, events) = (args.scene.clone(), args.events.clone());
+    let options = Options { home, gpu, experiment, scene, size, redo: args.redo, events };
     window::run(options, window)
 }

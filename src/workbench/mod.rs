@@ -33,6 +33,7 @@ mod view;
 mod watch;
 
 use crate::experiment::Experiment;
+use crate::graph::run::Redo;
 use crate::graph::source::Diagnostic;
 use crate::lab::{LabError, Workspace};
 use crate::scene::Scene;
@@ -100,6 +101,8 @@ pub struct Options {
     pub scene: Option<String>,
     /// Picture size; that of the viewport when absent.
     pub size: Option<(u32, u32)>,
+    /// What frames do at first.
+    pub redo: Redo,
     /// File for the log of events.
     pub events: Option<PathBuf>,
 }
@@ -172,6 +175,7 @@ impl Workbench {
             sides: [Some(side_of(&experiment)), None],
             scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
             size: options.size.unwrap_or((0, 0)),
+            redo: options.redo,
             clock: request::Clock { at: experiment.time, jumps: 1, ..request::Clock::default() },
             ..RenderRequest::default()
         };
@@ -443,6 +447,7 @@ fn differs(a: &RenderRequest, b: &RenderRequest) -> bool {
         || a.size != b.size
         || a.clock != b.clock
         || a.continuous != b.continuous
+        || a.redo != b.redo
         || (a.revision, a.scene_revision) != (b.revision, b.scene_revision)
         || a.inspect != b.inspect
         || a.table != b.table

@@ -121,6 +121,7 @@ impl Workbench {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let fields = json!({ "side": number, "preview": picture.preview, "frame": picture.frame,
                 "request": picture.request, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
+                "asleep": picture.asleep.len(),
                 "since_change_ms": since,
                 "fingerprint": events::fingerprint(&picture.bytes) });
             self.event("picture", fields);

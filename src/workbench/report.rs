@@ -64,6 +64,8 @@ pub struct PictureReport {
     pub bytes: Arc<Vec<u8>>,
     /// (pass number, ms) on the GPU.
     pub passes: Vec<(usize, f64)>,
+    /// Numbers of the passes that slept.
+    pub asleep: Vec<usize>,
     /// First to last command on the GPU, ms.
     pub gpu_ms: f64,
     /// Recording and submitting on the CPU, ms.

@@ -2,6 +2,7 @@
 
 use crate::camera_path::CameraPath;
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
+use crate::graph::run::Redo;
 use crate::graph::source::{At, Loc, Sources};
 use crate::scene::{Camera, Light};
 use glam::Vec3;
@@ -66,6 +67,8 @@ pub struct RenderRequest {
     pub clock: Clock,
     /// Render on when nothing changes, to measure.
     pub continuous: bool,
+    /// What frames do.
+    pub redo: Redo,
     /// Files of graphs or shaders changed so often.
     pub revision: u64,
     /// The scene's files changed so often.

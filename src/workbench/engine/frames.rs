@@ -60,6 +60,7 @@ impl Run<'_> {
             session.set_lights(lights, sky);
         }
         session.set_time(self.clock.now);
+        session.set_redo(self.desired.redo);
         side.frame += 1;
         side.submitted.push_back(Submitted { request: side.answered, time: self.clock.now, frame: side.frame });
         let captured = std::mem::take(&mut self.renderdoc).then(renderdoc::begin);
@@ -98,6 +99,7 @@ impl Run<'_> {
                 size: [size.0, size.1],
                 bytes: Arc::new(bytes),
                 passes: times.passes,
+                asleep: times.asleep,
                 gpu_ms: times.gpu_ms,
                 cpu_ms: times.cpu_ms,
             }));

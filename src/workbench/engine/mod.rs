@@ -338,7 +338,7 @@ impl Run<'_> {
             }
         }
         // Files, parameters and sizes ask for frames when what they lead to has been built.
-        let view = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.inspect.clone(), w.table);
+        let view = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.redo, w.inspect.clone(), w.table);
         if view(&self.desired) != view(&old) || self.desired.lights != old.lights || self.desired.path != old.path {
             self.request_frames(1);
         }

@@ -85,7 +85,14 @@ mod tests {
         let mut b = History::new(vec![(1, "tone".into()), (3, "only \"B\"".into())]);
         for i in 0..5_u32 {
             let t = f64::from(i) * 0.25;
-            let frame = |passes| Frame { frame: u64::from(i), time: t, cpu_ms: 9.0, gpu_ms: 3.5 + t, passes };
+            let frame = |passes| Frame {
+                frame: u64::from(i),
+                time: t,
+                cpu_ms: 9.0,
+                gpu_ms: 3.5 + t,
+                passes,
+                ..Frame::default()
+            };
             a.push(frame(vec![(0, 1.5 + t), (2, 2.0)]));
             b.push(frame(vec![(1, 0.5), (3, 0.125 + t)]));
         }

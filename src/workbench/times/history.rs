@@ -20,12 +20,15 @@ pub struct Frame {
     pub gpu_ms: f64,
     /// (pass number, ms).
     pub passes: Vec<(usize, f64)>,
+    /// Numbers of the passes that slept.
+    pub asleep: Vec<usize>,
 }
 
 impl Frame {
     /// The times of a picture's frame.
     pub fn of(p: &PictureReport) -> Frame {
-        Frame { frame: p.frame, time: p.time, cpu_ms: p.cpu_ms, gpu_ms: p.gpu_ms, passes: p.passes.clone() }
+        let (passes, asleep) = (p.passes.clone(), p.asleep.clone());
+        Frame { frame: p.frame, time: p.time, cpu_ms: p.cpu_ms, gpu_ms: p.gpu_ms, passes, asleep }
     }
 
     /// Time of a pass, ms; a pass that ran several times has the sum.
@@ -75,6 +78,8 @@ pub struct Row {
     pub is_pass: bool,
     /// Times of A and B, ms.
     pub spread: [Option<Spread>; 2],
+    /// Whether it slept in the last frame of A, and in that of B.
+    pub asleep: [bool; 2],
     /// Texts of the columns.
     pub cells: [String; 4],
 }
@@ -112,12 +117,16 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
         } else {
             [ms(median[0]), ms(spread[0].map(|s| s.p95)), share, ms(spread[0].map(|_| most))]
         };
-        Row { name: name.into(), is_pass, spread, cells }
+        Row { name: name.into(), is_pass, spread, asleep: [false; 2], cells }
     };
     let number = |h: &History, name: &str| h.passes.iter().find(|p| p.1 == name).map(|p| p.0);
+    let slept = |h: &History, name: &str| {
+        h.frames.back().zip(number(h, name)).is_some_and(|(frame, number)| frame.asleep.contains(&number))
+    };
     let mut list: Vec<Row> = Vec::with_capacity(names.len() + 2);
     for name in names {
-        list.push(row(name, true, sides.map(|h| number(h, name).and_then(|n| values(h, &|f| f.pass(n))))));
+        let times = sides.map(|h| number(h, name).and_then(|n| values(h, &|f| f.pass(n))));
+        list.push(Row { asleep: sides.map(|h| slept(h, name)), ..row(name, true, times) });
     }
     list.push(row("GPU, first to last", false, sides.map(|h| values(h, &|f| f.gpu_ms))));
     list.push(row(CPU, false, sides.map(|h| values(h, &|f| f.cpu_ms))));
@@ -169,6 +178,15 @@ mod tests {
         assert_eq!(rows[1].cells, ["3.000", "6.000", "2.00", "75.0%"]);
         assert_eq!(rows[2].cells, ["", "2.000", "", ""]);
         assert_eq!(rows[4].cells, ["1.000", "1.000", "1.00", ""]);
+    }
+
+    #[test]
+    fn a_pass_sleeps_in_the_last_frame_or_not() {
+        let mut h = history(&["x", "y"], &[&[1.0, 2.0]]);
+        h.push(Frame { passes: vec![(0, 0.0), (1, 2.0)], asleep: vec![0], ..Frame::default() });
+        assert_eq!(rows(&h, None).iter().map(|r| r.asleep[0]).collect::<Vec<_>>(), [true, false, false, false]);
+        h.push(Frame { passes: vec![(0, 1.0), (1, 2.0)], ..Frame::default() });
+        assert!(rows(&h, None).iter().all(|r| !r.asleep[0]));
     }
 
     #[test]

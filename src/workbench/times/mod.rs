@@ -6,6 +6,7 @@ mod history;
 
 use super::report::{GraphInfo, PictureReport};
 use super::{Tab, Workbench};
+use crate::graph::run::Redo;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
 use history::{Frame, History, Row};
 use std::path::{Path, PathBuf};
@@ -128,6 +129,13 @@ impl Workbench {
             if ui.add_enabled(some, button("trace")).on_hover_text(about).clicked() {
                 file = Some(("json", Ok(export::trace(&self.times.sides))));
             }
+            let mut changed = self.desired.redo == Redo::Changed;
+            let about =
+                "Passes run whose outcome would be another, the rest sleeps: the picture is the same, to the bit";
+            if ui.toggle_value(&mut changed, egui::RichText::new("what changes").small()).on_hover_text(about).clicked()
+            {
+                self.desired.redo = if changed { Redo::Changed } else { Redo::All };
+            }
             ui.weak(format!("the last {} frames", self.times.sides[0].frames.len()));
         });
         if let Some((ending, bytes)) = file {
@@ -222,7 +230,10 @@ fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
     if response.hovered() || (row.is_pass && hovered == Some(row.name.as_str())) {
         ui.painter().rect_filled(rect, 2.0, ui.visuals().widgets.hovered.weak_bg_fill);
     }
-    let color = ui.visuals().text_color();
+    // What slept in both is grey.
+    let slept =
+        [0, 1].map(|side| row.spread[side].is_none() || row.asleep[side]) == [true; 2] && row.asleep != [false; 2];
+    let color = if slept { ui.visuals().weak_text_color() } else { ui.visuals().text_color() };
     let mut left = rect.left();
     if row.is_pass {
         let swatch = Rect::from_center_size(Pos2::new(left + 5.0, rect.center().y), Vec2::splat(8.0));
@@ -240,8 +251,9 @@ fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
         font,
         color,
     );
-    for (x, text) in columns(both).iter().zip(&row.cells) {
-        put(ui, rect, *x, text, color);
+    for (i, (x, text)) in columns(both).iter().zip(&row.cells).enumerate() {
+        let asleep = row.asleep.get(i).is_some_and(|asleep| *asleep) && (both || i == 0);
+        put(ui, rect, *x, if asleep { "slept" } else { text }, color);
     }
     response
 }
