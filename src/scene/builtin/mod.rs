@@ -17,6 +17,7 @@ mod solid;
 mod street;
 mod thin_walls;
 mod triangles;
+mod vases;
 mod white_sky;
 
 use glam::{Mat4, Vec3};
@@ -52,6 +53,7 @@ const ALL: &[(&str, &str, Build)] = &[
     ("street", "a street between tall houses with recessed windows and balconies under a grey sky", street::build),
     ("gloss", "glossy tiles and a mirror in a room with a window", gloss::build),
     ("foliage", "trees and bushes of small leaves, some cut out by a mask", foliage::build),
+    ("vases", "a hall of fifty vases in relief, a million triangles", vases::build),
 ];
 
 /// Names and one-line descriptions of all built-in scenes.
