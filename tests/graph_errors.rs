@@ -1748,6 +1748,25 @@ fn what_settles() {
 }
 
 #[test]
+fn what_is_transient() {
+    let transient = |old: &str| graph(&format!("{old}),"), &format!("{old}, transient: true),"));
+    assert_eq!(transient("\"work\": (size: \"cells * 16\", indirect: true"), "");
+    assert_eq!(transient("format: \"d32\""), "");
+    assert_snapshot!(transient("format: \"r32ui\", views: [\"r32i\"]"), @r#"
+    passes/graph.ron:23:16: error: 'count' is transient, and pass 'scatter' reads it before it is written
+        |         (name: "scatter", shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
+    "#);
+    assert_snapshot!(transient("format: \"rgba16f\", history: true"), @r#"
+    passes/graph.ron:12:9: error: 'picture' has a history and is transient: one or the other
+        |         "picture": (size: ("width", "height"), format: "rgba16f", history: true, transient: true),
+    "#);
+    assert_snapshot!(transient("mips: \"log2(cells) + 1\""), @r#"
+    passes/graph.ron:10:9: error: 'grid' is transient and cannot have mips
+        |         "grid": (size: ("cells", "cells", "cells"), format: "grid_format", mips: "log2(cells) + 1", transient: true),
+    "#);
+}
+
+#[test]
 fn aliases_and_samplers() {
     let with = |section: &str, text: &str| {
         let section = format!("    {section}: {{ {text} }},\n    textures: {{");

@@ -779,6 +779,146 @@ fn hazards_of_every_kind_over_many_frames() {
 }
 
 #[test]
+fn what_is_transient_shares_memory_and_changes_nothing() {
+    // A chain through buffers, images and attachments, each needed until the next but one is there.
+    let graph = r#"(
+        params: [
+            Float(name: "first", default: 1, range: (0, 100), help: "Added at the start."),
+            Float(name: "last", default: 0, range: (0, 100), help: "Added at the end."),
+        ],
+        textures: {
+            "t": (size: (64, 64), format: "r32f", transient: true),
+            "drawn": (size: (64, 64), format: "r32f", transient: true),
+            "copied": (size: (64, 64), format: "r32f", transient: true),
+        },
+        buffers: {
+            "a": (size: 16384, transient: true),
+            "b": (size: 16384, transient: true),
+            "result": (size: 16384),
+        },
+        passes: [
+            (name: "start", shaders: ["start.comp"], dispatch: Groups(64, 1, 1)),
+            (name: "a to t", shaders: ["a_to_t.comp"], dispatch: Cover("t")),
+            (name: "draw", shaders: ["full.vert", "draw.frag"], draw: Fullscreen, color: [(to: "drawn", clear: (0, 0, 0, 0))]),
+            (name: "copy", copy: (from: "drawn", to: "copied")),
+            (name: "drawn to b", shaders: ["drawn_to_b.comp"], dispatch: Groups(64, 1, 1)),
+            (name: "a anew", clear: "a"),
+            (name: "a again", shaders: ["a_again.comp"], dispatch: Groups(64, 1, 1)),
+            (name: "sum", shaders: ["sum.comp"], dispatch: Groups(64, 1, 1)),
+        ],
+    )"#;
+    let line =
+        "layout(local_size_x = 64) in;\n#include \"params.glsl\"\nuint i() { return gl_GlobalInvocationID.x; }\n";
+    let buffer = |kind: &str, block: &str, name: &str| {
+        format!("layout(std430) {kind} buffer {block} {{ float list[]; }} {name};\n")
+    };
+    let shaders = [
+        ("full.vert", FULL.to_string()),
+        (
+            "start.comp",
+            format!(
+                "{line}{}void main() {{ a.list[i()] = float(i()) + params.first; }}",
+                buffer("writeonly", "A", "a")
+            ),
+        ),
+        (
+            "a_to_t.comp",
+            format!(
+                "layout(local_size_x = 8, local_size_y = 8) in;\n{}uniform writeonly image2D t;\nvoid main() {{
+                    uvec2 p = gl_GlobalInvocationID.xy;
+                    imageStore(t, ivec2(p), vec4(a.list[64u * p.y + p.x] + 1.0));
+                }}",
+                buffer("readonly", "A", "a")
+            ),
+        ),
+        (
+            "draw.frag",
+            "uniform sampler2D t; layout(location = 0) out float red;
+            void main() { red = texelFetch(t, ivec2(gl_FragCoord.xy), 0).r + 1.0; }"
+                .to_string(),
+        ),
+        (
+            "drawn_to_b.comp",
+            format!(
+                "{line}{}uniform sampler2D drawn;
+                void main() {{ b.list[i()] = texelFetch(drawn, ivec2(i() & 63u, i() >> 6), 0).r + 1.0; }}",
+                buffer("writeonly", "B", "b")
+            ),
+        ),
+        (
+            "a_again.comp",
+            format!(
+                "{line}{}{}void main() {{ a.list[i()] = 10.0 * b.list[i()]; }}",
+                buffer("writeonly", "A", "a"),
+                buffer("readonly", "B", "b")
+            ),
+        ),
+        (
+            "sum.comp",
+            format!(
+                "{line}{}{}{}uniform sampler2D copied;
+                void main() {{
+                    float red = texelFetch(copied, ivec2(i() & 63u, i() >> 6), 0).r;
+                    result.list[i()] = a.list[i()] + b.list[i()] + red + params.last;
+                }}",
+                buffer("readonly", "A", "a"),
+                buffer("readonly", "B", "b"),
+                buffer("writeonly", "Result", "result")
+            ),
+        ),
+    ];
+    let shaders: Vec<(&str, &str)> = shaders.iter().map(|(name, text)| (*name, text.as_str())).collect();
+    let bench = Bench::new(graph, &shaders);
+    let lab = bench.lab();
+    let expected = |first: f32, last: f32| -> Vec<u32> {
+        let of = |i: u16| 12.0 * (f32::from(i) + first) + 35.0 + last;
+        (0..4096).map(|i| of(i).to_bits()).collect()
+    };
+    let bytes = |s: &Session| s.program.memory(&s.graph).iter().map(|m| m.1).sum::<u64>();
+
+    let mut session = bench.run(&lab, &["result"], 5);
+    assert_eq!(words(&mut session, "result"), expected(1.0, 0.0));
+    let alone = bench.run(&lab, &["result", "t", "drawn", "copied", "a", "b"], 1);
+    println!("{} bytes, alone {}", bytes(&session), bytes(&alone));
+    assert!(bytes(&session) + 2 * 16384 <= bytes(&alone), "at most three of the five at a time");
+    assert!(session.texels("t", 0, 0).unwrap_err().to_string().contains("'t' is transient"));
+
+    // What sleeps leaves nothing in them: it runs again for who reads.
+    session.set_redo(conelab::graph::run::Redo::Changed);
+    let mut params = session.params.clone();
+    for (frame, (name, value)) in
+        [("last", "1"), ("last", "2"), ("first", "7"), ("last", "2"), ("last", "3")].iter().enumerate()
+    {
+        params.set(name, value).unwrap();
+        assert!(session.set_params(&lab, &params).unwrap());
+        session.frame(0.0).unwrap();
+        let times = session.finish().unwrap();
+        let (first, last) = ([1.0, 1.0, 7.0, 7.0, 7.0][frame], [1.0, 2.0, 2.0, 2.0, 3.0][frame]);
+        assert_eq!(words(&mut session, "result"), expected(first, last), "frame {frame}");
+        let slept = times.last().unwrap().asleep.len();
+        assert_eq!(slept, if frame == 3 { 8 } else { 0 }, "frame {frame}");
+    }
+
+    // A program made from the parts of another takes the memory over, and one that wants more does not.
+    for wanted in [&["result"][..], &["result", "t"]] {
+        let experiment = Experiment::read(&bench.path("configs/run.ron")).unwrap();
+        let loaded = lab.home.load_for(&experiment, &session.scene, &lab.gpu.info).unwrap();
+        let list = wanted.iter().map(|w| String::from(*w)).collect();
+        let parts = session.reusable_parts();
+        let mut next = lab.build(&experiment, &loaded, session.scene.clone(), list, Some(&parts)).unwrap();
+        assert_eq!(next.program.change.resized, if wanted.len() == 1 { 0 } else { 5 });
+        next.swap_in(&mut session).unwrap();
+        next.frame(0.0).unwrap();
+        next.finish().unwrap();
+        assert_eq!(words(&mut next, "result"), expected(1.0, 0.0));
+        session = next;
+    }
+    let t: Vec<f32> = (0..4096u16).map(|i| f32::from(i) + 2.0).collect();
+    assert_eq!(reds(&mut session, "t", 0), t);
+    assert_clean(&lab);
+}
+
+#[test]
 fn a_constant_parameter_is_a_specialisation_constant() {
     let bench = Bench::new(
         r#"(

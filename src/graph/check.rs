@@ -265,6 +265,10 @@ impl Check<'_> {
             if t.size.0.len() == 3 && t.layers.is_some() {
                 self.error(texture.at, format!("'{name}' is 3D and cannot have layers"));
             }
+            if t.transient && t.mips.is_some() {
+                self.error(texture.at, format!("'{name}' is transient and cannot have mips"));
+            }
+            self.kept_or_not(name, t.history, t.transient, texture.at);
             self.exprs(t.size.0.iter().chain(&t.mips).chain(&t.layers));
             self.format(&t.format, true);
             for view in &t.views.0 {
@@ -279,8 +283,15 @@ impl Check<'_> {
                 }
             }
         }
-        for (_, buffer) in &self.graph.buffers {
+        for (name, buffer) in &self.graph.buffers {
+            self.kept_or_not(name, buffer.value.history, buffer.value.transient, buffer.at);
             self.exprs(buffer.value.size.value.expression());
+        }
+    }
+
+    fn kept_or_not(&mut self, name: &str, history: bool, transient: bool, at: At) {
+        if history && transient {
+            self.error(at, format!("'{name}' has a history and is transient: one or the other"));
         }
     }
 

@@ -136,6 +136,9 @@ pub struct TextureDecl {
     /// Keep last frame's content beside this frame's.
     #[serde(default)]
     pub history: bool,
+    /// Nothing is left in it from frame to frame; memory is shared.
+    #[serde(default)]
+    pub transient: bool,
 }
 
 /// Size of a texture: two expressions for 2D, three for 3D; with the name of a texture whose they are, until the graph is
@@ -362,6 +365,9 @@ pub struct BufferDecl {
     /// Two copies, this frame's and last frame's; see [`Bind`].
     #[serde(default)]
     pub history: bool,
+    /// Nothing is left in it from frame to frame; memory is shared.
+    #[serde(default)]
+    pub transient: bool,
 }
 
 /// An item of `passes`.

@@ -1,7 +1,9 @@
 //! Reload: a program hands over what its new program can use as it is, so that an edit costs what it changes.
 
 use super::pipelines::Pipelines;
+use super::resources::named;
 use super::run::{Program, relayout};
+use super::transient::Transient;
 use super::usage::Layouts;
 use crate::vulkan::{Buffer, Commands, Image, ImageDesc, Result, vk};
 use std::collections::HashMap;
@@ -17,6 +19,10 @@ pub struct Parts {
     images: HashMap<String, [Option<Arc<Image>>; 2]>,
     /// By name, with the size asked for.
     buffers: HashMap<String, (u64, Copies)>,
+    /// Names of those that share memory, with when they do.
+    transients: Vec<(String, Transient)>,
+    /// Bytes of that memory.
+    shared_bytes: u64,
 }
 
 /// What a new program took over and what it had to make.
@@ -36,19 +42,40 @@ impl Parts {
         Parts { pipelines: self.pipelines.clone(), ..Parts::default() }
     }
 
-    /// The image of that name and copy, if it is just as described.
+    /// The image of that name and copy, if it is just as described and has memory of its own.
     pub(super) fn image(&self, name: &str, copy: usize, desc: &ImageDesc) -> Option<Arc<Image>> {
-        self.images.get(name)?[copy].clone().filter(|i| i.desc == *desc)
+        let image = self.images.get(name).filter(|_| !self.is_transient(name))?[copy].clone();
+        image.filter(|i| i.desc == *desc)
     }
 
-    /// The buffer of that name and copy, if it is of that size.
+    /// The buffer of that name and copy, if it is of that size and has memory of its own.
     pub(super) fn buffer(&self, name: &str, copy: usize, size: u64) -> Option<Arc<Buffer>> {
-        self.buffers.get(name).filter(|b| b.0 == size).and_then(|b| b.1[copy].clone())
+        self.buffers.get(name).filter(|b| b.0 == size && !self.is_transient(name)).and_then(|b| b.1[copy].clone())
+    }
+
+    /// A transient image.
+    pub(super) fn shared_image(&self, name: &str, desc: &ImageDesc) -> Option<Arc<Image>> {
+        self.images.get(name)?[0].clone().filter(|i| i.desc == *desc)
+    }
+
+    /// A transient buffer.
+    pub(super) fn shared_buffer(&self, name: &str, size: u64) -> Option<Arc<Buffer>> {
+        self.buffers.get(name).filter(|b| b.0 == size).and_then(|b| b.1[0].clone())
+    }
+
+    fn is_transient(&self, name: &str) -> bool {
+        self.transients.iter().any(|t| t.0 == name)
     }
 
     /// Whether there was a resource of that name, whatever its size.
     pub(super) fn had(&self, name: &str) -> bool {
         self.images.contains_key(name) || self.buffers.contains_key(name)
+    }
+
+    /// Bytes of the memory that these and no others share at these times.
+    pub(super) fn shared_by(&self, transients: &[(String, Transient)]) -> Option<u64> {
+        let there = self.transients.iter().map(|(name, t)| (name, &t.spans));
+        there.eq(transients.iter().map(|(name, t)| (name, &t.spans))).then_some(self.shared_bytes)
     }
 
     pub(super) fn holds_image(&self, image: &Arc<Image>) -> bool {
@@ -70,6 +97,8 @@ impl Program {
             pipelines: self.pipelines.clone(),
             images: images.map(|(t, i)| (t.0.clone(), i.clone())).collect(),
             buffers: buffers.map(|((b, made), plan)| (b.0.clone(), (plan.size, made.clone()))).collect(),
+            transients: named(graph, &self.plan),
+            shared_bytes: self.shared_bytes,
         }
     }
 
@@ -96,7 +125,8 @@ impl Program {
         let mut barriers = Vec::new();
         for (t, copies) in self.images.iter().enumerate() {
             for (c, image) in copies.iter().enumerate() {
-                let Some(image) = image else { continue };
+                // What is transient is taken out of any layout where it begins.
+                let Some(image) = image.as_ref().filter(|_| !self.plan.textures[t].transient) else { continue };
                 for (mip, (from, to)) in (0u32..).zip(from[t][c].iter().zip(&mut wanted[t][c])) {
                     if *to == vk::ImageLayout::UNDEFINED {
                         *to = *from;

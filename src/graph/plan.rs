@@ -8,6 +8,7 @@ use super::load::Graph;
 use super::param::{Params, Value};
 use super::settle::Settling;
 use super::source::{At, Diagnostic};
+use super::transient::Transient;
 use super::usage::{Res, Use, UseKind, merge};
 use crate::shader::Resource;
 use crate::vulkan::{DeviceInfo, Format, Stage, vk};
@@ -43,6 +44,8 @@ pub struct TexturePlan {
     pub usage: vk::ImageUsageFlags,
     /// Two copies, this frame's and last frame's.
     pub history: bool,
+    /// Holds nothing between frames.
+    pub transient: bool,
 }
 
 impl TexturePlan {
@@ -62,6 +65,8 @@ pub struct BufferPlan {
     pub used: bool,
     /// Two copies, this frame's and last frame's.
     pub history: bool,
+    /// Holds nothing between frames.
+    pub transient: bool,
 }
 
 impl BufferPlan {
@@ -167,6 +172,8 @@ pub struct Plan {
     pub steps: Vec<Step>,
     /// Those that gather over frames.
     pub settling: Vec<Settling>,
+    /// What shares memory.
+    pub transients: Vec<Transient>,
     /// Passes left out, and why.
     pub dropped: Vec<(usize, String)>,
     /// Edge length above which triangles must be split, if needed.
@@ -252,12 +259,16 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
         return Err(planner.errors);
     }
     let mut errors = Vec::new();
-    let (textures, buffers, settling) = (planner.textures, planner.buffers, Vec::new());
-    let mut plan = Plan { textures, buffers, steps, settling, dropped, max_edge };
+    let (textures, buffers) = (planner.textures, planner.buffers);
+    let mut plan = Plan { textures, buffers, steps, settling: Vec::new(), transients: Vec::new(), dropped, max_edge };
     super::live::prune(graph, linked, &mut plan, &input.wanted);
     super::usage::layouts(graph, &mut plan, &mut errors);
     match super::settle::find(graph, &plan.steps, (&plan.textures, &plan.buffers), &settles) {
         Ok(settling) => plan.settling = settling,
+        Err(found) => errors.extend(found),
+    }
+    match super::transient::find(graph, &plan.steps, &plan.textures, &plan.buffers) {
+        Ok(transients) => plan.transients = transients,
         Err(found) => errors.extend(found),
     }
     let features = super::needs::check(graph, linked, &plan, input);
@@ -265,10 +276,12 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     if errors.is_empty() { Ok(plan) } else { Err(errors) }
 }
 
-/// Of what has a history nothing is left of two frames ago, by its declaration: who stores first replaces everything.
+/// In what has a history nothing is left of two frames ago, in what is transient nothing at all, by their declarations: who
+/// stores first replaces everything.
 fn written_anew(textures: &[TexturePlan], buffers: &[BufferPlan], steps: &mut [Step]) {
-    let buffers = (0..buffers.len()).filter(|b| buffers[*b].history).map(|b| (Res::Buffer(b, false), 0));
-    let kept = textures.iter().enumerate().filter(|(_, texture)| texture.history);
+    let begun = (0..buffers.len()).filter(|b| buffers[*b].history || buffers[*b].transient);
+    let buffers = begun.map(|b| (Res::Buffer(b, false), 0));
+    let kept = textures.iter().enumerate().filter(|(_, texture)| texture.history || texture.transient);
     let mips = kept.flat_map(|(t, texture)| (0..texture.mips).map(move |mip| (Res::Texture(t, false), mip)));
     for (res, mip) in buffers.chain(mips) {
         let this = |u: &&mut Use| u.res == res && u.mips == (mip, 1);
@@ -367,6 +380,7 @@ impl Planner<'_> {
                 format,
                 usage: vk::ImageUsageFlags::empty(),
                 history: t.history,
+                transient: t.transient && !self.input.wanted.contains(name),
             });
         }
     }
@@ -388,7 +402,8 @@ impl Planner<'_> {
                 }
                 // One whose size was told as wrong holds everything.
                 let size = if self.errors.len() == before { bytes as u64 } else { u64::MAX };
-                BufferPlan { size, used: false, history: buffer.value.history }
+                let transient = buffer.value.transient && !self.input.wanted.contains(name);
+                BufferPlan { size, used: false, history: buffer.value.history, transient }
             })
             .collect()
     }

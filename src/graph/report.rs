@@ -4,6 +4,7 @@ use super::link::Linked;
 use super::load::Graph;
 use super::param::{Params, Value};
 use super::plan::{Plan, Step, Work};
+use super::transient::{Transient, pack};
 use super::usage::{Barrier, Res, schedule};
 use std::fmt::Write;
 
@@ -58,22 +59,39 @@ pub fn summary(graph: &Graph, plan: &Plan) -> String {
     }
     let _ = writeln!(out, "\nmemory, MiB");
     let textures = plan.textures.iter().enumerate().filter(|(_, p)| !p.usage.is_empty());
-    let textures = textures.map(|(t, _)| (graph.textures[t].0.as_str(), texture_bytes(plan, t)));
+    let star = |name: &str, transient: bool| format!("{name}{}", if transient { "*" } else { "" });
+    let textures = textures.map(|(t, p)| (star(&graph.textures[t].0, p.transient), texture_bytes(plan, t)));
     let buffers = plan.buffers.iter().enumerate().filter(|(_, p)| p.used);
-    let buffers = buffers.map(|(b, p)| (graph.buffers[b].0.as_str(), p.bytes()));
-    let mut memory: Vec<(&str, u64)> = textures.chain(buffers).collect();
+    let buffers = buffers.map(|(b, p)| (star(&graph.buffers[b].0, p.transient), p.bytes()));
+    let mut memory: Vec<(String, u64)> = textures.chain(buffers).collect();
     memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
     // What is smaller than a tenth is not worth a word.
     let (large, small): (Vec<_>, Vec<_>) = memory.iter().partition(|(_, bytes)| mib(*bytes) >= 0.1);
     let items: Vec<String> = large.iter().map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes))).collect();
-    let total = mib(memory.iter().map(|(_, bytes)| bytes).sum());
-    let _ = writeln!(out, "  {}, {} smaller ones; {total:.1} in all", items.join(", "), small.len());
+    let (shared, saved) = shared(plan);
+    let total = mib(memory.iter().map(|(_, bytes)| bytes).sum::<u64>() - saved);
+    let stars = match saved {
+        0 => String::new(),
+        _ => format!("; transient ones (*) share {:.1}, which saves {:.1}", mib(shared), mib(saved)),
+    };
+    let _ = writeln!(out, "  {}, {} smaller ones; {total:.1} in all{stars}", items.join(", "), small.len());
     let _ = writeln!(out, "\nleft out");
     for (pass, why) in &plan.dropped {
         let _ = writeln!(out, "  {}: {why}", graph.passes[*pass].value.name.value);
     }
     out
+}
+
+/// Bytes of the memory that transient resources share, and how much more they had alone. Devices round sizes up.
+fn shared(plan: &Plan) -> (u64, u64) {
+    let bytes = |t: &Transient| match t.res {
+        Res::Texture(t, _) => texture_bytes(plan, t),
+        Res::Buffer(b, _) => plan.buffers[b].bytes(),
+    };
+    let sizes: Vec<(u64, u64)> = plan.transients.iter().map(|t| (bytes(t), 1)).collect();
+    let all = pack(&sizes, &plan.transients).1;
+    (all, sizes.iter().map(|(bytes, _)| bytes).sum::<u64>() - all)
 }
 
 /// Every step in order with its barriers; sizes, formats and lifetimes of resources; what was left out and why.
@@ -138,7 +156,9 @@ pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
             lifetime(plan, |r| matches!(r, Res::Buffer(x, _) if x == b), p.history)
         );
     }
-    let _ = writeln!(out, "{:<62} {:>10.1}", "total", total as f64 / 1048576.0);
+    let saved = shared(plan).1;
+    let _ = writeln!(out, "{:<62} {:>10.1}", "saved by memory that transient ones share", saved as f64 / 1048576.0);
+    let _ = writeln!(out, "{:<62} {:>10.1}", "total", (total - saved) as f64 / 1048576.0);
     let unmade: Vec<&str> = graph
         .textures
         .iter()

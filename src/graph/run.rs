@@ -8,12 +8,13 @@ use super::load::Graph;
 use super::param::{Params, Value};
 use super::pipelines::{Pipelines, clear_value, descriptor_pool, descriptor_type, make_pipelines, sampler_desc};
 use super::plan::{Plan, Step, Work};
+use super::resources::{self, Resources};
 use super::sleep::{Contents, Frame};
 use super::usage::{Barrier, Layouts, Res, Schedule, schedule};
 use crate::shader::{Resource, Shape};
 use crate::vulkan::{
-    Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, FrameSlot, Gpu, Image, ImageDesc, Pipeline,
-    Result, Sampler, SamplerDesc, View, ViewDesc, VulkanError, format::Channels, vk,
+    Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, FrameSlot, Gpu, Image, Pipeline, Result, Sampler,
+    SamplerDesc, View, ViewDesc, VulkanError, format::Channels, vk,
 };
 use gpu_allocator::MemoryLocation;
 use std::collections::HashMap;
@@ -63,6 +64,8 @@ pub struct Program {
     names: Vec<String>,
     pub(super) images: Vec<[Option<Arc<Image>>; 2]>,
     pub(super) buffers: Vec<[Option<Arc<Buffer>>; 2]>,
+    /// Bytes of the memory that transient ones share.
+    pub(super) shared_bytes: u64,
     /// Layouts of all images between frames.
     pub(super) resting: Layouts,
     /// What was taken over from the program before.
@@ -144,8 +147,7 @@ impl Program {
     ) -> Result<Program> {
         let schedule = schedule(&plan);
         let mut change = Change::default();
-        let images = make_images(gpu, graph, &plan, parts, &mut change)?;
-        let buffers = make_buffers(gpu, graph, &plan, parts, &mut change)?;
+        let Resources { images, buffers, shared_bytes } = resources::make(gpu, graph, &plan, parts, &mut change)?;
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
         let size = params.uniform_bytes(&vec![Value::Int(0); graph.values.len()]).len() as u64;
         let params_buffer = Arc::new(Buffer::new(gpu, "params", size, usage, MemoryLocation::GpuOnly)?);
@@ -173,6 +175,7 @@ impl Program {
             scene: scene.clone(),
             images,
             buffers,
+            shared_bytes,
             params: params_buffer,
             slots: Vec::new(),
             frame: 0,
@@ -204,33 +207,37 @@ impl Program {
         for layout in self.resting.iter_mut().flatten().flatten().filter(|l| **l == vk::ImageLayout::UNDEFINED) {
             *layout = dst;
         }
+        // What is transient is begun by every frame.
+        let buffers = self.buffers.iter().zip(&self.plan.buffers).filter(|(_, plan)| !plan.transient);
+        let buffers: Vec<&Arc<Buffer>> =
+            buffers.flat_map(|(copies, _)| copies.iter().flatten()).filter(|b| !parts.holds_buffer(b)).collect();
+        let mut images = Vec::new();
+        for (t, copies) in self.images.iter().enumerate().filter(|(t, _)| !self.plan.textures[*t].transient) {
+            for (image, layouts) in copies.iter().zip(&self.resting[t]) {
+                images.extend(image.as_ref().filter(|i| !parts.holds_image(i)).map(|image| (t, image, layouts)));
+            }
+        }
         // A submission waits for the frames that run: nothing is submitted for nothing.
-        let images = self.images.iter().flatten().flatten();
-        if self.buffers.iter().flatten().flatten().all(|b| parts.holds_buffer(b))
-            && images.into_iter().all(|i| parts.holds_image(i))
-        {
+        if buffers.is_empty() && images.is_empty() {
             return Ok(());
         }
         Commands::once(&self.gpu, |commands| {
-            for buffer in self.buffers.iter().flatten().flatten().filter(|b| !parts.holds_buffer(b)) {
+            for buffer in buffers {
                 commands.fill(buffer, 0);
             }
-            for (t, copies) in self.images.iter().enumerate() {
-                for (c, image) in copies.iter().enumerate() {
-                    let Some(image) = image.as_ref().filter(|i| !parts.holds_image(i)) else { continue };
-                    commands.transition(image, vk::ImageLayout::UNDEFINED, dst);
-                    if self.plan.textures[t].format.is_depth() {
-                        commands.clear_depth(image, dst, 1.0);
-                    } else {
-                        commands.clear(image, dst, vk::ClearColorValue::default(), (0, vk::REMAINING_MIP_LEVELS));
-                    }
-                    let barriers: Vec<_> = (0u32..)
-                        .zip(&self.resting[t][c])
-                        .filter(|(_, layout)| **layout != dst)
-                        .map(|(mip, layout)| (&**image, relayout(image, dst, *layout, mip)))
-                        .collect();
-                    commands.barrier(None, &barriers);
+            for (t, image, layouts) in images {
+                commands.transition(image, vk::ImageLayout::UNDEFINED, dst);
+                if self.plan.textures[t].format.is_depth() {
+                    commands.clear_depth(image, dst, 1.0);
+                } else {
+                    commands.clear(image, dst, vk::ClearColorValue::default(), (0, vk::REMAINING_MIP_LEVELS));
                 }
+                let barriers: Vec<_> = (0u32..)
+                    .zip(layouts)
+                    .filter(|(_, layout)| **layout != dst)
+                    .map(|(mip, layout)| (&**image, relayout(image, dst, *layout, mip)))
+                    .collect();
+                commands.barrier(None, &barriers);
             }
             commands.full_barrier();
         })
@@ -473,7 +480,10 @@ impl Program {
 
     /// Copies this texture to the CPU with every frame from now on.
     pub fn show(&mut self, texture: Option<usize>) {
-        self.shown = texture.filter(|t| !self.plan.textures[*t].usage.is_empty());
+        self.shown = texture.filter(|t| {
+            let plan = &self.plan.textures[*t];
+            !plan.usage.is_empty() && !plan.transient
+        });
     }
 
     /// A host buffer for the shown texture: the one there is, if it fits.
@@ -809,19 +819,16 @@ impl Program {
         Ok(target.bytes()[..usize::try_from(self.plan.buffers[buffer].size).unwrap_or(0)].to_vec())
     }
 
-    /// (name, bytes on the device) of every resource made.
+    /// (name, bytes on the device) of every resource made; what transient ones share is one of them.
     pub fn memory(&self, graph: &Graph) -> Vec<(String, u64)> {
-        let textures = graph
-            .textures
-            .iter()
-            .zip(&self.images)
-            .map(|(t, copies)| (t.0.clone(), copies.iter().flatten().map(|i| i.bytes).sum::<u64>()));
-        let buffers = graph
-            .buffers
-            .iter()
-            .zip(&self.buffers)
-            .map(|(b, copies)| (b.0.clone(), copies.iter().flatten().map(|m| m.size).sum::<u64>()));
-        textures.chain(buffers).filter(|(_, bytes)| *bytes > 0).collect()
+        let textures = graph.textures.iter().zip(&self.images).zip(&self.plan.textures).filter(|(_, p)| !p.transient);
+        let textures =
+            textures.map(|((t, copies), _)| (t.0.clone(), copies.iter().flatten().map(|i| i.bytes).sum::<u64>()));
+        let buffers = graph.buffers.iter().zip(&self.buffers).zip(&self.plan.buffers).filter(|(_, p)| !p.transient);
+        let buffers =
+            buffers.map(|((b, copies), _)| (b.0.clone(), copies.iter().flatten().map(|m| m.size).sum::<u64>()));
+        let shared = (String::from("shared by transient ones"), self.shared_bytes);
+        textures.chain(buffers).chain([shared]).filter(|(_, bytes)| *bytes > 0).collect()
     }
 }
 
@@ -870,70 +877,4 @@ pub(super) fn relayout(
                 .level_count(1)
                 .layer_count(vk::REMAINING_ARRAY_LAYERS),
         )
-}
-
-fn make_images(
-    gpu: &Arc<Gpu>,
-    graph: &Graph,
-    plan: &Plan,
-    parts: &Parts,
-    change: &mut Change,
-) -> Result<Vec<[Option<Arc<Image>>; 2]>> {
-    let mut list = Vec::new();
-    for ((name, decl), t) in graph.textures.iter().zip(&plan.textures) {
-        let mut copies = [None, None];
-        if !t.usage.is_empty() {
-            for (c, slot) in copies.iter_mut().enumerate().take(1 + usize::from(t.history)) {
-                let views = decl.value.views.0.iter();
-                let desc = ImageDesc {
-                    name: if c == 0 { name.clone() } else { format!("{name} (other frame)") },
-                    extent: t.extent,
-                    volume: t.volume,
-                    layers: t.layers,
-                    mips: t.mips,
-                    format: t.format.vk,
-                    views: views.filter_map(|v| crate::vulkan::Format::named(&v.value)).map(|f| f.vk).collect(),
-                    usage: t.usage,
-                };
-                *slot = Some(match parts.image(name, c, &desc) {
-                    Some(kept) => kept,
-                    None => {
-                        change.resized += usize::from(parts.had(name));
-                        Arc::new(Image::new(gpu, desc)?)
-                    }
-                });
-            }
-        }
-        list.push(copies);
-    }
-    Ok(list)
-}
-
-fn make_buffers(
-    gpu: &Arc<Gpu>,
-    graph: &Graph,
-    plan: &Plan,
-    parts: &Parts,
-    change: &mut Change,
-) -> Result<Vec<[Option<Arc<Buffer>>; 2]>> {
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER
-        | vk::BufferUsageFlags::UNIFORM_BUFFER
-        | vk::BufferUsageFlags::INDIRECT_BUFFER
-        | vk::BufferUsageFlags::TRANSFER_SRC
-        | vk::BufferUsageFlags::TRANSFER_DST;
-    let mut list = Vec::new();
-    for ((name, _), b) in graph.buffers.iter().zip(&plan.buffers) {
-        let mut copies = [None, None];
-        for (c, slot) in copies.iter_mut().enumerate().take(usize::from(b.used) * (1 + usize::from(b.history))) {
-            *slot = Some(match parts.buffer(name, c, b.size) {
-                Some(kept) => kept,
-                None => {
-                    change.resized += usize::from(parts.had(name));
-                    Arc::new(Buffer::new(gpu, name, b.size, usage, MemoryLocation::GpuOnly)?)
-                }
-            });
-        }
-        list.push(copies);
-    }
-    Ok(list)
 }

@@ -61,6 +61,8 @@ struct Flow {
     lives: usize,
     /// For each settling group, the parts of this frame's copies and of last frame's.
     kept: Vec<Vec<(usize, usize)>>,
+    /// Parts that hold nothing when a frame begins.
+    transient: Vec<bool>,
 }
 
 struct StepFlow {
@@ -196,7 +198,7 @@ impl Contents {
         let frame = match redo {
             Redo::All => Frame { awake: vec![true; plan.steps.len()], keeping: resting },
             Redo::Changed => {
-                let is_new = |part: usize| walk.now[part].id != self.held[part].id;
+                let is_new = |part: usize| !flow.transient[part] && walk.now[part].id != self.held[part].id;
                 let keeps =
                     |(kept, rests): (&Vec<(usize, usize)>, &bool)| *rests && kept.iter().any(|(new, _)| is_new(*new));
                 let mut rests = vec![false; plan.steps.len()];
@@ -220,7 +222,8 @@ impl Contents {
         let mut inputs: Vec<Vec<u64>> = vec![Vec::new(); plan.settling.len()];
         let mut is_held = Vec::with_capacity(flow.steps.len());
         for (i, step) in flow.steps.iter().enumerate() {
-            is_held.push(step.reads.iter().map(|r| now[r.part].id == self.held[r.part].id).collect());
+            let there = |r: &Part| !flow.transient[r.part] && now[r.part].id == self.held[r.part].id;
+            is_held.push(step.reads.iter().map(there).collect());
             let mut rests = false;
             for (k, (group, still)) in plan.settling.iter().zip(&self.still).enumerate() {
                 if group.ring.binary_search(&i).is_ok() {
@@ -327,12 +330,14 @@ impl Flow {
             }
         };
         let kept = plan.settling.iter().map(|group| group.kept.iter().flat_map(copies).collect()).collect();
-        Flow { steps, last, lives, kept }
+        let mut transient = vec![false; parts.count];
+        plan.transients.iter().flat_map(|t| of(t.res, (0, 1))).for_each(|part| transient[part] = true);
+        Flow { steps, last, lives, kept, transient }
     }
 
     /// Steps that run: who writes a life that ends up changed, and who writes the lives that these read or write, unless that is
     /// there already. Of those that write a life all run or none, and where one life is written the last one is too, so that at
-    /// each step that runs all is as ids say, and after the frame.
+    /// each step that runs all is as ids say, and after the frame; but of what is transient nobody asks after the frame.
     fn awake(&self, is_held: &[Vec<bool>], rests: &[bool], is_new: impl Fn(usize) -> bool) -> Vec<bool> {
         let (mut wanted, mut touched) = (vec![false; self.lives], vec![false; self.last.len()]);
         let mut awake = vec![false; self.steps.len()];
@@ -346,7 +351,7 @@ impl Flow {
                     for w in &step.writes {
                         touched[w.to.part] = true;
                         wanted[w.to.life] = true;
-                        wanted[self.last[w.to.part]] = true;
+                        wanted[self.last[w.to.part]] |= !self.transient[w.to.part];
                     }
                 }
                 if awake[i] {

@@ -3,6 +3,7 @@
 use super::load::Graph;
 use super::plan::Plan;
 use super::source::Diagnostic;
+use super::transient::begins;
 use crate::vulkan::vk;
 use vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stages};
 
@@ -260,13 +261,17 @@ pub fn schedule(plan: &Plan) -> Schedule {
     let mut textures: Vec<[Vec<State>; 2]> =
         plan.textures.iter().map(|t| std::array::from_fn(|_| vec![State::default(); t.mips as usize])).collect();
     let mut buffers = vec![<[State; 2]>::default(); plan.buffers.len()];
+    let shared = of_shared_memory(plan);
     let mut barriers = [Vec::new(), Vec::new()];
     let mut ends = [Vec::new(), Vec::new()];
     // Two rounds settle the states at the frame's border, two more record.
     for frame in 0..4 {
         let parity = frame % 2;
-        barriers[parity] =
-            plan.steps.iter().map(|step| before(plan, step, parity == 1, &mut textures, &mut buffers)).collect();
+        barriers[parity] = plan
+            .steps
+            .iter()
+            .map(|step| before(plan, step, parity == 1, &shared, &mut textures, &mut buffers))
+            .collect();
         ends[parity] = textures
             .iter()
             .map(|copies| std::array::from_fn(|c| copies[c].iter().map(|s| s.layout).collect()))
@@ -275,10 +280,22 @@ pub fn schedule(plan: &Plan) -> Schedule {
     Schedule { barriers, ends }
 }
 
+/// Who may have used memory before a transient resource begins in it: whoever uses transients at all.
+fn of_shared_memory(plan: &Plan) -> State {
+    let is_shared = |u: &&Use| plan.transients.iter().any(|t| t.res == u.res);
+    let mut all = State::default();
+    for u in plan.steps.iter().flat_map(|s| &s.uses).filter(is_shared) {
+        all.write.0 |= u.stages;
+        all.write.1 |= write_part(u.access);
+    }
+    all
+}
+
 fn before(
     plan: &Plan,
     step: &super::plan::Step,
     odd: bool,
+    shared: &State,
     textures: &mut [[Vec<State>; 2]],
     buffers: &mut [[State; 2]],
 ) -> Vec<Barrier> {
@@ -286,10 +303,14 @@ fn before(
     // Reads first: a step that takes its size from a buffer that it writes has not waited for that write.
     let (writes, reads): (Vec<&Use>, Vec<&Use>) = step.uses.iter().partition(|u| u.write);
     for u in reads.into_iter().chain(writes) {
+        let anew = begins(u) && plan.transients.iter().any(|t| t.res == u.res);
         match u.res {
             // With history, odd frames write the second copy and read the first.
             Res::Buffer(b, history) => {
                 let copy = usize::from(plan.buffers[b].history && (history != odd));
+                if anew {
+                    buffers[b][copy] = shared.clone();
+                }
                 if let Some((src, _)) = advance(&mut buffers[b][copy], u) {
                     list.push(Barrier {
                         res: Res::Buffer(b, copy == 1),
@@ -303,6 +324,9 @@ fn before(
             Res::Texture(t, history) => {
                 let copy = usize::from(plan.textures[t].history && (history != odd));
                 for mip in u.mips.0..u.mips.0 + u.mips.1 {
+                    if anew {
+                        textures[t][copy][mip as usize] = shared.clone();
+                    }
                     let Some((src, old)) = advance(&mut textures[t][copy][mip as usize], u) else { continue };
                     let barrier = Barrier {
                         res: Res::Texture(t, copy == 1),

@@ -262,6 +262,12 @@ pub fn no_texture(graph: &Graph, name: &str) -> LabError {
     LabError::Request(format!("no texture '{name}'{}", hint.map_or(String::new(), |h| format!(" ({h})"))))
 }
 
+fn not_kept(name: &str) -> LabError {
+    LabError::Request(format!(
+        "'{name}' is transient and nothing is left in it after a frame: it must be among what is wanted"
+    ))
+}
+
 /// The scene with triangles no longer than `edge`, unless the device cannot hold their vertices: splitting takes long.
 fn split(scene: &Scene, edge: f32, limit: u32) -> Result<Scene, LabError> {
     let bytes = scene.least_split_bytes(edge);
@@ -505,6 +511,9 @@ impl Session {
                 "'{name}' is not made with these parameters: no pass that runs uses it"
             )));
         }
+        if plan.transient {
+            return Err(not_kept(name));
+        }
         if mip >= plan.mips || layer >= plan.layers {
             let message = format!(
                 "'{name}' has {} mips and {} layers; there is no mip {mip}, layer {layer}",
@@ -523,6 +532,7 @@ impl Session {
     /// No such buffer; the device was lost.
     pub fn buffer(&mut self, name: &str) -> Result<Vec<u8>, LabError> {
         match self.graph.buffers.iter().position(|b| b.0 == name) {
+            Some(index) if self.program.plan.buffers[index].transient => Err(not_kept(name)),
             Some(index) => Ok(self.program.read_buffer(index)?),
             None => Err(LabError::Request(format!("no buffer '{name}'"))),
         }

@@ -5,11 +5,33 @@ use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use std::sync::Arc;
 
+/// Where a resource lies.
+enum Memory {
+    /// Nowhere yet.
+    None,
+    /// In memory of its own.
+    Own(Allocation),
+    /// In memory that others lie in too.
+    Shared(#[expect(dead_code, reason = "kept as long as the resource is")] Arc<SharedMemory>),
+}
+
+/// Memory of several resources.
+struct SharedMemory {
+    gpu: Arc<Gpu>,
+    allocation: Option<Allocation>,
+}
+
+impl Drop for SharedMemory {
+    fn drop(&mut self) {
+        free(&self.gpu, self.allocation.take());
+    }
+}
+
 /// A buffer and its memory.
 pub struct Buffer {
     gpu: Arc<Gpu>,
     pub(super) handle: vk::Buffer,
-    allocation: Option<Allocation>,
+    memory: Memory,
     /// Bytes.
     pub size: u64,
 }
@@ -39,7 +61,7 @@ pub struct ImageDesc {
 pub struct Image {
     gpu: Arc<Gpu>,
     pub(super) handle: vk::Image,
-    allocation: Option<Allocation>,
+    memory: Memory,
     /// What it is.
     pub desc: ImageDesc,
     /// Bytes of its memory.
@@ -88,6 +110,84 @@ fn allocate(
     }
 }
 
+/// A buffer or an image without memory, to be given some together with others.
+pub enum Bare {
+    /// A buffer.
+    Buffer(Buffer),
+    /// An image.
+    Image(Image),
+}
+
+impl Bare {
+    fn requirements(&self) -> vk::MemoryRequirements {
+        match self {
+            // SAFETY: the handles are this device's.
+            Bare::Buffer(b) => unsafe { b.gpu.device.get_buffer_memory_requirements(b.handle) },
+            // SAFETY: as above.
+            Bare::Image(i) => unsafe { i.gpu.device.get_image_memory_requirements(i.handle) },
+        }
+    }
+
+    /// Bytes that it needs, and what its offset is a multiple of where buffers and images lie side by side.
+    pub fn needs(&self, gpu: &Gpu) -> (u64, u64) {
+        let needs = self.requirements();
+        (needs.size, needs.alignment.max(gpu.info.limits.buffer_image_granularity))
+    }
+}
+
+/// Lays resources into one piece of memory of so many bytes, each at its offset ([`Bare::needs`]); or each into its own, where no
+/// kind of memory is for all. What lies in the same place must not be needed at the same time, and whoever is needed next
+/// begins with undefined content (Vulkan 1.3, section 12.8, Memory Aliasing).
+///
+/// # Errors
+/// Out of memory.
+pub fn lay_together(gpu: &Arc<Gpu>, name: &str, resources: &mut [(Bare, u64)], size: u64) -> Result<()> {
+    let all: Vec<vk::MemoryRequirements> = resources.iter().map(|(bare, _)| bare.requirements()).collect();
+    let kinds = all.iter().fold(!0, |kinds, r| kinds & r.memory_type_bits);
+    if kinds == 0 {
+        return resources.iter_mut().try_for_each(|(bare, _)| match bare {
+            Bare::Buffer(b) => b.take_memory(MemoryLocation::GpuOnly, ""),
+            Bare::Image(i) => i.take_memory(),
+        });
+    }
+    let alignment = all.iter().map(|r| r.alignment).max().unwrap_or(1).max(gpu.info.limits.buffer_image_granularity);
+    let size = size.max(1).next_multiple_of(alignment);
+    let requirements = vk::MemoryRequirements { size, alignment, memory_type_bits: kinds };
+    let scheme = AllocationScheme::GpuAllocatorManaged;
+    let allocation = allocate(gpu, name, requirements, MemoryLocation::GpuOnly, scheme)?;
+    // SAFETY: the handle is used for binding alone, while the allocation lives.
+    let (memory, start) = (unsafe { allocation.memory() }, allocation.offset());
+    let shared = Arc::new(SharedMemory { gpu: gpu.clone(), allocation: Some(allocation) });
+    for (bare, offset) in resources {
+        let what = || format!("bind shared memory of '{name}'");
+        match bare {
+            Bare::Buffer(b) => {
+                // SAFETY: offsets are multiples of the alignment and the resource ends within the memory, as the caller
+                // laid it out by `needs`; its kind is one of all.
+                unsafe { gpu.device.bind_buffer_memory(b.handle, memory, start + *offset) }
+                    .map_err(VulkanError::at(what()))?;
+                b.memory = Memory::Shared(shared.clone());
+            }
+            Bare::Image(i) => {
+                // SAFETY: as above.
+                unsafe { gpu.device.bind_image_memory(i.handle, memory, start + *offset) }
+                    .map_err(VulkanError::at(what()))?;
+                i.memory = Memory::Shared(shared.clone());
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Memory {
+    fn own(&mut self) -> Option<Allocation> {
+        match std::mem::replace(self, Memory::None) {
+            Memory::Own(allocation) => Some(allocation),
+            Memory::None | Memory::Shared(_) => None,
+        }
+    }
+}
+
 fn free(gpu: &Gpu, allocation: Option<Allocation>) {
     if let (Some(allocation), Ok(mut guard)) = (allocation, gpu.allocator.lock())
         && let Some(allocator) = guard.as_mut()
@@ -108,36 +208,55 @@ impl Buffer {
         usage: vk::BufferUsageFlags,
         location: MemoryLocation,
     ) -> Result<Buffer> {
+        let mut buffer = Buffer::bare(gpu, name, size, usage)?;
+        buffer.take_memory(location, name)?;
+        Ok(buffer)
+    }
+
+    /// A buffer without memory, for [`lay_together`].
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn bare(gpu: &Arc<Gpu>, name: &str, size: u64, usage: vk::BufferUsageFlags) -> Result<Buffer> {
         let size = size.max(16).next_multiple_of(4);
         let info = vk::BufferCreateInfo::default().size(size).usage(usage);
         // SAFETY: a plain creation; the handle is destroyed in `drop`.
         let handle = unsafe { gpu.device.create_buffer(&info, None) }
             .map_err(|_| VulkanError::OutOfMemory { what: format!("'{name}'"), mib: size as f64 / 1048576.0 })?;
-        let mut buffer = Buffer { gpu: gpu.clone(), handle, allocation: None, size };
+        gpu.name(handle, name);
+        Ok(Buffer { gpu: gpu.clone(), handle, memory: Memory::None, size })
+    }
+
+    fn take_memory(&mut self, location: MemoryLocation, name: &str) -> Result<()> {
+        let (gpu, handle) = (&self.gpu, self.handle);
         // SAFETY: the handle is this device's.
         let requirements = unsafe { gpu.device.get_buffer_memory_requirements(handle) };
-        let scheme = if size > 16 << 20 {
+        let scheme = if self.size > 16 << 20 {
             AllocationScheme::DedicatedBuffer(handle)
         } else {
             AllocationScheme::GpuAllocatorManaged
         };
         let allocation = allocate(gpu, name, requirements, location, scheme)?;
         // SAFETY: the memory is new, large enough and of an allowed type (the allocator chose by `requirements`).
-        unsafe { gpu.device.bind_buffer_memory(handle, allocation.memory(), allocation.offset()) }
-            .map_err(VulkanError::at(format!("bind the memory of '{name}'")))?;
-        buffer.allocation = Some(allocation);
-        gpu.name(handle, name);
-        Ok(buffer)
+        let bound = unsafe { gpu.device.bind_buffer_memory(handle, allocation.memory(), allocation.offset()) };
+        self.memory = Memory::Own(allocation);
+        bound.map_err(VulkanError::at(format!("bind the memory of '{name}'")))
     }
 
     /// The mapped bytes of a host buffer; empty for others.
     pub fn bytes(&self) -> &[u8] {
-        self.allocation.as_ref().and_then(|a| a.mapped_slice()).unwrap_or(&[])
+        match &self.memory {
+            Memory::Own(allocation) => allocation.mapped_slice().unwrap_or(&[]),
+            Memory::None | Memory::Shared(_) => &[],
+        }
     }
 
     /// The mapped bytes of a host buffer, to write; empty for others.
     pub fn bytes_mut(&mut self) -> &mut [u8] {
-        self.allocation.as_mut().and_then(|a| a.mapped_slice_mut()).unwrap_or(&mut [])
+        match &mut self.memory {
+            Memory::Own(allocation) => allocation.mapped_slice_mut().unwrap_or(&mut []),
+            Memory::None | Memory::Shared(_) => &mut [],
+        }
     }
 }
 
@@ -145,7 +264,7 @@ impl Drop for Buffer {
     fn drop(&mut self) {
         // SAFETY: owners drop buffers only after the frames that use them have finished.
         unsafe { self.gpu.device.destroy_buffer(self.handle, None) };
-        free(&self.gpu, self.allocation.take());
+        free(&self.gpu, self.memory.own());
     }
 }
 
@@ -155,6 +274,16 @@ impl Image {
     /// # Errors
     /// Sizes the device cannot make, formats it does not support for this use, out of memory.
     pub fn new(gpu: &Arc<Gpu>, desc: ImageDesc) -> Result<Image> {
+        let mut image = Image::bare(gpu, desc)?;
+        image.take_memory()?;
+        Ok(image)
+    }
+
+    /// An image without memory, for [`lay_together`].
+    ///
+    /// # Errors
+    /// As [`Image::new`].
+    pub fn bare(gpu: &Arc<Gpu>, desc: ImageDesc) -> Result<Image> {
         let limits = &gpu.info.limits;
         let limit = if desc.volume { limits.max_image_dimension3_d } else { limits.max_image_dimension2_d };
         let refuse = |asked: String, limit: String| VulkanError::Limit {
@@ -189,24 +318,24 @@ impl Image {
         // SAFETY: a plain creation; the handle is destroyed in `drop`.
         let handle = unsafe { gpu.device.create_image(&info, None) }
             .map_err(VulkanError::at(format!("create the image '{}' ({x}x{y}x{z})", desc.name)))?;
-        let mut image = Image { gpu: gpu.clone(), handle, allocation: None, bytes: 0, desc };
+        gpu.name(handle, &desc.name);
+        // SAFETY: the handle is this device's.
+        let bytes = unsafe { gpu.device.get_image_memory_requirements(handle) }.size;
+        Ok(Image { gpu: gpu.clone(), handle, memory: Memory::None, bytes, desc })
+    }
+
+    fn take_memory(&mut self) -> Result<()> {
+        let (gpu, handle, name) = (&self.gpu, self.handle, &self.desc.name);
         // SAFETY: the handle is this device's.
         let requirements = unsafe { gpu.device.get_image_memory_requirements(handle) };
-        // Each image has its own memory: they are few and large, and it keeps buffers and images apart.
-        let allocation = allocate(
-            gpu,
-            &image.desc.name,
-            requirements,
-            MemoryLocation::GpuOnly,
-            AllocationScheme::DedicatedImage(handle),
-        )?;
+        // Memory of its own: images are few and large, and it keeps buffers and images apart.
+        let scheme = AllocationScheme::DedicatedImage(handle);
+        let allocation = allocate(gpu, name, requirements, MemoryLocation::GpuOnly, scheme)?;
         // SAFETY: as for buffers.
-        unsafe { gpu.device.bind_image_memory(handle, allocation.memory(), allocation.offset()) }
-            .map_err(VulkanError::at(format!("bind the memory of '{}'", image.desc.name)))?;
-        image.bytes = requirements.size;
-        image.allocation = Some(allocation);
-        gpu.name(handle, &image.desc.name);
-        Ok(image)
+        let bound = unsafe { gpu.device.bind_image_memory(handle, allocation.memory(), allocation.offset()) };
+        let bound = bound.map_err(VulkanError::at(format!("bind the memory of '{name}'")));
+        self.memory = Memory::Own(allocation);
+        bound
     }
 
     /// The part of it that holds texels.
@@ -227,7 +356,7 @@ impl Drop for Image {
     fn drop(&mut self) {
         // SAFETY: as for buffers.
         unsafe { self.gpu.device.destroy_image(self.handle, None) };
-        free(&self.gpu, self.allocation.take());
+        free(&self.gpu, self.memory.own());
     }
 }
 

@@ -17,7 +17,7 @@ pub use ash::vk;
 pub use command::{Commands, FrameSlot};
 pub use format::Format;
 pub use gpu::{DeviceInfo, Features, Gpu, GpuOptions, list_devices};
-pub use memory::{Buffer, Image, ImageDesc, Upload, View, ViewDesc};
+pub use memory::{Bare, Buffer, Image, ImageDesc, Upload, View, ViewDesc, lay_together};
 pub use painter::{Painter, Pixels};
 pub use pipeline::{
     Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState, Pipeline, PipelineDesc,
