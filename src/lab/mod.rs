@@ -398,8 +398,11 @@ impl Session {
         updates.push((self.scene_gpu.camera.clone(), camera));
         if !self.sent_params {
             updates.push((self.program.params_buffer(), self.params.uniform_bytes(&self.values)));
-            // So that it is known which part of it lights change.
-            updates.extend(self.scene_gpu.info());
+            // So that it is known which part of it lights change; they may have sent it already.
+            if let Some(info) = self.scene_gpu.info() {
+                updates.retain(|(buffer, _)| !Arc::ptr_eq(buffer, &info.0));
+                updates.push(info);
+            }
             self.sent_params = true;
         }
         self.frame += 1;
