@@ -10,7 +10,7 @@
 layout(std430) readonly buffer LastPlanes { uvec4 quads[]; } lastPlanes;
 layout(std430) readonly buffer LastRadiance { uvec2 list[]; } lastRadiance;
 layout(std430) readonly buffer LastBricks { uvec4 words[]; } lastBricks;
-layout(std430) readonly buffer LastBlocks { uint masks[]; } lastBlocks;
+layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
 
 #define MET_PLANES lastPlanes
 #define MET_RADIANCE lastRadiance

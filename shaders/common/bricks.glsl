@@ -1,48 +1,63 @@
-// Where surfaces are: cells in bricks of 4x4x4, bricks in blocks of 4x4x4. A word stands for half a brick, 32 cells: a bit each for
-// facing along x, y and z, and the first of their slots. A block has a bit for each brick that holds any, so that rays pass empty
-// space in a cache: eight bytes for 16^3 cells.
+// Where surfaces are: cells in bricks of 4x4x4, bricks in blocks of 4x4x4. Only bricks with a surface are stored, in the order of their
+// blocks. A block says which of its bricks those are and the number of the first: rays pass empty space in a cache, 16 bytes for 16^3
+// cells. A brick has two words, 32 cells each: a bit each for facing along x, y and z, and the first of their slots.
 #ifndef BRICKS_GLSL
 #define BRICKS_GLSL
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
 
+layout(std430) buffer VoxelBlocks { uvec4 list[]; } voxelBlocks; // bits of 64 bricks; the first's number
 layout(std430) buffer VoxelBricks { uvec4 words[]; } voxelBricks;
-layout(std430) buffer VoxelBlocks { uint masks[]; } voxelBlocks;
-layout(std430) buffer VoxelWords { uint list[]; } voxelWords; // words that are set
+layout(std430) buffer VoxelPlaces { uint bricks[]; } voxelPlaces; // by a brick's number: 64 * its block + its place there
 
-// Bricks or blocks along an edge of a cascade, of so many cells; the last ones may reach beyond them.
-uint gridEdge(uint cells) {
-    return (uint(params.voxel_dim) + cells - 1u) / cells;
+// Blocks along an edge of a cascade; the last ones may reach beyond it.
+uint blocksAlong() {
+    return (uint(params.voxel_dim) + 15u) / 16u;
 }
 
-// The first of a brick's two words or of a block's two masks.
-uint gridNumber(uvec3 at, uint edge, int cascade) {
-    return 2 * (at.x + edge * (at.y + edge * (at.z + edge * uint(cascade))));
-}
-
-// A cell's word in its brick, 0 or 1, and its bit there; a brick's in its block likewise.
-uint wordOfCell(ivec3 cell) {
-    return uint(cell.z) >> 1 & 1u;
-}
-
-uint bitOfCell(ivec3 cell) {
-    return 1u << (uint(cell.x) & 3u | (uint(cell.y) & 3u) << 2 | (uint(cell.z) & 1u) << 4);
-}
-
-uint wordNumber(ivec3 cell, int cascade) {
-    return gridNumber(uvec3(cell) >> 2, gridEdge(4), cascade) + wordOfCell(cell);
-}
-
-// The first mask of a cell's block.
 uint blockNumber(ivec3 cell, int cascade) {
-    return gridNumber(uvec3(cell) >> 4, gridEdge(16), cascade);
+    uvec3 at = uvec3(cell) >> 4;
+    uint edge = blocksAlong();
+    return at.x + edge * (at.y + edge * (at.z + edge * uint(cascade)));
 }
 
-// The cell, as textures hold it, of a bit of a word.
-ivec3 cellOfBit(uint word, uint bit) {
-    uint edge = gridEdge(4), brick = word / 2, z = brick / (edge * edge);
-    ivec3 cell = 4 * ivec3(brick % edge, brick / edge % edge, z % edge) + ivec3(bit & 3u, bit >> 2 & 3u, (word & 1u) << 1 | bit >> 4);
-    return storedCell(cell, int(z / edge));
+// The place of a cell in its brick, 0 to 63; a brick's in its block likewise, by its number of bricks from the corner.
+uint placeOf(ivec3 cell) {
+    return uint(cell.x) & 3u | (uint(cell.y) & 3u) << 2 | (uint(cell.z) & 3u) << 4;
+}
+
+// A place's word, 0 or 1, and its bit there.
+uint wordOf(uint place) {
+    return place >> 5;
+}
+
+uint bitOf(uint place) {
+    return 1u << (place & 31u);
+}
+
+bool isStored(uvec4 block, uint brick) {
+    return (block[wordOf(brick)] & bitOf(brick)) != 0;
+}
+
+// The number of a block's brick.
+uint brickNumber(uvec4 block, uint brick) {
+    uint before = bitCount(block[wordOf(brick)] & (bitOf(brick) - 1u));
+    return block.z + before + (wordOf(brick) == 0 ? 0 : bitCount(block.x));
+}
+
+// The cell at a place of a brick, and its cascade.
+ivec3 cellAt(uint brick, uint place, out int cascade) {
+    uint edge = blocksAlong(), block = brick >> 6, z = block / (edge * edge);
+    cascade = int(z / edge);
+    uvec3 corner = uvec3(block % edge, block / edge % edge, z % edge) * 16u + 4u * uvec3(brick & 3u, brick >> 2 & 3u, brick >> 4 & 3u);
+    return ivec3(corner + uvec3(place & 3u, place >> 2 & 3u, place >> 4));
+}
+
+// As textures hold it.
+ivec3 storedCellAt(uint brick, uint place) {
+    int cascade;
+    ivec3 cell = cellAt(brick, place, cascade);
+    return storedCell(cell, cascade);
 }
 
 uint occupiedCells(uvec4 word) {
@@ -58,7 +73,9 @@ uint foundIn(uvec4 word, uint bit) {
 }
 
 uint foundAt(ivec3 cell, int cascade) {
-    return foundIn(voxelBricks.words[wordNumber(cell, cascade)], bitOfCell(cell));
+    uvec4 block = voxelBlocks.list[blockNumber(cell, cascade)];
+    uint brick = placeOf(cell >> 2), place = placeOf(cell);
+    return isStored(block, brick) ? foundIn(voxelBricks.words[2 * brickNumber(block, brick) + wordOf(place)], bitOf(place)) : 0;
 }
 
 // Of a cell as textures hold it.

@@ -1,5 +1,6 @@
-// What rays need of a slot: the surfaces of each side as a plane, in cells. A few words, because rays read many. And by side, apart
-// from that because it changes with the light: the radiance that leaves it, and what its cones have gathered.
+// What rays need of a slot: the surfaces of each side as a plane, in cells, and which parts of the cell they cover. A few words, because
+// rays read many. And by side, apart from that because it changes with the light: the radiance that leaves it, and what its cones have
+// gathered.
 #ifndef PLANES_GLSL
 #define PLANES_GLSL
 #include "common/voxels.glsl"
@@ -9,8 +10,10 @@ layout(std430) buffer VoxelPlanes { uvec4 quads[]; } voxelPlanes;
 layout(std430) buffer SideRadiance { uvec2 list[]; } sideRadiance;
 layout(std430) buffer SideGathered { uvec2 list[]; } sideGathered;
 
-// By side: a plane; then by side which parts are covered, two words. In fours, because rays wait for every load.
+// By side: a plane; then by side which parts are covered, two words; then by side what is outermost in each quarter. In fours, because
+// rays wait for every load.
 const uint PLANE_WORDS = 4 * SIDES;
+const uint PLANE_PARTS = SIDES; // the first word of what is merged and not made of sums
 
 struct Plane {
     vec3 normal; // of side 0; not unit length: 1 along its axis
@@ -64,7 +67,11 @@ Plane planeOf(uint base, uint side, uint axis) {
 }
 
 uint partsWord(uint base, uint side) {
-    return base + SIDES + 2 * side;
+    return base + PLANE_PARTS + 2 * side;
+}
+
+uint outermostWord(uint base, uint side) {
+    return base + 3 * SIDES + side;
 }
 
 uvec2 partsOf(uint base, uint side) {

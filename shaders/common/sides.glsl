@@ -2,7 +2,7 @@
 #ifndef SIDES_GLSL
 #define SIDES_GLSL
 #include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "common/planes.glsl"
 #include "modules/merge.glsl"
 
 struct Side {
@@ -15,24 +15,24 @@ struct Side {
 
 // Area of a side's surfaces for each area that rays meet of it, where the voxelizer measures both. More than one: a lamp before a
 // ceiling, in one cell, hides it, and must not be dimmed by the mean of both. Less: the parts of a small lamp are larger than it.
-float areaRatio(uint base) {
+float areaRatio(uint slot, uint side) {
     bool measured = !WARPED && params.areas_measured != 0;
-    uint parts = base + SIDE_PARTS;
-    float covered = 16.0 * float(bitCount(voxelSlots.words[parts]) + bitCount(voxelSlots.words[parts + 1]));
-    return measured && covered > 0.0 ? float(voxelSlots.words[base + 3]) / covered : 1.0;
+    uvec2 parts = partsOf(planeBase(slot), side);
+    float covered = 16.0 * float(bitCount(parts.x) + bitCount(parts.y));
+    return measured && covered > 0.0 ? float(voxelSlots.words[sideBase(slot, side) + 3]) / covered : 1.0;
 }
 
 // A side without surfaces of its own is the back of the other: a sheet reflects on both sides.
 Side sideOfSlot(uint slot, uint side) {
+    bool mirrored = SIDES > 1 && voxelSlots.words[sideBase(slot, side) + 3] == 0;
+    if (mirrored) side = 1 - side;
     uint base = sideBase(slot, side);
-    bool mirrored = SIDES > 1 && voxelSlots.words[base + 3] == 0;
-    if (mirrored) base = sideBase(slot, 1 - side);
     Side s;
     vec3 mean;
     mergedMean(base, s.color, mean);
     s.agreement = min(length(mean), 1.0);
     s.normal = s.agreement > 1e-3 ? mean / s.agreement * (mirrored ? -1.0 : 1.0) : vec3(0.0);
-    s.emission = meanEmission(base) * areaRatio(base);
+    s.emission = meanEmission(base) * areaRatio(slot, side);
     s.count = float(voxelSlots.words[base + 3]);
     return s;
 }

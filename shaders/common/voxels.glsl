@@ -6,12 +6,9 @@
 
 #include "modules/sides.glsl"
 
-// Sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10; what is outermost in each quarter 11;
-// which parts of the cell are covered 12-13.
-const uint SIDE_WORDS = 14;
+// Sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10.
+const uint SIDE_WORDS = 11;
 const uint SIDE_OFFSET = 10;
-const uint SIDE_OUTERMOST = 11;
-const uint SIDE_PARTS = 12;
 const uint SLOT_CELL = SIDES * SIDE_WORDS; // cell, and above it the axis + 1; 0: no slot
 const uint SLOT_WORDS = SLOT_CELL + 1;
 
@@ -24,14 +21,15 @@ const float EMISSION_MAX = 1024.0;
 
 layout(std430) buffer VoxelSlots { uint words[]; } voxelSlots;
 layout(std430) buffer VoxelCounter {
-    uint overflow; // fragments that were lost: the list of voxels or of fragments was full
+    uint overflow; // fragments that were lost: a list of voxels, bricks or fragments was full
     uint count; // slots in the list
-    uint fragments; // stored
-    uint words; // of bricks that are set
-    uvec3 word_groups; // indirect dispatch over the words of bricks that are set, 4 a group
+    uint fragments; // asked for
+    uint bricks; // with a surface
+    uvec3 fragment_groups; // indirect dispatch over the fragments
+    uvec3 chunk_groups; // over the words of bricks, a chunk a group (voxelize/chunks.glsl)
+    uvec3 word_groups; // over the words of bricks, 4 a group
     uvec3 list_groups; // over the slots
     uvec3 side_groups; // over their sides
-    uvec3 merge_groups; // over the fragments
 } voxelCounter;
 
 // What fell into cells, in no order: cell, colour, normal and offset, emission; and beside it the triangle that it is of: its

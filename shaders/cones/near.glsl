@@ -76,24 +76,22 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
     vec3 inverse = 1.0 / dir, ahead = vec3(greaterThan(dir, vec3(0.0)));
     float enter = from / voxel, end = range / voxel;
     ivec3 cell = ivec3(floor(at + enter * dir)), block = ivec3(-1);
-    uvec2 bricks = uvec2(0);
-    uvec4 cells = uvec4(0);
+    uvec4 bricks = uvec4(0), cells = uvec4(0);
     uint last = ~0u;
     for (int i = 0; i < 3 * params.voxel_dim && enter < end && inGrid(cell); i++) {
         if (cell >> 4 != block) {
             block = cell >> 4;
-            uint number = blockNumber(cell, cascade);
-            bricks = uvec2(MET_BLOCKS.masks[number], MET_BLOCKS.masks[number + 1]);
+            bricks = MET_BLOCKS.list[blockNumber(cell, cascade)];
         }
-        ivec3 brick = cell >> 2;
-        bool empty = (bricks[wordOfCell(brick)] & bitOfCell(brick)) == 0;
+        uint brick = placeOf(cell >> 2);
+        bool empty = !isStored(bricks, brick);
         // The edge of what is crossed at once, and where it begins; its borders that are crossed next.
-        int edge = bricks == uvec2(0) ? 16 : empty ? 4 : 1;
+        int edge = bricks.xy == uvec2(0) ? 16 : empty ? 4 : 1;
         ivec3 first = cell & -edge;
         vec3 borders = (vec3(first) + float(edge) * ahead - at) * inverse;
         float leave = min(borders.x, min(borders.y, borders.z));
         if (!empty) {
-            uint number = wordNumber(cell, cascade), bit = bitOfCell(cell);
+            uint place = placeOf(cell), number = 2 * brickNumber(bricks, brick) + wordOf(place), bit = bitOf(place);
             if (number != last) cells = MET_BRICKS.words[number];
             last = number;
             if ((occupiedCells(cells) & bit) != 0) {

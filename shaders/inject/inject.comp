@@ -29,7 +29,7 @@ struct Taps {
 
 Taps tapsOf(uint slot, uint side, uint base, uint axis) {
     uvec2 parts = partsOf(base, side);
-    uint outermost = voxelSlots.words[sideBase(slot, side) + SIDE_OUTERMOST];
+    uint outermost = planeData(outermostWord(base, side));
     float mean = planeOf(base, side, axis).offset;
     Taps taps;
     taps.count = 0;

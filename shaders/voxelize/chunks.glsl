@@ -1,4 +1,7 @@
 // Sums over the words of bricks, in the order of the words: slots lie where they lie in every frame, whoever was first.
+#ifndef VOXELIZE_CHUNKS_GLSL
+#define VOXELIZE_CHUNKS_GLSL
+
 layout(std430) buffer VoxelChunks { uint slots[]; } voxelChunks; // of each chunk
 layout(std430) buffer VoxelStarts { uint slots[]; } voxelStarts; // of all before it
 
@@ -21,4 +24,16 @@ uint sumUpTo(uint thread, uint sum) {
     }
     return sum;
 }
+
+// The sum over all threads of a group.
+uint sumOfAll(uint thread, uint sum) {
+    sum = sumUpTo(thread, sum);
+    if (thread == CHUNK_THREADS - 1) sums[0] = sum;
+    barrier();
+    sum = sums[0];
+    barrier();
+    return sum;
+}
+#endif
+
 #endif

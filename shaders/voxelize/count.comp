@@ -8,16 +8,15 @@
 
 void main() {
     uint thread = gl_LocalInvocationIndex, first = gl_WorkGroupID.x * CHUNK_WORDS + thread * THREAD_WORDS;
-    uint before[THREAD_WORDS], sum = 0;
+    uint words = 2 * voxelCounter.bricks, before[THREAD_WORDS], sum = 0;
     for (uint i = 0; i < THREAD_WORDS; i++) {
-        uvec4 word = first + i < voxelBricks.words.length() ? voxelBricks.words[first + i] : uvec4(0);
+        uvec4 word = first + i < words ? voxelBricks.words[first + i] : uvec4(0);
         before[i] = sum;
         sum += bitCount(word.x) + bitCount(word.y) + bitCount(word.z);
     }
     uint own = sum;
     sum = sumUpTo(thread, own);
-    if (own > 0)
-        for (uint i = 0; i < THREAD_WORDS; i++)
-            if (first + i < voxelBricks.words.length()) voxelBricks.words[first + i].w = sum - own + before[i];
+    for (uint i = 0; i < THREAD_WORDS; i++)
+        if (first + i < words) voxelBricks.words[first + i].w = sum - own + before[i];
     if (thread == CHUNK_THREADS - 1) voxelChunks.slots[gl_WorkGroupID.x] = sum;
 }

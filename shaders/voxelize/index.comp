@@ -10,11 +10,11 @@ layout(r32ui) uniform writeonly uimage3D voxelIndex;
 
 void main() {
     uint lane = gl_LocalInvocationIndex & 31u;
-    for (uint i = gl_GlobalInvocationID.x >> 5; i < voxelCounter.words; i += gl_NumWorkGroups.x * 4) {
-        uint number = voxelWords.list[i], bit = 1u << lane;
+    for (uint number = gl_GlobalInvocationID.x >> 5; number < 2 * voxelCounter.bricks; number += gl_NumWorkGroups.x * 4) {
+        uint bit = 1u << lane;
         uvec4 word = voxelBricks.words[number];
         if ((occupiedCells(word) & bit) == 0) continue;
         uint found = foundIn(word, bit);
-        imageStore(voxelIndex, cellOfBit(number, lane), uvec4(found == 0 ? ~0u : found));
+        imageStore(voxelIndex, storedCellAt(voxelPlaces.bricks[number / 2], 32 * (number & 1u) + lane), uvec4(found == 0 ? ~0u : found));
     }
 }

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Sets aside the slots that this frame's volume takes over from last frame's, before they are cleared.
+// Sets aside the slots that this frame's volume takes over from last frame's, before they are cleared. Planes are last frame's.
 #include "params.glsl"
 #include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "common/planes.glsl"
 #include "voxelize/kept.glsl"
 
 layout(local_size_x = 128) in;
@@ -18,7 +18,13 @@ void main() {
         ivec3 cell = ivec3(stored.xy, stored.z - cascade * params.voxel_dim) - map.shift;
         if (axis < 0 || !isKept(map, vec3(cell) + 0.5)) continue;
         uint to = atomicAdd(keptCounter.count, 1);
-        for (uint word = 0; word < SLOT_CELL; word++) voxelKept.words[to * SLOT_WORDS + word] = voxelSlots.words[i * SLOT_WORDS + word];
-        voxelKept.words[to * SLOT_WORDS + SLOT_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
+        uint first = to * KEPT_WORDS, base = planeBase(i);
+        for (uint word = 0; word < SLOT_CELL; word++) voxelKept.words[first + word] = voxelSlots.words[i * SLOT_WORDS + word];
+        voxelKept.words[first + SLOT_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
+        for (uint side = 0; side < SIDES; side++) {
+            bool own = (ownSides(base) >> side & 1u) != 0; // else its parts are those of the other
+            for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_PARTS + 2 * side + k] = own ? planeData(partsWord(base, side) + k) : 0;
+            voxelKept.words[first + KEPT_PARTS + 2 * SIDES + side] = planeData(outermostWord(base, side));
+        }
     }
 }

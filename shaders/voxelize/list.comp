@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// How many slots there are, before each chunk and in all, and the arguments of the passes that run over slots and fragments.
+// How many slots there are, before each chunk and in all, and the arguments of the passes that run over slots.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
@@ -8,7 +8,7 @@
 #include "voxelize/chunks.glsl"
 
 void main() {
-    uint chunks = voxelChunks.slots.length(), thread = gl_LocalInvocationIndex, share = (chunks + CHUNK_THREADS - 1) / CHUNK_THREADS;
+    uint chunks = voxelCounter.chunk_groups.x, thread = gl_LocalInvocationIndex, share = (chunks + CHUNK_THREADS - 1) / CHUNK_THREADS;
     uint first = min(thread * share, chunks), end = min(first + share, chunks), own = 0;
     for (uint i = first; i < end; i++) own += voxelChunks.slots[i];
     uint sum = sumUpTo(thread, own), before = sum - own;
@@ -20,8 +20,6 @@ void main() {
     uint count = min(sum, uint(params.voxel_capacity)), fragments = min(voxelCounter.fragments, voxelFragments.list.length());
     voxelCounter.count = count;
     voxelCounter.overflow = voxelCounter.fragments - fragments;
-    voxelCounter.word_groups = uvec3(min((voxelCounter.words + 3) / 4, 65535u), 1, 1);
     voxelCounter.list_groups = uvec3((count + 127) / 128, 1, 1);
     voxelCounter.side_groups = uvec3(min((count * SIDES + 127) / 128, 65535u), 1, 1);
-    voxelCounter.merge_groups = uvec3(min((fragments + 127) / 128 + 1, 32768u), 1, 1);
 }

@@ -4,6 +4,7 @@
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/bricks.glsl"
+#include "common/planes.glsl"
 #include "common/scene.glsl"
 #include "voxelize/parts.glsl"
 
@@ -18,16 +19,16 @@ const uint SHARES = 1u << 16;
 #include "modules/merge.glsl"
 
 // Notes what lies outermost in each quarter. Mostly one surface is first and last, and the loop runs once.
-void noteOutermost(uint at, uint side, Covered covered) {
+void noteOutermost(uint word, uint side, Covered covered) {
     uint mine = 0;
     for (uint i = 0; i < 4; i++) {
         uvec2 quarter = quarterOf(covered.parts, i);
         int count = bitCount(quarter.x) + bitCount(quarter.y);
         if (count > 0) mine |= packOutermost(covered.offset, side, count) << 8 * i;
     }
-    uint found = voxelSlots.words[at];
+    uint found = planeData(word);
     for (;;) {
-        uint seen = atomicCompSwap(voxelSlots.words[at], found, outerOf(found, mine));
+        uint seen = atomicCompSwap(voxelPlanes.quads[word >> 2][word & 3u], found, outerOf(found, mine));
         if (seen == found) return;
         found = seen;
     }
@@ -76,12 +77,13 @@ void main() {
         }
         uvec2 triangle = voxelTriangles.list[i];
         Covered covered = coveredBy(triangle, stored, axis, unpackOffset(fragment.z));
-        uint side = sideOf(normal, axis), base = sideBase(slotOf(found, axis), side);
-        merge(base, unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
+        uint side = sideOf(normal, axis), slot = slotOf(found, axis), plane = planeBase(slot);
+        merge(sideBase(slot, side), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
         // Of points and samples nobody knows where their plane passes the cell's middle.
-        if (triangle != NO_TRIANGLE) noteOutermost(base + SIDE_OUTERMOST, side, covered);
-        for (uint k = 0; k < 2; k++)
-            if ((voxelSlots.words[base + SIDE_PARTS + k] & covered.parts[k]) != covered.parts[k])
-                atomicOr(voxelSlots.words[base + SIDE_PARTS + k], covered.parts[k]);
+        if (triangle != NO_TRIANGLE) noteOutermost(outermostWord(plane, side), side, covered);
+        for (uint k = 0; k < 2; k++) {
+            uint word = partsWord(plane, side) + k;
+            if ((planeData(word) & covered.parts[k]) != covered.parts[k]) atomicOr(voxelPlanes.quads[word >> 2][word & 3u], covered.parts[k]);
+        }
     }
 }

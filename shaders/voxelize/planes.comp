@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The planes of each slot: the mean of all that the surfaces of a side say.
+// The planes of each slot: the mean of all that the surfaces of a side say. Which parts they cover is merged already.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
@@ -24,6 +24,6 @@ void main() {
         mergedMean(sums, color, normal);
         float offset = offsetOfSum(float(voxelSlots.words[sums + SIDE_OFFSET]), float(voxelSlots.words[sums + 3]));
         keepPlane(planeWord(base, side), (seen == 0 ? normal : -normal) * axes, axis, offset, own);
-        for (uint k = 0; k < 2; k++) keepData(partsWord(base, side) + k, voxelSlots.words[sums + SIDE_PARTS + k]);
+        for (uint k = 0; seen != side && k < 2; k++) keepData(partsWord(base, side) + k, planeData(partsWord(base, seen) + k));
     }
 }

@@ -11,8 +11,9 @@ layout(local_size_x = 128) in;
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= keptCounter.count) return;
-    uint packed = voxelKept.words[i * SLOT_WORDS + SLOT_CELL], found = foundAtStored(unpackCell(packed));
+    uint first = i * KEPT_WORDS, packed = voxelKept.words[first + SLOT_CELL], found = foundAtStored(unpackCell(packed));
     if (found == 0) return;
     uint slot = slotOf(found, (packed >> 30) - 1);
-    for (uint word = 0; word < SLOT_CELL; word++) voxelSlots.words[slot * SLOT_WORDS + word] = voxelKept.words[i * SLOT_WORDS + word];
+    for (uint word = 0; word < SLOT_CELL; word++) voxelSlots.words[slot * SLOT_WORDS + word] = voxelKept.words[first + word];
+    for (uint word = PLANE_PARTS; word < PLANE_WORDS; word++) keepData(planeBase(slot) + word, voxelKept.words[first + KEPT_PARTS + word - PLANE_PARTS]);
 }

@@ -9,16 +9,16 @@ layout(local_size_x = 128) in;
 
 // The slots of a cell say whose they are.
 void nameSlots(uint number, uvec4 word, uint bit) {
-    uint packed = packCell(cellOfBit(number, bit)), found = foundIn(word, 1u << bit);
+    uint packed = packCell(storedCellAt(voxelPlaces.bricks[number / 2], 32 * (number & 1u) + bit)), found = foundIn(word, 1u << bit);
     for (uint axis = 0; axis < 3; axis++)
         if ((found >> axis & 1u) != 0) voxelSlots.words[slotOf(found, axis) * SLOT_WORDS + SLOT_CELL] = packed | (axis + 1) << 30;
 }
 
 void main() {
     uint lane = gl_LocalInvocationIndex & 31u, part = gl_LocalInvocationIndex >> 5;
-    for (uint start = gl_WorkGroupID.x * 4; start < voxelCounter.words; start += gl_NumWorkGroups.x * 4) {
-        bool listed = start + part < voxelCounter.words;
-        uint number = listed ? voxelWords.list[start + part] : 0;
+    for (uint start = gl_WorkGroupID.x * 4; start < 2 * voxelCounter.bricks; start += gl_NumWorkGroups.x * 4) {
+        uint number = start + part;
+        bool listed = number < 2 * voxelCounter.bricks;
         uvec4 word = listed ? voxelBricks.words[number] : uvec4(0);
         barrier();
         word.w += voxelStarts.slots[number / CHUNK_WORDS];

@@ -148,7 +148,10 @@ impl Contents {
             flows.iter().flat_map(|flow| -> Vec<usize> { written(flow) }).for_each(|part| own[part] = true);
             Still { own, inputs: Vec::new(), frames: 0 }
         });
-        let unknown = |i| Content { id: hashed(("unknown", i)), base: hashed(("unknown", i)), stores: Vec::new() };
+        let unknown = |i| {
+            let id = hashed(("unknown", i));
+            Content { id, base: id, stores: Vec::new() }
+        };
         Contents {
             held: (0..parts.count).map(unknown).collect(),
             inputs: vec![[0; 2]; reads.len()],
@@ -166,12 +169,15 @@ impl Contents {
             ExternalKind::Uniform => bytes.to_vec(),
             _ => hashed(bytes).to_ne_bytes().to_vec(),
         };
-        let mut uncounted = self.externals[external].clone();
-        if name == "camera" {
-            uncounted.get_mut(CAMERA_FRAME).into_iter().for_each(|frame| frame.fill(0));
-        }
+        let known = &self.externals[external];
+        let uncounted = (name == "camera").then(|| {
+            let mut bytes = known.clone();
+            bytes.get_mut(CAMERA_FRAME).into_iter().for_each(|frame| frame.fill(0));
+            bytes
+        });
         for (reads, ids) in self.reads.iter().zip(&mut self.inputs).filter(|(reads, _)| reads.external == external) {
-            *ids = [&self.externals[external], &uncounted].map(|bytes| reads.id(bytes));
+            let id = reads.id(known);
+            *ids = [id, uncounted.as_ref().map_or(id, |bytes| reads.id(bytes))];
         }
     }
 

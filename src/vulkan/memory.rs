@@ -146,7 +146,7 @@ pub fn lay_together(gpu: &Arc<Gpu>, name: &str, resources: &mut [(Bare, u64)], s
     let kinds = all.iter().fold(!0, |kinds, r| kinds & r.memory_type_bits);
     if kinds == 0 {
         return resources.iter_mut().try_for_each(|(bare, _)| match bare {
-            Bare::Buffer(b) => b.take_memory(MemoryLocation::GpuOnly, ""),
+            Bare::Buffer(b) => b.take_memory(MemoryLocation::GpuOnly, name),
             Bare::Image(i) => i.take_memory(),
         });
     }
