@@ -240,15 +240,19 @@ fn small_lamps_shine_as_bright_as_they_are() {
     for (name, mesh, across) in [("balls", &ball, 1.4), ("leaves", &leaf, 1.0)] {
         for cells in [0.7, 1.5, 3.0] {
             let scene = lamps(mesh, cells * CELL / across);
-            let settings = [("voxel_dim", "64"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_cones", "32")];
-            let experiment = experiment("emitters", (64, 36), &settings);
+            let experiment = |voxelizer| {
+                let settings = [("voxel_dim", "64"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_cones", "32")];
+                experiment("emitters", (64, 36), &[&settings[..], &[("voxelizer", voxelizer)]].concat())
+            };
             let keep_on = &mut |_| ControlFlow::Continue(());
-            let truth = gather(&lab, &experiment, &scene, 1, Goal::Samples(256), keep_on).unwrap();
+            let truth = gather(&lab, &experiment("compute"), &scene, 1, Goal::Samples(256), keep_on).unwrap();
             let truth = truth.parts["diffuse"].mean.mean();
-            let found =
-                mean(&floats(&mut frame(&lab, &experiment, &scene, &["diffuseIndirect"]), "diffuseIndirect", 0));
-            println!("{name} of {cells} cells: {:.3} of the light", found / truth);
-            assert!((0.8..1.25).contains(&(found / truth)), "{name} of {cells} cells: {found}, not {truth}");
+            for voxelizer in ["compute", "raster"] {
+                let mut frame = frame(&lab, &experiment(voxelizer), &scene, &["diffuseIndirect"]);
+                let found = mean(&floats(&mut frame, "diffuseIndirect", 0));
+                println!("{name} of {cells} cells, {voxelizer}: {:.3} of the light", found / truth);
+                assert!((0.8..1.25).contains(&(found / truth)), "{name} of {cells} cells: {found}, not {truth}");
+            }
         }
     }
     assert_clean(&lab);

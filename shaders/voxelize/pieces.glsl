@@ -90,6 +90,8 @@ void storeCell(VolumeMap map, VoxelPiece p, ivec3 cell) {
     vec4 base = baseColor(m, uv, g);
     if (base.a < m.alpha_cutoff) return;
     vec3 n = mat3(normalize(normalToWorld(d.instance, v[0].normal)), normalize(normalToWorld(d.instance, v[1].normal)), normalize(normalToWorld(d.instance, v[2].normal))) * b;
+    // The triangle's own, on the side of its vertices': their means fit no plane, and a small ball would shine a quarter too bright.
+    if (area > 0.0) n = face * (dot(face, n) < 0.0 ? -1.0 : 1.0);
     n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0);
     // Where the plane passes the cell's middle, along the axis that the surface faces.
     uint axis = axisOf(n);
