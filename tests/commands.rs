@@ -301,6 +301,23 @@ fn a_failure_keeps_the_old_picture() {
     assert_eq!(out.names(), ["x.png"]);
 }
 
+/// With room for what Sponza has there, all on threads. All cells' words alone would take 128 MiB more.
+#[test]
+fn voxels_of_512_across_fit_into_700_mib() {
+    let set = |name: &str, value: &str| ["--set".to_owned(), format!("{name}={value}")];
+    let threads = ["voxelizer", "shadow_map", "gbuffer"].map(|name| set(name, "compute"));
+    let sizes = [("voxel_dim", "512"), ("voxel_capacity", "1700000"), ("fragment_capacity", "3000000")];
+    let sizes = sizes.map(|(name, value)| set(name, value));
+    let args = ["graph", "configs/default.ron", "--size", "1920x1080", "--barriers"];
+    let text = succeeds(conelab(root()).args(args).args([threads, sizes].as_flattened().as_flattened()));
+    let mib = |what: &str| -> f64 {
+        let line = text.lines().find(|l| l.starts_with(what)).unwrap_or_else(|| panic!("no '{what}' in\n{text}"));
+        line.split_whitespace().last().unwrap().parse().unwrap()
+    };
+    assert!((500.0..700.0).contains(&mib("total ")), "{text}");
+    assert!(mib("saved by memory") > 100.0, "{text}");
+}
+
 #[test]
 fn graph_explains_itself() {
     let graph = |args: &[&str]| succeeds(conelab(root()).arg("graph").args(args));

@@ -25,6 +25,8 @@ layout(std430) buffer VoxelCounter {
     uint count; // slots in the list
     uint fragments; // asked for
     uint bricks; // with a surface
+    uint pieces; // of triangles, queued
+    uint touched; // bricks that they touch, queued
     uvec3 fragment_groups; // indirect dispatch over the fragments
     uvec3 chunk_groups; // over the words of bricks, a chunk a group (voxelize/chunks.glsl)
     uvec3 word_groups; // over the words of bricks, 4 a group

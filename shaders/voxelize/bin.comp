@@ -10,13 +10,13 @@ layout(local_size_x = 32) in;
 void note(VolumeMap map, VoxelPiece p, CellRange r, uint i, ivec3 brick) {
     ivec3 first = brick * BRICK;
     if (!touches(map, p, first, ivec3(BRICK), 0.5)) return;
-    uint k = atomicAdd(voxelQueues.bricks, 1);
+    uint k = atomicAdd(voxelCounter.touched, 1);
     if (k < voxelTouched.list.length()) voxelTouched.list[k] = uvec2(i, uint(brick.x + 1024) | uint(brick.y) << 12 | uint(brick.z) << 22);
     else storeCells(map, p, CellRange(max(r.from, first), min(r.to, first + BRICK - 1)));
 }
 
 void main() {
-    uint count = min(voxelQueues.pieces, voxelPieces.list.length());
+    uint count = min(voxelCounter.pieces, voxelPieces.list.length());
     for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
         VoxelPiece p = voxelPieces.list[i];
         VolumeMap map = volume.maps[p.cascade];

@@ -7,7 +7,7 @@
 layout(local_size_x = 64) in;
 
 void main() {
-    uint count = min(voxelQueues.bricks, voxelTouched.list.length());
+    uint count = min(voxelCounter.touched, voxelTouched.list.length());
     ivec3 lane = ivec3(gl_LocalInvocationIndex & 3u, gl_LocalInvocationIndex >> 2 & 3u, gl_LocalInvocationIndex >> 4);
     for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
         uvec2 entry = voxelTouched.list[i];

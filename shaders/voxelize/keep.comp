@@ -18,6 +18,10 @@ void main() {
         ivec3 cell = ivec3(stored.xy, stored.z - cascade * params.voxel_dim) - map.shift;
         if (axis < 0 || !isKept(map, vec3(cell) + 0.5)) continue;
         uint to = atomicAdd(keptCounter.count, 1);
+        if (to % 128 == 0) {
+            atomicAdd(keptCounter.groups.x, 1);
+            keptCounter.groups.yz = uvec2(1);
+        }
         uint first = to * KEPT_WORDS, base = planeBase(i);
         for (uint word = 0; word < SLOT_CELL; word++) voxelKept.words[first + word] = voxelSlots.words[i * SLOT_WORDS + word];
         voxelKept.words[first + SLOT_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;

@@ -11,7 +11,7 @@ const uint KEPT_WORDS = SLOT_WORDS + PLANE_WORDS - PLANE_PARTS;
 layout(std430) buffer VoxelKept { uint words[]; } voxelKept;
 layout(std430) buffer KeptCounter {
     uint count;
-    uvec3 groups; // indirect dispatch over them
+    uvec3 groups; // indirect dispatch over them, 128 a group
 } keptCounter;
 
 #endif

@@ -22,10 +22,6 @@ struct VoxelPiece {
 
 layout(std430) buffer VoxelPieces { VoxelPiece list[]; } voxelPieces;
 layout(std430) buffer VoxelTouched { uvec2 list[]; } voxelTouched; // piece; brick
-layout(std430) buffer VoxelQueues {
-    uint pieces; // asked for
-    uint bricks;
-} voxelQueues;
 
 const int BRICK = 4;
 const int SMALL_CELLS = 16; // of a bounding box that a thread tests alone

@@ -11,7 +11,7 @@ void place(VolumeMap map, VoxelPiece p) {
     ivec3 edge = r.to - r.from + 1;
     if (any(lessThanEqual(edge, ivec3(0)))) return;
     if (edge.x * edge.y * edge.z > SMALL_CELLS) {
-        uint i = atomicAdd(voxelQueues.pieces, 1);
+        uint i = atomicAdd(voxelCounter.pieces, 1);
         if (i < voxelPieces.list.length()) {
             voxelPieces.list[i] = p;
             return;
