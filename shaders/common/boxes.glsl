@@ -66,6 +66,10 @@ bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
     return false;
 }
 
+vec2 curvedDepths(VolumeMap map, vec3 a, vec3 b, vec3 c, vec2 low, vec2 high) {
+    return vec2(0.0);
+}
+
 const vec3 CURVED_BORDERS = vec3(1.0);
 const bool CURVED_SEAM = false;
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The bricks that large triangles touch, a group a triangle. Where they are flat a thread takes a column of bricks along the axis
-// that the triangle faces most; elsewhere a brick.
+// The bricks that large triangles touch, a group a triangle. A thread takes a column of bricks: along the axis that the triangle faces
+// most, or away from the eye of curved cells; and of it what the triangle's plane passes.
 #include "params.glsl"
 #include "voxelize/pieces.glsl"
 
@@ -23,7 +23,7 @@ void main() {
         CellRange r = rangeOf(map, p);
         ivec3 first = r.from >> 2, many = (r.to >> 2) - first + 1;
         vec3 face = cross(p.b - p.a, p.c - p.a), steep = abs(face);
-        int k = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
+        int k = !isFlat(map) ? 2 : steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
         int x = k == 0 ? 1 : 0, y = k == 2 ? 1 : 2;
         bool has_plane = isFlat(map) && face[k] != 0.0;
         float least = min(p.a[k], min(p.b[k], p.c[k])), most = max(p.a[k], max(p.b[k], p.c[k]));
@@ -42,6 +42,11 @@ void main() {
                 to[k] = clamp(depth + reach, least, most);
                 start = max(int(floor(cellsOfFlat(map, from)[k] - 1e-3)) >> 2, start);
                 end = min(int(floor(cellsOfFlat(map, to)[k] + 1e-3)) >> 2, end);
+            }
+            if (!isFlat(map)) {
+                vec2 corner = vec2(brick.xy * BRICK), depths = curvedDepths(map, p.a, p.b, p.c, corner - 0.5, corner + float(BRICK) + 0.5);
+                start = max(int(floor(depths.x)) >> 2, start);
+                end = min(int(floor(depths.y)) >> 2, end);
             }
             for (brick[k] = start; brick[k] <= end; brick[k]++) note(map, p, r, i, brick);
         }

@@ -18,6 +18,7 @@ struct VoxelPiece {
     vec3 b;
     int cascade;
     vec3 c;
+    uint columns; // the first and the last of its cells along x, + 1024, 16 bits each
 };
 
 layout(std430) buffer VoxelPieces { VoxelPiece list[]; } voxelPieces;

@@ -13,6 +13,7 @@ void place(VolumeMap map, VoxelPiece p) {
     if (edge.x * edge.y * edge.z > SMALL_CELLS) {
         uint i = atomicAdd(voxelCounter.pieces, 1);
         if (i < voxelPieces.list.length()) {
+            p.columns = uint(r.from.x + 1024) | uint(r.to.x + 1024) << 16;
             voxelPieces.list[i] = p;
             return;
         }
@@ -60,7 +61,7 @@ void main() {
         for (int i = 0; i < 3 * count; i += 3) {
             vec3 q[3];
             for (int k = 0; k < 3; k++) q[k] = isFlat(map) ? flatFromWorld(map, parts[i + k]) : parts[i + k];
-            place(map, VoxelPiece(q[0], number, q[1], cascade, q[2]));
+            place(map, VoxelPiece(q[0], number, q[1], cascade, q[2], 0));
         }
     }
 }

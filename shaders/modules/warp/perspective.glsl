@@ -52,6 +52,10 @@ bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
     return false;
 }
 
+vec2 curvedDepths(VolumeMap map, vec3 a, vec3 b, vec3 c, vec2 low, vec2 high) {
+    return vec2(0.0);
+}
+
 // Whether a triangle is wholly before or behind the cells (1), or crosses their near side, where it has no coordinates (0);
 // -1: its corners' coordinates tell.
 int curvedOutside(VolumeMap map, vec3 a, vec3 b, vec3 c) {

@@ -97,42 +97,87 @@ void curvedBounds(VolumeMap map, vec3 a, vec3 b, vec3 c, out vec3 low, out vec3 
     high = vec3(azimuth.y / TURN + 0.5, polar.y / (0.5 * TURN), log(max(farthest, 1e-6) / map.range.x) * scale) * float(params.voxel_dim) + 0.01;
 }
 
-// A polygon's part on the side of a plane through the origin, or so far from it.
-void cutAt(inout vec3 p[9], inout int count, vec3 n, float offset) {
-    vec3 kept[9];
-    int many = 0;
-    for (int i = 0; i < count; i++) {
-        vec3 a = p[i], b = p[(i + 1) % count];
-        float u = dot(n, a) + offset, v = dot(n, b) + offset;
-        if (u >= 0.0) kept[many++] = a;
-        if (u >= 0.0 != v >= 0.0) kept[many++] = a + (b - a) * (u / (u - v));
-    }
-    p = kept;
-    count = many;
-}
+// What stands for the cells between two pairs of angles [cells]: planes through the eye, and the edges where they meet.
+struct Wedge {
+    vec3 away; // along its middle, unit
+    vec3 planes[4]; // inwards
+    vec3 edges[4]; // as long as to reach 1 along `away`
+    float round; // spheres and cones bend within a cell: planes lie outside by so much
+};
 
-// Whether a triangle touches what lies between two corners [cells], or nearly: six planes stand for its sides.
-bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
-    float dim = float(params.voxel_dim);
-    vec3 middle = 0.5 * (low + high), reach = 0.5 * (high - low);
-    float azimuth = TURN * (middle.x / dim - 0.5), polar = 0.5 * TURN * middle.y / dim, per_r = log(map.range.y / map.range.x) / dim;
-    vec2 angle = vec2(TURN, 0.5 * TURN) * reach.xy / dim;
-    float round = cos(0.7 * length(angle)); // spheres and cones bend within the cell: by so much planes lie outside
+Wedge wedgeBetween(vec2 low, vec2 high) {
+    Wedge wedge;
+    vec2 middle = 0.5 * (low + high) / float(params.voxel_dim), reach = 0.5 * (high - low) / float(params.voxel_dim);
+    float azimuth = TURN * (middle.x - 0.5), polar = 0.5 * TURN * middle.y;
+    vec2 angle = vec2(TURN, 0.5 * TURN) * reach;
+    wedge.round = cos(0.7 * length(angle));
     angle.y += 0.12 * angle.x * angle.x * abs(sin(2.0 * polar));
     vec3 out_flat = vec3(cos(azimuth), 0.0, sin(azimuth)), along = vec3(-sin(azimuth), 0.0, cos(azimuth));
     vec3 away = sin(polar) * out_flat + vec3(0.0, cos(polar), 0.0), down = cos(polar) * out_flat - vec3(0.0, sin(polar), 0.0);
-    vec3 p[9];
-    p[0] = a - map.eye;
-    p[1] = b - map.eye;
-    p[2] = c - map.eye;
-    int count = 3;
-    cutAt(p, count, away, -map.range.x * exp(per_r * low.z) * round);
-    if (count > 0) cutAt(p, count, -away, map.range.x * exp(per_r * high.z));
-    if (count > 0) cutAt(p, count, out_flat * sin(angle.x) + along * cos(angle.x), 0.0);
-    if (count > 0) cutAt(p, count, out_flat * sin(angle.x) - along * cos(angle.x), 0.0);
-    if (count > 0) cutAt(p, count, away * sin(angle.y) + down * cos(angle.y), 0.0);
-    if (count > 0) cutAt(p, count, away * sin(angle.y) - down * cos(angle.y), 0.0);
-    return count > 0;
+    vec3 left = out_flat * sin(angle.x) + along * cos(angle.x), right = out_flat * sin(angle.x) - along * cos(angle.x);
+    vec3 upper = away * sin(angle.y) + down * cos(angle.y), lower = away * sin(angle.y) - down * cos(angle.y);
+    wedge.away = away;
+    wedge.planes = vec3[4](left, right, upper, lower);
+    // At a pole left and right meet in the axis.
+    bool top = polar <= angle.y, bottom = polar >= 0.5 * TURN - angle.y;
+    wedge.edges = vec3[4](top ? vec3(0, 1, 0) : cross(left, upper), top ? vec3(0, 1, 0) : cross(right, upper),
+        bottom ? vec3(0, -1, 0) : cross(left, lower), bottom ? vec3(0, -1, 0) : cross(right, lower));
+    for (int i = 0; i < 4; i++) wedge.edges[i] /= dot(away, wedge.edges[i]);
+    return wedge;
+}
+
+// Whether a triangle touches what lies between two corners [cells], or nearly. It does where an edge passes through it; or where the
+// whole cut of its plane lies in the triangle. All in registers: a polygon that planes clip would lie in memory.
+bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
+    Wedge wedge = wedgeBetween(low.xy, high.xy);
+    float per_r = log(map.range.y / map.range.x) / float(params.voxel_dim);
+    vec2 depth = map.range.x * exp(per_r * vec2(low.z, high.z)) * vec2(wedge.round, 1.0);
+    vec3 planes[6] = vec3[6](wedge.away, -wedge.away, wedge.planes[0], wedge.planes[1], wedge.planes[2], wedge.planes[3]);
+    float offsets[6] = float[6](-depth.x, depth.y, 0.0, 0.0, 0.0, 0.0);
+
+    // From where to where edges lie on the inner side of all planes so far.
+    mat3 p = mat3(a - map.eye, b - map.eye, c - map.eye);
+    vec3 from = vec3(0.0), to = vec3(1.0);
+    for (int i = 0; i < 6; i++) {
+        vec3 start = planes[i] * p + offsets[i], end = start.yzx, at = start / (start - end);
+        bvec3 starts_out = lessThan(start, vec3(0.0)), ends_out = starts_out.yzx;
+        if (all(starts_out)) return false;
+        from = mix(from, mix(max(from, at), vec3(2.0), ends_out), starts_out);
+        to = mix(mix(to, min(to, at), ends_out), to, starts_out);
+    }
+    if (any(lessThanEqual(from, to))) return true;
+
+    vec3 face = cross(b - a, c - a), before = vec3(0.0), behind = vec3(0.0); // the corners farthest from the plane on either side
+    float level = dot(face, p[0]), least = 1e30, most = -1e30;
+    for (int i = 0; i < 8; i++) {
+        vec3 corner = wedge.edges[i / 2] * depth[i & 1];
+        float over = dot(face, corner) - level;
+        if (over < least) before = corner;
+        if (over > most) behind = corner;
+        least = min(least, over);
+        most = max(most, over);
+    }
+    if (least > 0.0 || most < 0.0) return false;
+    vec3 at = before + (behind - before) * (least / (least - most)) - p[0];
+    return dot(face, cross(p[1] - p[0], at)) >= 0.0 && dot(face, cross(at, p[2] - p[0])) >= 0.0 && dot(face, cross(p[2] - p[1], at + p[0] - p[1])) >= 0.0;
+}
+
+// From where to where along the distance the plane of a triangle lies between two pairs of angles, or nearly [cells]; nowhere: the
+// second is less. A point of the plane at D along the middle is D times a mean of its edges.
+vec2 curvedDepths(VolumeMap map, vec3 a, vec3 b, vec3 c, vec2 low, vec2 high) {
+    Wedge wedge = wedgeBetween(low, high);
+    vec3 face = cross(b - a, c - a);
+    float level = dot(face, a - map.eye), facing = level < 0.0 ? -1.0 : 1.0, least = 1e30, most = -1e30, reach = 1.0;
+    for (int i = 0; i < 4; i++) {
+        float over = facing * dot(face, wedge.edges[i]);
+        least = min(least, over);
+        most = max(most, over);
+        reach = max(reach, length(wedge.edges[i])); // cells within have other middles
+    }
+    if (dot(face, face) == 0.0) return vec2(-1e6, 1e6); // a line has no plane
+    if (most <= 0.0) return vec2(0.0, -1.0);
+    vec2 depth = vec2(abs(level) / most / reach, least > 0.0 ? abs(level) / least * reach * reach : 1e30);
+    return log(max(depth, 1e-6) / map.range.x) / log(map.range.y / map.range.x) * float(params.voxel_dim);
 }
 
 // A sphere has no sides.
