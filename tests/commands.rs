@@ -301,7 +301,7 @@ fn a_failure_keeps_the_old_picture() {
     assert_eq!(out.names(), ["x.png"]);
 }
 
-/// With room for what Sponza has there, all on threads. All cells' words alone would take 128 MiB more.
+/// With room for what Sponza has there, all on threads. All bricks alone would take 100 MiB more.
 #[test]
 fn voxels_of_512_across_fit_into_700_mib() {
     let set = |name: &str, value: &str| ["--set".to_owned(), format!("{name}={value}")];

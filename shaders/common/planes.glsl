@@ -45,12 +45,7 @@ uint planeWord(uint base, uint side) {
     return base + side;
 }
 
-// Bit 0, 1: side 0, 1 has surfaces of its own; else it is the back of the other.
-uint ownSides(uint base) {
-    return planeData(planeWord(base, 0)) >> 30;
-}
-
-// normal: along its axis positive.
+// normal: along its axis positive. own: bit 0, 1: side 0, 1 has surfaces of its own; else it is the back of the other.
 void keepPlane(uint word, vec3 normal, uint axis, float offset, uint own) {
     vec2 beside = besideOf(normal, axis);
     uvec2 s = uvec2(clamp(beside / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);

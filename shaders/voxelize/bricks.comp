@@ -13,7 +13,8 @@ void main() {
         uvec2 entry = voxelTouched.list[i];
         VoxelPiece p = voxelPieces.list[entry.x];
         VolumeMap map = volume.maps[p.cascade];
-        // Of curved cells it would cost as much as the test itself; only who goes round must not come twice to a cell.
+        // Of curved cells it would cost as much as the test itself, which alone may take a cell more; only who goes round must not come
+        // twice to a cell.
         CellRange r = CellRange(ivec3(int(p.columns & 0xffffu) - 1024, 0, 0), ivec3(int(p.columns >> 16) - 1024, params.voxel_dim - 1, params.voxel_dim - 1));
         if (isFlat(map)) r = rangeOf(map, p);
         ivec3 cell = ivec3(int(entry.y & 4095u) - 1024, entry.y >> 12 & 1023u, entry.y >> 22) * BRICK + lane;

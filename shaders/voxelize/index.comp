@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A texture of all cells, for who looks at the voxels: what is found there; in a cell that found no room all bits are set.
+// A texture of all cells, for who looks at the voxels: what is found there; in a cell that found no slot all bits are set. Bricks
+// that found no room are empty.
 #include "params.glsl"
 #include "common/bricks.glsl"
 

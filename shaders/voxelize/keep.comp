@@ -26,7 +26,7 @@ void main() {
         for (uint word = 0; word < SLOT_CELL; word++) voxelKept.words[first + word] = voxelSlots.words[i * SLOT_WORDS + word];
         voxelKept.words[first + SLOT_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
         for (uint side = 0; side < SIDES; side++) {
-            bool own = (ownSides(base) >> side & 1u) != 0; // else its parts are those of the other
+            bool own = voxelSlots.words[sideBase(i, side) + 3] != 0; // else its parts are those of the other
             for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_PARTS + 2 * side + k] = own ? planeData(partsWord(base, side) + k) : 0;
             voxelKept.words[first + KEPT_PARTS + 2 * SIDES + side] = planeData(outermostWord(base, side));
         }

@@ -79,6 +79,7 @@ void main() {
         Covered covered = coveredBy(triangle, stored, axis, unpackOffset(fragment.z));
         uint side = sideOf(normal, axis), slot = slotOf(found, axis), plane = planeBase(slot);
         merge(sideBase(slot, side), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
+        if (SIDES == 1) continue; // only sides have planes
         // Of points and samples nobody knows where their plane passes the cell's middle.
         if (triangle != NO_TRIANGLE) noteOutermost(outermostWord(plane, side), side, covered);
         for (uint k = 0; k < 2; k++) {

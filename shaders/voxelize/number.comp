@@ -42,7 +42,7 @@ void main() {
     if (gl_WorkGroupID.x < gl_NumWorkGroups.x - 1 || thread < CHUNK_THREADS - 1) return;
     uint bricks = min(first, voxelPlaces.bricks.length()), fragments = min(voxelCounter.fragments, voxelFragments.list.length());
     voxelCounter.bricks = bricks;
-    voxelCounter.fragment_groups = uvec3(min((fragments + 127) / 128 + 1, 32768u), 1, 1);
+    voxelCounter.fragment_groups = uvec3(min((fragments + 127) / 128, 32768u), 1, 1);
     voxelCounter.chunk_groups = uvec3((2 * bricks + CHUNK_WORDS - 1) / CHUNK_WORDS, 1, 1);
     voxelCounter.word_groups = uvec3(min((2 * bricks + 3) / 4, 65535u), 1, 1);
 }

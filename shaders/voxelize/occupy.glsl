@@ -1,4 +1,6 @@
 // Notes that a cell of a stored brick has surfaces along an axis.
+#ifndef OCCUPY_GLSL
+#define OCCUPY_GLSL
 #include "common/bricks.glsl"
 
 void occupy(ivec3 stored, uint axis) {
@@ -10,3 +12,5 @@ void occupy(ivec3 stored, uint axis) {
     uint word = 2 * brickNumber(block, brick) + wordOf(place);
     if ((voxelBricks.words[word][axis] & bitOf(place)) == 0) atomicOr(voxelBricks.words[word][axis], bitOf(place));
 }
+
+#endif

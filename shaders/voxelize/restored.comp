@@ -12,7 +12,10 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= keptCounter.count) return;
     uint first = i * KEPT_WORDS, packed = voxelKept.words[first + SLOT_CELL], found = foundAtStored(unpackCell(packed));
-    if (found == 0) return;
+    if (found == 0) { // told; and the next frame makes all anew
+        atomicAdd(voxelCounter.overflow, 1);
+        return;
+    }
     uint slot = slotOf(found, (packed >> 30) - 1);
     for (uint word = 0; word < SLOT_CELL; word++) voxelSlots.words[slot * SLOT_WORDS + word] = voxelKept.words[first + word];
     for (uint word = PLANE_PARTS; word < PLANE_WORDS; word++) keepData(planeBase(slot) + word, voxelKept.words[first + KEPT_PARTS + word - PLANE_PARTS]);

@@ -157,7 +157,7 @@ bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
         least = min(least, over);
         most = max(most, over);
     }
-    if (least > 0.0 || most < 0.0) return false;
+    if (least > 0.0 || most < 0.0 || least == most) return false; // of a line its edges are all
     vec3 at = before + (behind - before) * (least / (least - most)) - p[0];
     return dot(face, cross(p[1] - p[0], at)) >= 0.0 && dot(face, cross(at, p[2] - p[0])) >= 0.0 && dot(face, cross(p[2] - p[1], at + p[0] - p[1])) >= 0.0;
 }
