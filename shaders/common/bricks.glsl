@@ -81,7 +81,7 @@ uint foundAt(ivec3 cell, int cascade) {
 // Of a cell as textures hold it.
 uint foundAtStored(ivec3 stored) {
     int cascade = cascadeOf(stored);
-    return foundAt(ivec3(stored.xy, stored.z - cascade * params.voxel_dim), cascade);
+    return foundAt(cellOfStored(stored, cascade), cascade);
 }
 
 #endif

@@ -35,6 +35,11 @@ bool inVolume(vec3 u) {
     return all(equal(clamp(u, 0.0, 1.0), u));
 }
 
+// A cell of a cascade, of one as textures hold it.
+ivec3 cellOfStored(ivec3 stored, int cascade) {
+    return ivec3(stored.xy, stored.z - cascade * params.voxel_dim);
+}
+
 bool inGrid(ivec3 cell) {
     return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(params.voxel_dim)));
 }

@@ -15,7 +15,7 @@ void main() {
         ivec3 stored = cellOfSlot(i);
         int cascade = cascadeOf(stored);
         VolumeMap map = volume.maps[cascade];
-        ivec3 cell = ivec3(stored.xy, stored.z - cascade * params.voxel_dim) - map.shift;
+        ivec3 cell = cellOfStored(stored, cascade) - map.shift;
         if (axis < 0 || !isKept(map, vec3(cell) + 0.5)) continue;
         uint to = atomicAdd(keptCounter.count, 1);
         if (to % 128 == 0) {

@@ -5,7 +5,7 @@
 
 void occupy(ivec3 stored, uint axis) {
     int cascade = cascadeOf(stored);
-    ivec3 cell = ivec3(stored.xy, stored.z - cascade * params.voxel_dim);
+    ivec3 cell = cellOfStored(stored, cascade);
     uvec4 block = voxelBlocks.list[blockNumber(cell, cascade)];
     uint brick = placeOf(cell >> 2), place = placeOf(cell);
     if (!isStored(block, brick)) return;

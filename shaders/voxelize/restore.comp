@@ -12,5 +12,5 @@ void main() {
     if (i >= keptCounter.count) return;
     ivec3 stored = unpackCell(voxelKept.words[i * KEPT_WORDS + SLOT_CELL]);
     int cascade = cascadeOf(stored);
-    store(ivec3(stored.xy, stored.z - cascade * params.voxel_dim), cascade);
+    store(cellOfStored(stored, cascade), cascade);
 }
