@@ -35,6 +35,11 @@ uint bitOf(uint place) {
     return 1u << (place & 31u);
 }
 
+// The bits of the 2x2x2 cells that a place lies in: all of one word.
+uint eightAround(uint place) {
+    return 0x330033u << (place & 10u);
+}
+
 bool isStored(uvec4 block, uint brick) {
     return (block[wordOf(brick)] & bitOf(brick)) != 0;
 }

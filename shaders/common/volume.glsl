@@ -41,7 +41,7 @@ ivec3 cellOfStored(ivec3 stored, int cascade) {
 }
 
 bool inGrid(ivec3 cell) {
-    return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, ivec3(params.voxel_dim)));
+    return all(lessThan(uvec3(cell), uvec3(params.voxel_dim))); // below 0 is above all
 }
 
 // worldToVolume, volumeToWorld, cellAxes, cellsPerMetre of a map.

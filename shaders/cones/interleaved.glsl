@@ -24,20 +24,6 @@ float tanOfShare(int cones) {
     return sqrt(1.0 - cosine * cosine) / cosine;
 }
 
-vec4 gatherDiffuse(ConeOrigin o, vec3 n, vec3 face) {
-    mat3 frame = frameOf(n);
-    float tan_half = tanOfShare(params.pixel_cones);
-    vec4 sum = vec4(0.0);
-    for (int i = gatherShare.first; i < gatherShare.rays; i += gatherShare.of) {
-        vec3 d = frame * cosineSample(pixelPoint(i));
-        if (dot(d, face) <= 0.0) continue; // mapped normals lean
-        CONE_BEGINS(uint(i) + 1u);
-        vec4 cone = traceAny(o, d, tan_half, params.diffuse_steps);
-        sum += vec4(coneRadiance(cone), 1.0 - cone.a);
-    }
-    return sum / float(max(gatherShare.rays, 1));
-}
-
 float largest(vec3 v) {
     return max(v.r, max(v.g, v.b));
 }
@@ -49,19 +35,31 @@ int specularRays(Surface s, vec3 v) {
     return clamp(int(ceil(params.lobe_share * share * float(gatherShare.lobe))), 1, max(gatherShare.lobe, 1));
 }
 
-// Some directions of the lobe; a cone has a sixteenth of it. Dealt from the last thread on: the first have more of the others.
-vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
-    int rays = specularRays(s, v);
-    vec3 sum = vec3(0.0);
-    for (int i = gatherShare.of - 1 - gatherShare.first; i < rays; i += gatherShare.of) {
-        LobeSample l = specularSample(s, face, v, blockPoint(i));
-        if (l.weight == vec3(0.0)) continue;
-        CONE_BEGINS(i == 0 ? 0u : uint(params.diffuse_cones + i));
-        sum += l.weight * coneRadiance(traceAny(o, l.direction, 0.5 * ggxAlpha(s.roughness), params.specular_steps));
-    }
-    return sum / float(rays);
-}
-
+// Cones over the hemisphere, then some directions of the lobe; a cone there has a sixteenth of it. One loop for both: what traces them is
+// large, and in the program once.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
-    return Gathered(gatherDiffuse(o, s.normal, face), params.specular_cone ? gatherSpecular(o, s, face, v) : vec3(0.0));
+    mat3 frame = frameOf(s.normal);
+    float tan_half = tanOfShare(params.pixel_cones), tan_lobe = 0.5 * ggxAlpha(s.roughness);
+    int rays = gatherShare.rays, lobe = params.specular_cone ? specularRays(s, v) : 0;
+    vec4 hemisphere = vec4(0.0);
+    vec3 specular = vec3(0.0);
+    for (int i = gatherShare.first; i < rays + lobe; i += gatherShare.of) {
+        bool mirrors = i >= rays;
+        vec3 d, weight = vec3(0.0);
+        if (mirrors) {
+            LobeSample l = specularSample(s, face, v, blockPoint(i - rays));
+            d = l.direction;
+            weight = l.weight;
+            if (weight == vec3(0.0)) continue;
+        } else {
+            d = frame * cosineSample(pixelPoint(i));
+            if (dot(d, face) <= 0.0) continue; // mapped normals lean
+        }
+        CONE_BEGINS(!mirrors ? uint(i) + 1u : i == rays ? 0u : uint(params.diffuse_cones + i - rays));
+        vec4 cone = traceAny(o, d, mirrors ? tan_lobe : tan_half, mirrors ? params.specular_steps : params.diffuse_steps);
+        vec3 light = coneRadiance(cone);
+        if (mirrors) specular += weight * light;
+        else hemisphere += vec4(light, 1.0 - cone.a);
+    }
+    return Gathered(hemisphere / float(max(rays, 1)), specular / float(max(lobe, 1)));
 }

@@ -65,7 +65,7 @@ bool meetsPlanes(ConeOrigin o) {
 }
 
 // The first surface between `from` and `range` [m] along d that a cascade has. Cells one by one (Amanatides and Woo 1987), empty
-// bricks and blocks at once.
+// bricks and blocks at once, and eights of cells.
 Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
     VolumeMap map = volume.maps[cascade];
     float voxel;
@@ -73,36 +73,38 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
     cellAlong(map, o.surface, d, voxel, dir);
     dir = mix(dir, vec3(1e-9), lessThan(abs(dir), vec3(1e-9)));
     vec3 at = worldToVolume(map, o.surface) * float(params.voxel_dim), facing = o.normal * cellAxes(map, o.surface);
-    vec3 inverse = 1.0 / dir, ahead = vec3(greaterThan(dir, vec3(0.0)));
+    vec3 inverse = 1.0 / dir;
+    bvec3 ahead = greaterThan(dir, vec3(0.0));
     float enter = from / voxel, end = range / voxel;
-    ivec3 cell = ivec3(floor(at + enter * dir)), block = ivec3(-1);
+    ivec3 cell = ivec3(floor(at + enter * dir));
     uvec4 bricks = uvec4(0), cells = uvec4(0);
-    uint last = ~0u;
+    uint last_block = ~0u, last = ~0u;
     for (int i = 0; i < 3 * params.voxel_dim && enter < end && inGrid(cell); i++) {
-        if (cell >> 4 != block) {
-            block = cell >> 4;
-            bricks = MET_BLOCKS.list[blockNumber(cell, cascade)];
-        }
-        uint brick = placeOf(cell >> 2);
-        bool empty = !isStored(bricks, brick);
+        uint block = blockNumber(cell, cascade);
+        if (block != last_block) bricks = MET_BLOCKS.list[block];
+        last_block = block;
+        uint brick = placeOf(cell >> 2), stored = bricks[wordOf(brick)], bit = 0;
         // The edge of what is crossed at once, and where it begins; its borders that are crossed next.
-        int edge = bricks.xy == uvec2(0) ? 16 : empty ? 4 : 1;
-        ivec3 first = cell & -edge;
-        vec3 borders = (vec3(first) + float(edge) * ahead - at) * inverse;
-        float leave = min(borders.x, min(borders.y, borders.z));
-        if (!empty) {
-            uint place = placeOf(cell), number = 2 * brickNumber(bricks, brick) + wordOf(place), bit = bitOf(place);
+        int edge = bricks.xy == uvec2(0) ? 16 : 4;
+        if ((stored & bitOf(brick)) != 0) {
+            uint place = placeOf(cell), number = 2 * brickNumber(bricks, brick) + wordOf(place);
             if (number != last) cells = MET_BRICKS.words[number];
             last = number;
-            if ((occupiedCells(cells) & bit) != 0) {
-                uint met;
-                float t = meetCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, met);
-                if (t < end) return Met(t * voxel, vec4(lightOf(MET_RADIANCE.list[met]), 1.0));
-            }
+            uint occupied = occupiedCells(cells);
+            bit = occupied & bitOf(place);
+            edge = (occupied & eightAround(place)) == 0 ? 2 : 1;
+        }
+        ivec3 first = cell & -edge;
+        vec3 borders = (vec3(mix(first, first + edge, ahead)) - at) * inverse;
+        float leave = min(borders.x, min(borders.y, borders.z));
+        if (bit != 0) {
+            uint met;
+            float t = meetCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, met);
+            if (t < end) return Met(t * voxel, vec4(lightOf(MET_RADIANCE.list[met]), 1.0));
         }
         bvec3 crossed = equal(borders, vec3(leave));
         ivec3 next = clamp(ivec3(floor(at + leave * dir)), first, first + edge - 1);
-        cell = mix(next, first + (edge + 1) * ivec3(ahead) - 1, crossed);
+        cell = mix(next, mix(first - 1, first + edge, ahead), crossed);
         enter = leave;
     }
     return Met(min(enter, end) * voxel, vec4(0.0)); // what lies behind the grid's border is not known here

@@ -7,14 +7,31 @@ struct Filtered {
     vec3 specular; // radiance towards the viewer
 };
 
+// What tells whether other pixels see the same surface, worked out once for all of them.
+struct Likeness {
+    vec2 origin, step; // of the pixels' rays: tangents of their angles
+    vec3 plane; // the surface's normal, of rays in view space
+    float away; // of the plane from the camera [m]
+    float scale; // of how far off the plane a surface may be [1/m]
+    vec3 normal;
+};
+
+Likeness likenessOf(GBufferSurface seen) {
+    vec2 zoom = 1.0 / vec2(camera.projection[0][0], camera.projection[1][1]);
+    vec2 step = 2.0 * zoom / vec2(camera.size);
+    vec3 off = seen.position - camera.position;
+    return Likeness(0.5 * step - zoom, step, mat3(camera.view) * seen.face, dot(off, seen.face), 200.0 / length(off), seen.surface.normal);
+}
+
 // How much of another pixel's light a surface takes: 1 where both see one surface.
-float likeness(ivec2 at, GBufferSurface seen) {
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(camera.size)))) return 0.0;
+float likeness(ivec2 at, Likeness like) {
+    if (any(greaterThanEqual(uvec2(at), uvec2(camera.size)))) return 0.0;
     float other = texelFetch(gbufferDistance, at, 0).r;
     if (other <= 0.0) return 0.0;
     vec3 normal = unpackNormal(texelFetch(gbufferNormals, at, 0).xy);
-    float off = abs(dot(camera.position + other * viewRay(vec2(at) + 0.5) - seen.position, seen.face));
-    return clamp(5.0 * abs(dot(normal, seen.surface.normal)) - 3.8, 0.0, 1.0) * clamp(2.0 - 200.0 * off / distance(seen.position, camera.position), 0.0, 1.0);
+    vec2 ray = like.origin + vec2(at) * like.step;
+    float off = abs(other * inversesqrt(dot(ray, ray) + 1.0) * (dot(ray, like.plane.xy) - like.plane.z) - like.away);
+    return clamp(5.0 * abs(dot(normal, like.normal)) - 3.8, 0.0, 1.0) * clamp(2.0 - like.scale * off, 0.0, 1.0);
 }
 
 // How far a surface's reflection may blur: a mirror's picture must not.
@@ -29,8 +46,9 @@ ivec2 latticeBefore(ivec2 pixel) {
 
 // Whether they say nothing of the surface that a pixel sees.
 bool isAlone(ivec2 pixel, GBufferSurface seen) {
+    Likeness like = likenessOf(seen);
     float weights = 0.0;
-    for (int i = 0; i < 4; i++) weights += likeness(latticeBefore(pixel) + params.ray_step * ivec2(i & 1, i >> 1), seen);
+    for (int i = 0; i < 4; i++) weights += likeness(latticeBefore(pixel) + params.ray_step * ivec2(i & 1, i >> 1), like);
     return weights < 0.25;
 }
 

@@ -4,7 +4,7 @@
 #include "params.glsl"
 #define READS_AGE
 // More than in turns: these are few, and the slowest ray of a thread is what all wait for.
-const uint GATHER_THREADS = 16;
+const uint GATHER_THREADS = 8;
 #include "shade/kept.glsl"
 #include "shade/gather_shared.glsl"
 

@@ -35,6 +35,7 @@ Filtered filtered(ivec2 pixel, GBufferSurface seen) {
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
     float weights = 0.0, specular_weights = 0.0, lobe = blurs(seen);
+    Likeness like = likenessOf(seen);
     if (latticeBefore(pixel) != pixel) {
         vec4 own = texelFetch(gatheredDiffuse, pixel, 0), reflected = texelFetch(gatheredSpecular, pixel, 0);
         if (own.a >= 0.0) {
@@ -49,7 +50,7 @@ Filtered filtered(ivec2 pixel, GBufferSurface seen) {
     for (int i = 0; i < 4; i++) {
         ivec2 at = latticeBefore(pixel) + params.ray_step * ivec2(i & 1, i >> 1), place = at / params.ray_step;
         bool own = at == pixel;
-        float weight = own ? 1.0 : likeness(at, seen);
+        float weight = own ? 1.0 : likeness(at, like);
         diffuse += weight * texelFetch(smoothedDiffuse, place, 0);
         weights += weight;
         weight *= own ? 1.0 : lobe;

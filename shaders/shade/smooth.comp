@@ -17,20 +17,28 @@ void main() {
     ivec2 place = ivec2(gl_GlobalInvocationID.xy), pixel = params.ray_step * place;
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     GBufferSurface seen = gbufferAt(pixel);
-    int stride = 2 * params.ray_step, across = 4 / params.ray_step;
+    if (!seen.any) {
+        imageStore(smoothedDiffuse, place, vec4(0.0, 0.0, 0.0, 1.0));
+        imageStore(smoothedSpecular, place, vec4(0.0));
+        return;
+    }
+    Likeness like = likenessOf(seen);
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
-    float weights = 0.0, specular_weights = 0.0, lobe = seen.any ? blurs(seen) : 0.0;
-    for (int i = 0; seen.any && i < across * across; i++) {
-        ivec2 at = pixel + stride * (ivec2(i % across, i / across) - across / 2);
-        bool own = at == pixel;
-        float weight = own ? 1.0 : likeness(at, seen);
-        diffuse += weight * texelFetch(gatheredDiffuse, at, 0);
-        weights += weight;
-        weight *= own ? 1.0 : lobe;
-        specular += weight * texelFetch(gatheredSpecular, at, 0).rgb;
-        specular_weights += weight;
+    float weights = 0.0, specular_weights = 0.0, lobe = blurs(seen);
+    int stride = 2 * params.ray_step, across = 4 / params.ray_step, first = -(across / 2) * stride;
+    for (int y = first; y < first + across * stride; y += stride) {
+        for (int x = first; x < first + across * stride; x += stride) {
+            ivec2 at = pixel + ivec2(x, y);
+            bool own = at == pixel;
+            float weight = own ? 1.0 : likeness(at, like);
+            diffuse += weight * texelFetch(gatheredDiffuse, at, 0);
+            weights += weight;
+            weight *= own ? 1.0 : lobe;
+            specular += weight * texelFetch(gatheredSpecular, at, 0).rgb;
+            specular_weights += weight;
+        }
     }
-    imageStore(smoothedDiffuse, place, seen.any ? diffuse / weights : vec4(0.0, 0.0, 0.0, 1.0));
-    imageStore(smoothedSpecular, place, vec4(seen.any ? specular / specular_weights : vec3(0.0), 1.0));
+    imageStore(smoothedDiffuse, place, diffuse / weights);
+    imageStore(smoothedSpecular, place, vec4(specular / specular_weights, 1.0));
 }
