@@ -8,8 +8,9 @@ shared uint found;
 shared uint first_entry;
 
 void main() {
-    uint count = min(rasterCounter.pieces, rasterPieces.list.length());
-    for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
+    uint count = queuedPieces();
+    for (uint n = gl_WorkGroupID.x; n < count; n += gl_NumWorkGroups.x) {
+        uint i = queuedPiece(n);
         Piece p = rasterPieces.list[i];
         Outline o;
         outlineOf(p, targetSize(), o); // pieces in the queue have one
@@ -29,7 +30,7 @@ void main() {
             barrier();
             int t = start + int(gl_LocalInvocationIndex);
             ivec2 tile = first + ivec2(t % tiles.x, t / tiles.x);
-            bool meets = t < many && meetsRectangle(o, tile * TILE, ivec2(TILE));
+            bool meets = t < many && coverage(o, tile * TILE, ivec2(TILE)) != OUTSIDE;
             uint mine = meets ? atomicAdd(found, 1) : 0;
             barrier();
             if (gl_LocalInvocationIndex == 0) first_entry = atomicAdd(rasterCounter.tiles, found);

@@ -19,15 +19,19 @@ bool isCutOut(Piece p, Outline o, vec2 at) {
     return baseColor(m, uv, Gradient(uvAt(p, o, at + vec2(1, 0)) - uv, uvAt(p, o, at + vec2(0, 1)) - uv)).a < m.alpha_cutoff;
 }
 
-void fillPixel(Piece p, Outline o, ivec2 pixel) {
-    vec2 at = vec2(pixel) + 0.5;
-    vec3 e = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at));
-    if (!isInside(o.edges[0], e.x) || !isInside(o.edges[1], e.y) || !isInside(o.edges[2], e.z)) return;
+// A pixel whose centre is inside.
+void fillInside(Piece p, Outline o, ivec2 pixel) {
     vec2 steps = vec2(pixel - o.low);
     precise float depth = clamp(p.depth + p.slope.x * steps.x + p.slope.y * steps.y, p.range.x, p.range.y);
     // Only where a lookup may be spared: plot decides anyway, and nobody waits for it.
-    if (p.mask > 0 && (!isNearer(pixel, p.layer, depth) || isCutOut(p, o, at))) return;
+    if (p.mask > 0 && (!isNearer(pixel, p.layer, depth) || isCutOut(p, o, vec2(pixel) + 0.5))) return;
     plot(pixel, p.layer, depth, p.triangle);
+}
+
+void fillPixel(Piece p, Outline o, ivec2 pixel) {
+    vec2 at = vec2(pixel) + 0.5;
+    vec3 e = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at));
+    if (isInside(o.edges[0], e.x) && isInside(o.edges[1], e.y) && isInside(o.edges[2], e.z)) fillInside(p, o, pixel);
 }
 
 void fillRectangle(Piece p, Outline o, ivec2 low, ivec2 high) {

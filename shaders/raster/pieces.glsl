@@ -23,12 +23,29 @@ layout(std430) buffer RasterPieces { Piece list[]; } rasterPieces;
 layout(std430) buffer RasterTiles { uvec2 list[]; } rasterTiles; // piece; tile, its row above its column
 layout(std430) buffer RasterCounter {
     uint pieces; // asked for
+    uint large; // of those that are more than a group fills alone
     uint tiles;
 } rasterCounter;
 
 const int TILE = 32; // edge [pixels]
 const int SMALL = 16; // pixels of a bounding rectangle that a thread fills alone
 const int MEDIUM = 1024; // that a group fills alone
+
+// The last quarter of the queue is for large pieces: a thread that finds no room fills its piece alone, and of a large one all wait for it.
+uint roomOfPieces(bool large) {
+    uint room = rasterPieces.list.length() / 4u;
+    return large ? room : rasterPieces.list.length() - room;
+}
+
+uint queuedPieces() {
+    return min(rasterCounter.pieces, roomOfPieces(false)) + min(rasterCounter.large, roomOfPieces(true));
+}
+
+// Where the i-th of them lies.
+uint queuedPiece(uint i) {
+    uint others = min(rasterCounter.pieces, roomOfPieces(false));
+    return i < others ? i : roomOfPieces(false) + i - others;
+}
 
 struct Edge {
     vec2 from;
@@ -72,14 +89,19 @@ bool outlineOf(Piece p, ivec2 size, out Outline o) {
     return all(lessThanEqual(o.low, o.high));
 }
 
-// Whether a rectangle of pixels (first, edge) has centres inside, or nearly.
-bool meetsRectangle(Outline o, ivec2 first, ivec2 edge) {
+// How much of a rectangle of pixels (first, edge) is inside: of no centre, perhaps of some, of all.
+const uint OUTSIDE = 0, CROSSED = 1, INSIDE = 2;
+
+uint coverage(Outline o, ivec2 first, ivec2 edge) {
     vec2 middle = vec2(first) + 0.5 * vec2(edge), half_edge = 0.5 * vec2(edge - 1) + 0.01;
+    bool inside = all(greaterThanEqual(first, o.low)) && all(lessThanEqual(first + edge - 1, o.high));
     for (int i = 0; i < 3; i++) {
         Edge e = o.edges[i];
-        if (edgeAt(e, middle) + half_edge.x * abs(e.along.y) + half_edge.y * abs(e.along.x) < 0.0) return false;
+        float value = edgeAt(e, middle), reach = half_edge.x * abs(e.along.y) + half_edge.y * abs(e.along.x);
+        if (value + reach < 0.0) return OUTSIDE;
+        inside = inside && value > reach;
     }
-    return true;
+    return inside ? INSIDE : CROSSED;
 }
 
 #endif

@@ -42,9 +42,10 @@ void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, u
     p.range = vec2(min(depths[0], min(depths[1], depths[2])), max(depths[0], max(depths[1], depths[2])));
     ivec2 edge = o.high - o.low + 1;
     if (edge.x * edge.y > SMALL) {
-        uint i = atomicAdd(rasterCounter.pieces, 1);
-        if (i < rasterPieces.list.length()) {
-            rasterPieces.list[i] = p;
+        bool large = edge.x * edge.y > MEDIUM;
+        uint i = large ? atomicAdd(rasterCounter.large, 1) : atomicAdd(rasterCounter.pieces, 1);
+        if (i < roomOfPieces(large)) {
+            rasterPieces.list[large ? roomOfPieces(false) + i : i] = p;
             return;
         }
     }

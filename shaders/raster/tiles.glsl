@@ -1,26 +1,40 @@
-// Fills the tiles, 32 threads a tile, 8x4 pixels at a time: as many tiles at once as there is room for, because each begins with a
-// chain of lookups.
+// Fills the tiles, 32 threads a tile: each thread finds how much of a block of 8x4 pixels is inside, then all fill one block after another.
+// As many tiles at once as there is room for, because each begins with a chain of lookups.
 #include "raster/fill.glsl"
 
-const uint TILE_THREADS = 32;
+const uint TILE_THREADS = 32, TILES = 4; // of a group
+const ivec2 BLOCK = ivec2(8, 4); // TILE_THREADS pixels, and as many blocks in a tile
 
-layout(local_size_x = 4 * TILE_THREADS) in;
+layout(local_size_x = TILES * TILE_THREADS) in;
+
+shared uint covered[TILES * TILE_THREADS];
+
+ivec2 blockCorner(uint block) {
+    return BLOCK * ivec2(block % 4u, block / 4u);
+}
 
 void main() {
-    uint count = min(rasterCounter.tiles, rasterTiles.list.length()), at_once = gl_WorkGroupSize.x / TILE_THREADS;
-    uint number = gl_LocalInvocationID.x / TILE_THREADS, thread = gl_LocalInvocationID.x % TILE_THREADS;
+    uint count = min(rasterCounter.tiles, rasterTiles.list.length()), number = gl_LocalInvocationID.x / TILE_THREADS, thread = gl_LocalInvocationID.x % TILE_THREADS;
     ivec2 lane = ivec2(thread % 8u, thread / 8u);
-    for (uint i = gl_WorkGroupID.x * at_once + number; i < count; i += gl_NumWorkGroups.x * at_once) {
-        uvec2 entry = rasterTiles.list[i];
-        Piece p = rasterPieces.list[entry.x];
+    for (uint start = gl_WorkGroupID.x * TILES; start < count; start += gl_NumWorkGroups.x * TILES) {
+        Piece p;
         Outline o;
-        if (!outlineOf(p, targetSize(), o)) continue;
-        ivec2 corner = ivec2(entry.y & 0xffffu, entry.y >> 16) * TILE;
-        for (int y = corner.y; y < corner.y + TILE; y += 4)
-            for (int x = corner.x; x < corner.x + TILE; x += 8) {
-                if (!meetsRectangle(o, ivec2(x, y), ivec2(8, 4))) continue;
-                ivec2 pixel = ivec2(x, y) + lane;
-                if (all(greaterThanEqual(pixel, o.low)) && all(lessThanEqual(pixel, o.high))) fillPixel(p, o, pixel);
-            }
+        ivec2 corner;
+        uint mine = OUTSIDE;
+        if (start + number < count) {
+            uvec2 entry = rasterTiles.list[start + number];
+            p = rasterPieces.list[entry.x];
+            corner = ivec2(entry.y & 0xffffu, entry.y >> 16) * TILE;
+            if (outlineOf(p, targetSize(), o)) mine = coverage(o, corner + blockCorner(thread), BLOCK);
+        }
+        covered[gl_LocalInvocationID.x] = mine;
+        barrier();
+        for (uint block = 0; block < TILE_THREADS; block++) {
+            uint how = covered[number * TILE_THREADS + block];
+            ivec2 pixel = corner + blockCorner(block) + lane;
+            if (how == INSIDE) fillInside(p, o, pixel);
+            else if (how == CROSSED && all(greaterThanEqual(pixel, o.low)) && all(lessThanEqual(pixel, o.high))) fillPixel(p, o, pixel);
+        }
+        barrier();
     }
 }
