@@ -322,6 +322,20 @@ fn uneven_cells_are_compared_too() {
     assert_clean(&lab);
 }
 
+/// The oracle samples masks at four places of each piece in a cell, the method at 64 of the cell: some parts of leaves only one of them sees.
+#[test]
+fn leaves_fill_the_cells_that_their_masks_leave() {
+    let lab = lab(root());
+    for mode in [("voxelizer", "compute"), ("voxelizer", "raster")] {
+        let mut session = prepare(&lab, &experiment("foliage", (16, 16), &[("voxel_dim", "64"), mode, QUICK]), &VOXELS);
+        let score = score_of(&mut session, &scene("foliage"));
+        let (recall, precision) = (score.recall.unwrap(), score.precision.unwrap());
+        println!("{}: recall {recall:.4}, precision {precision:.4}", mode.1);
+        assert!(recall >= 0.999 && precision >= 0.97, "{}: recall {recall}, precision {precision}", mode.1);
+    }
+    assert_clean(&lab);
+}
+
 #[test]
 fn the_command_tells_every_mode() {
     let folder = tempfile::tempdir().unwrap();

@@ -51,7 +51,7 @@ void main() {
             sum += light[face];
             all += seen[face];
         }
-        imageStore(injected, cell, vec4(sum / max(all, 1e-6), 1.0));
+        imageStore(injected, cell, vec4(sum / max(all, 1e-6), all > 0.0 ? 1.0 : 0.0)); // 0: all was cut out
         return;
     }
     for (int face = 0; face < 6; face++)

@@ -9,6 +9,13 @@ layout(local_size_x = 128) in;
 
 layout(r32ui) uniform writeonly uimage3D voxelIndex;
 
+// Whether a mask has cut out all that fell into a cell.
+bool isEmpty(uint found) {
+    for (uint i = 0; i < slotsOf(found) * SIDES; i++)
+        if (voxelSlots.words[sideBase(firstSlot(found) + i / SIDES, i % SIDES) + 3] != 0) return false;
+    return found != 0;
+}
+
 void main() {
     uint lane = gl_LocalInvocationIndex & 31u;
     for (uint number = gl_GlobalInvocationID.x >> 5; number < 2 * voxelCounter.bricks; number += gl_NumWorkGroups.x * 4) {
@@ -16,6 +23,7 @@ void main() {
         uvec4 word = voxelBricks.words[number];
         if ((occupiedCells(word) & bit) == 0) continue;
         uint found = foundIn(word, bit);
+        if (isEmpty(found)) continue;
         imageStore(voxelIndex, storedCellAt(voxelPlaces.bricks[number / 2], 32 * (number & 1u) + lane), uvec4(found == 0 ? ~0u : found));
     }
 }

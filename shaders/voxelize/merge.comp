@@ -6,6 +6,7 @@
 #include "common/bricks.glsl"
 #include "common/planes.glsl"
 #include "common/scene.glsl"
+#include "common/materials.glsl"
 #include "voxelize/parts.glsl"
 
 layout(local_size_x = 128) in;
@@ -50,13 +51,42 @@ vec3 cornerOf(VolumeMap map, uvec2 triangle, uint i) {
     return worldToVolume(map, p) * float(params.voxel_dim);
 }
 
+// Of a surface with holes, cuts out the parts of a cell whose middle lies in one; of what covers no part's middle its own counts. Corners in
+// cells. No weight is left where nothing is.
+void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Covered covered) {
+    Material m = materials.materials[draws.draws[triangle.x].material];
+    if (m.alpha_cutoff <= 0.0) return;
+    vec2 uv[3], p[3];
+    for (int i = 0; i < 3; i++) {
+        uv[i] = loadAttributes(indices.indices[triangle.y + i]).uv;
+        p[i] = 8.0 * besideOf(corner[i] - vec3(cell), axis);
+    }
+    mat2 across = mat2(p[1] - p[0], p[2] - p[0]);
+    if (abs(determinant(across)) < 1e-6) return;
+    mat2 step = mat2(uv[1] - uv[0], uv[2] - uv[0]) * inverse(across); // of texture coordinates, from part to part
+    uint before = bitCount(covered.parts.x) + bitCount(covered.parts.y);
+    if (before == 0 && baseColor(m, (uv[0] + uv[1] + uv[2]) / 3.0, Gradient(step[0], step[1])).a < m.alpha_cutoff) covered.weight = 0;
+    for (int word = 0; word < 2; word++) {
+        for (uint left = covered.parts[word]; left != 0; left &= left - 1) {
+            int bit = findLSB(left);
+            vec2 at = vec2(bit & 7, 4 * word + (bit >> 3)) + 0.5;
+            if (baseColor(m, uv[0] + step * (at - p[0]), Gradient(step[0], step[1])).a < m.alpha_cutoff) covered.parts[word] &= ~(1u << bit);
+        }
+    }
+    uint kept = bitCount(covered.parts.x) + bitCount(covered.parts.y);
+    if (before > 0) covered.weight = kept > 0 ? max(covered.weight * kept / before, 1u) : 0;
+}
+
 // Which parts of a stored cell the triangle of a fragment covers, and where. Here and not where fragments are made: all of the
 // chip helps.
 Covered coveredBy(uvec2 triangle, ivec3 stored, uint axis, float offset) {
     if (triangle == NO_TRIANGLE) return wholeCell(offset);
     VolumeMap map = volume.maps[cascadeOf(stored)];
     ivec3 cell = ivec3(cellCentre(stored) * float(params.voxel_dim));
-    return coveredParts(cornerOf(map, triangle, 0), cornerOf(map, triangle, 1), cornerOf(map, triangle, 2), cell, axis, offset);
+    vec3 corner[3] = vec3[3](cornerOf(map, triangle, 0), cornerOf(map, triangle, 1), cornerOf(map, triangle, 2));
+    Covered covered = coveredParts(corner[0], corner[1], corner[2], cell, axis, offset);
+    cutOut(triangle, corner, cell, axis, covered);
+    return covered;
 }
 
 void main() {
@@ -77,6 +107,7 @@ void main() {
         }
         uvec2 triangle = voxelTriangles.list[i];
         Covered covered = coveredBy(triangle, stored, axis, unpackOffset(fragment.z));
+        if (covered.weight == 0) continue;
         uint side = sideOf(normal, axis), slot = slotOf(found, axis), plane = planeBase(slot);
         merge(sideBase(slot, side), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
         if (SIDES == 1) continue; // only sides have planes

@@ -85,7 +85,8 @@ void storeCell(VolumeMap map, VoxelPiece p, ivec3 cell) {
     Material m = materials.materials[d.material];
     vec2 uv = mat3x2(v[0].uv, v[1].uv, v[2].uv) * b;
     vec4 base = baseColor(m, uv, g);
-    if (base.a < m.alpha_cutoff) return;
+    bool even = (!WARPED || CURVED) && map.curved == 0;
+    if (base.a < (even ? min(m.alpha_cutoff, 0.01) : m.alpha_cutoff)) return; // parts are cut out of cells when they are merged
     vec3 n = mat3(normalize(normalToWorld(d.instance, v[0].normal)), normalize(normalToWorld(d.instance, v[1].normal)), normalize(normalToWorld(d.instance, v[2].normal))) * b;
     // The triangle's own, on the side of its vertices': their means fit no plane, and a small ball would shine a quarter too bright.
     if (area > 0.0) n = face * (dot(face, n) < 0.0 ? -1.0 : 1.0);
@@ -95,7 +96,6 @@ void storeCell(VolumeMap map, VoxelPiece p, ivec3 cell) {
     vec3 passes = vec3(cell) + 0.5;
     float slope = along[axis];
     passes[axis] += clamp(dot(face, a - middle) / (abs(slope) > 1e-30 ? slope : 1e-30), -0.5, 0.5);
-    bool even = (!WARPED || CURVED) && map.curved == 0;
     storeVoxel(cell, p.cascade, reflectanceOf(m, base.rgb, uv, g), n, emission(m, uv, g), passes, even ? t : NO_TRIANGLE);
 }
 

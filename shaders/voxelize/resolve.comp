@@ -30,7 +30,7 @@ void main() {
         normal += weight * n;
         count += weight;
     }
-    count = max(count, 1.0);
+    if (count == 0.0) return; // all was cut out
     color /= count;
     normal /= count;
     float agreement = length(normal);

@@ -53,7 +53,7 @@ void main() {
     vec3 color, n, light;
     if (!each) {
         base = baseColor(m, uv, g);
-        if (base.a < m.alpha_cutoff) return;
+        if (base.a < (EVEN ? min(m.alpha_cutoff, 0.01) : m.alpha_cutoff)) return; // parts are cut out of cells when they are merged
         n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
         color = reflectanceOf(m, base.rgb, uv, g);
         light = emission(m, uv, g);
