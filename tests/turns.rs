@@ -146,7 +146,8 @@ fn few_pixels_gather_for_all() {
     }
 }
 
-/// A camera that moves by half a pixel a frame: what is kept stays on its surface, and old light is forgotten all the same.
+/// A camera that moves by half a pixel a frame: what is kept stays on its surface and grows no older than all turns, and rays are as many as
+/// the turns ask for, but for what comes into sight. Each frame's light is as noisy as its few rays; over many it is right.
 #[test]
 fn a_moving_camera_keeps_light_where_it_belongs() {
     let lab = lab(root());
@@ -155,40 +156,54 @@ fn a_moving_camera_keeps_light_where_it_belongs() {
     after.lights[0].color *= 3.0;
     let after = Arc::new(after);
     let camera = |i: usize| {
-        let x = 2.78 + 0.06 * i as f32;
+        let x = 1.28 + 0.06 * i as f32;
         PlacedCamera::new((x, 2.73, 0.02 * i as f32 - 8.0), (x - 0.3, 2.5, 2.8), 39.3)
     };
-    let follow = |live: &mut Session, frames: std::ops::Range<usize>| {
-        let mut last = Vec::new();
-        for i in frames {
+    // Means over frames: energy, square error, pixels that gather of those that see something.
+    let follow = |live: &mut Session,
+                  truth: &mut Session,
+                  frames: std::ops::Range<usize>,
+                  skipped: usize,
+                  turns: usize| {
+        let (mut sums, count) = ([0.0; 3], frames.len() - skipped);
+        for (number, i) in frames.enumerate() {
             live.place_camera(&camera(i));
-            last = gathered(&lab, live, 1);
+            let light_now = gathered(&lab, live, 1);
+            let ages = floats(live, "gatheredSpecular", 0);
+            assert!(ages.iter().all(|a| a[3] < turns as f32), "light is older than all turns in frame {i}");
+            if number < skipped {
+                continue;
+            }
+            truth.place_camera(&camera(i));
+            let expected = gathered(&lab, truth, 1);
+            let seen = floats(live, "gbufferDistance", 0).iter().filter(|d| d[0] > 0.0).count();
+            let listed = live.buffer("gatherCounter").unwrap();
+            let listed = u32::from_ne_bytes(*listed.first_chunk().unwrap());
+            let values =
+                [light(&light_now) / light(&expected), error(&light_now, &expected), f64::from(listed) / seen as f64];
+            (0..3).for_each(|k| sums[k] += values[k] / count as f64);
         }
-        last
+        sums
     };
-    let truth = |scene: &Arc<Scene>, i: usize| {
-        let mut session = session(&lab, scene, &[("gather_frames", "1"), ("pixel_cones", "64")]);
-        session.place_camera(&camera(i));
-        gathered(&lab, &mut session, 1)
-    };
-    let (first_truth, changed_truth) = (truth(&before, 23), truth(&after, 23 + TURNS + 1));
     let mut errors = Vec::new();
     // Of the same price: so many rays a frame for each pixel, or once in a while for some.
-    let each_frame = [("gather_frames", "1"), ("pixel_cones", "2")];
-    for settings in [&[][..], &each_frame, &[("gather_frames", "4"), ("pixel_cones", "8")]] {
-        let mut live = session(&lab, &before, settings);
-        let kept = follow(&mut live, 0..24);
-        assert!(live.set_lights(&after.lights, after.sky));
-        let changed = follow(&mut live, 24..24 + TURNS + 1);
-        let energies = [light(&kept) / light(&first_truth), light(&changed) / light(&changed_truth)];
-        errors.push(error(&kept, &first_truth));
-        println!("{settings:?}: energy {energies:.4?}, error {:.4}", error(&kept, &first_truth));
-        // Two rays a pixel are too few to say so of those of one frame.
-        let sure = settings != each_frame;
-        assert!(
-            !sure || energies.iter().all(|e| (e - 1.0).abs() < 0.03),
-            "{settings:?}: light is lost or made: {energies:?}"
-        );
+    for (turns, cones) in [(TURNS, "16"), (1, "2"), (4, "8")] {
+        let frames = turns.to_string();
+        let mut live = session(&lab, &before, &[("gather_frames", &frames), ("pixel_cones", cones)]);
+        let mut truth = session(&lab, &before, &[("gather_frames", "1"), ("pixel_cones", "64")]);
+        let kept = follow(&mut live, &mut truth, 0..48, 2 * TURNS, turns);
+        for session in [&mut live, &mut truth] {
+            assert!(session.set_lights(&after.lights, after.sky));
+        }
+        let changed = follow(&mut live, &mut truth, 48..80, TURNS + 1, turns);
+        errors.push(kept[1]);
+        println!("{turns} turns of {cones}: energy, error, part of pixels {kept:.4?}, of changed light {changed:.4?}");
+        // Two rays a pixel are too few to say so of them.
+        let sure = turns > 1;
+        for [energy, _, gathering] in [kept, changed] {
+            assert!(!sure || (energy - 1.0).abs() < 0.03, "{turns} turns: light is lost or made: {energy}");
+            assert!(gathering * turns as f64 <= 1.5, "{turns} turns: {gathering} of the pixels gather in a frame");
+        }
     }
     assert!(errors[0] < 0.6 * errors[1] && errors[2] < 0.8 * errors[1], "in motion turns gain little: {errors:?}");
 }

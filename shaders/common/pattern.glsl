@@ -14,10 +14,4 @@ uint pixelNumber(uvec2 pixel) {
     return bitfieldReverse(turn) >> 26;
 }
 
-uvec2 pixelOfNumber(uint number) {
-    uint turn = bitfieldReverse(number) >> 26;
-    uint x = turn & 1u | turn >> 1 & 2u | turn >> 2 & 4u, y = turn >> 1 & 1u | turn >> 2 & 2u | turn >> 3 & 4u;
-    return uvec2(x ^ y, y);
-}
-
 #endif

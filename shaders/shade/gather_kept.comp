@@ -1,13 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Pixels whose turn it is not keep what they have gathered, looked up where it was seen last. Those that have nothing are listed, and
-// those off the lattice that gather for themselves when it is their turn.
+// What pixels gathered before they keep, looked up where their surface was seen last, until it is as old as all turns are long. Those that
+// gather are listed.
 #include "params.glsl"
 #include "shade/turns.glsl"
 #include "shade/kept.glsl"
 #include "shade/filter.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+// Of a group: what it lists it sorts, so that rays of one kind which go the same ways are traced together.
+const ivec2 REGION = ivec2(64, 32);
+const uint THREADS = 256;
+const uint EACH = 8; // pixels of a thread
+
+layout(local_size_x = 256) in;
 
 uniform writeonly image2D gatheredDiffuse;
 uniform writeonly image2D gatheredSpecular;
@@ -15,7 +20,11 @@ uniform writeonly image2D gatheredSpecular;
 // Mirrors show what moves: smoother surfaces than this gather their reflections in every frame.
 const float KEPT_ROUGHNESS = 0.1;
 
-shared uint listed_here;
+const uint NOT_LISTED = 0xffffffffu;
+const uint KINDS = 256; // a way to gather, and a number in the block
+
+shared uint listed[EACH * THREADS]; // kind, and above it which of that kind
+shared uint starts[KINDS];
 shared uint first;
 
 // What a pixel gathers for itself.
@@ -32,48 +41,73 @@ bool findKept(ivec2 pixel, GBufferSurface seen, bool of_lattice, Own own, out iv
 }
 
 // Keeps what there is, and says how the pixel must gather, if it must.
-bool gathers(ivec2 pixel, out uint how) {
-    uint number = pixelNumber(uvec2(pixel));
-    bool of_lattice = isOfLattice(number), due = isDue(number);
-    how = GATHER_FEW;
-    if (of_lattice && due) return false; // others do
+bool gathers(ivec2 pixel, uint number, out uint how) {
     GBufferSurface seen = gbufferAt(pixel);
-    Own own = Own(of_lattice, params.specular_cone);
-    if (seen.any && !of_lattice) {
+    Own own = Own(isOfLattice(number), params.specular_cone);
+    if (seen.any && !own.diffuse) {
         own.diffuse = isAlone(pixel, seen);
         own.specular = params.specular_cone && (own.diffuse || blurs(seen) < 1.0);
     }
+    how = GATHER_ALL;
     if (!seen.any || !own.diffuse && !own.specular) {
         imageStore(gatheredDiffuse, pixel, vec4(0.0, 0.0, 0.0, seen.any ? NOT_GATHERED : 1.0));
         imageStore(gatheredSpecular, pixel, vec4(0.0, 0.0, 0.0, seen.any ? NOT_GATHERED : 0.0));
         return false;
     }
-    if (!own.diffuse) imageStore(gatheredDiffuse, pixel, vec4(0.0, 0.0, 0.0, NOT_GATHERED));
     ivec2 at;
-    bool kept = !due && findKept(pixel, seen, of_lattice, own, at);
-    float age = kept ? ageAt(at) : 0.0;
-    // A surface may move over the picture in step with the turns, and never be where it is one's turn.
-    if (due || kept && age > float(params.turns)) how = GATHER_ALL;
-    else if (kept) how = GATHER_MIRRORED;
-    if (!own.diffuse && how != GATHER_MIRRORED) how = GATHER_LOBE;
-    if (how != GATHER_MIRRORED) return true;
-    if (own.diffuse) imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
-    imageStore(gatheredSpecular, pixel, vec4(texelFetch(lastSpecular, at, 0).rgb, age));
-    return params.specular_cone && seen.surface.roughness < KEPT_ROUGHNESS;
+    bool kept = findKept(pixel, seen, isOfLattice(number), own, at);
+    // Whichever pixels a surface moves through, it gathers once in all turns: no light is older, and no ray is wasted.
+    float turns = float(params.turns), in_turn = ageInTurn(number), age = kept ? ageAt(at) : in_turn;
+    bool due = age >= turns;
+    // Where the picture grows, one pixel's heirs would all be due at once: those a little behind their own turn go back to it.
+    if (due) age = in_turn <= 0.25 * turns ? in_turn : 0.0;
+    if (!due) how = kept ? GATHER_MIRRORED : GATHER_FEW;
+    if (!own.diffuse && (due || !kept)) how = GATHER_LOBE;
+    bool takes = kept && !due;
+    if (!own.diffuse) imageStore(gatheredDiffuse, pixel, vec4(0.0, 0.0, 0.0, NOT_GATHERED));
+    else if (takes) imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
+    imageStore(gatheredSpecular, pixel, vec4(takes ? texelFetch(lastSpecular, at, 0).rgb : vec3(0.0), age));
+    return !takes || params.specular_cone && seen.surface.roughness < KEPT_ROUGHNESS;
+}
+
+// Sums up how many are of the kinds before each.
+void sumUp() {
+    uint kind = gl_LocalInvocationIndex, own = starts[kind];
+    for (uint apart = 1; apart < KINDS; apart *= 2) {
+        uint before = kind >= apart ? starts[kind - apart] : 0;
+        barrier();
+        starts[kind] += before;
+        barrier();
+    }
+    uint all = starts[kind];
+    barrier();
+    starts[kind] = all - own;
+    if (kind == KINDS - 1 && all > 0) {
+        first = atomicAdd(gatherCounter.count, all);
+        atomicMax(gatherCounter.groups.x, min((first + all + 31) / 32, 65535u));
+    }
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (gl_LocalInvocationIndex == 0) listed_here = 0;
+    uint thread = gl_LocalInvocationIndex;
+    ivec2 corner = REGION * ivec2(gl_WorkGroupID.xy);
+    starts[thread] = 0;
     barrier();
-    uint how, place = 0;
-    bool listed = all(lessThan(pixel, ivec2(camera.size))) && gathers(pixel, how);
-    if (listed) place = atomicAdd(listed_here, 1);
-    barrier();
-    if (gl_LocalInvocationIndex == 0 && listed_here > 0) {
-        first = atomicAdd(gatherCounter.count, listed_here);
-        atomicMax(gatherCounter.groups.x, min((first + listed_here + 31) / 32, 65535u));
+    for (uint i = thread; i < EACH * THREADS; i += THREADS) {
+        ivec2 pixel = corner + ivec2(i % REGION.x, i / REGION.x);
+        uint number = pixelNumber(uvec2(pixel)), how;
+        listed[i] = NOT_LISTED;
+        if (any(greaterThanEqual(pixel, ivec2(camera.size))) || !gathers(pixel, number, how)) continue;
+        uint kind = how * 64 + number;
+        listed[i] = kind | atomicAdd(starts[kind], 1) << 8;
     }
     barrier();
-    if (listed) gatherList.pixels[first + place] = uint(pixel.x) | uint(pixel.y) << 15 | how << 30;
+    sumUp();
+    barrier();
+    for (uint i = thread; i < EACH * THREADS; i += THREADS) {
+        uint word = listed[i];
+        if (word == NOT_LISTED) continue;
+        uvec2 pixel = uvec2(corner) + uvec2(i % REGION.x, i / REGION.x);
+        gatherList.pixels[first + starts[word & 255] + (word >> 8)] = pixel.x | pixel.y << 15 | (word >> 6 & 3) << 30;
+    }
 }

@@ -1,4 +1,4 @@
-// Pixels that gather for themselves, or although it is not their turn.
+// Pixels that gather in this frame.
 layout(std430) buffer GatherList { uint pixels[]; } gatherList; // the pixel, and above it how
 layout(std430) buffer GatherCounter {
     uint count;

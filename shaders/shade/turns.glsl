@@ -8,14 +8,9 @@ bool isOfLattice(uint number) {
     return number < uint(params.ray_patterns);
 }
 
-// By a pixel's number in its block.
-bool isDue(uint number) {
-    uint turns = uint(params.turns);
-    return number * turns / (isOfLattice(number) ? uint(params.ray_patterns) : 64u) == camera.frame % turns;
-}
-
-// The lowest number of the lattice that is due.
-uint firstDue() {
-    uint turns = uint(params.turns);
-    return (camera.frame % turns * uint(params.ray_patterns) + turns - 1u) / turns;
+// As old as what a pixel keeps would be if it had gathered in its turn, by its number in the block [frames]: as many as there are turns
+// where it is due.
+float ageInTurn(uint number) {
+    uint turns = uint(params.turns), turn = number * turns / (isOfLattice(number) ? uint(params.ray_patterns) : 64u);
+    return float(turns - (turn + turns - camera.frame % turns) % turns);
 }
