@@ -10,12 +10,12 @@ use serde_json::Value;
 use std::time::Duration;
 use window_driver::{WindowDriver, centre};
 
-/// Small enough for a software device to draw several a second.
-const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": two, "gather_frames": 1, "pixel_cones": 2 })"#;
+/// Small enough for a software device to draw several a second, and nothing gathers over frames: a picture is one frame.
+const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": two, "trace": cones, "cone_set": fitted })"#;
 
 /// Four points, one of them [`SMALL`].
 const SWEEP: &str = r#"(experiments: ["configs/opened.ron"], warmup: 1, frames: 3,
-    axes: [List(name: "voxel_dim", values: [16, 32]), List(name: "pixel_cones", values: [2, 8])])"#;
+    axes: [List(name: "voxel_dim", values: [16, 32]), List(name: "cone_count", values: [7, 9])])"#;
 
 fn number(event: &Value, name: &str) -> f64 {
     event[name].as_f64().unwrap_or_else(|| panic!("no {name} in {event}"))
@@ -74,8 +74,8 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     // The dot moves with a slider.
     driver.click("", "Diffuse cones (1)");
     let mark = driver.now();
-    let (x, y) = centre(driver.find("Slider", "pixel_cones"));
-    driver.drag((x, y), (x - 34.0, y)); // from 2 to a few: frames are slow enough
+    let (x, y) = centre(driver.find("Slider", "cone_count"));
+    driver.drag((x, y), (x - 34.0, y));
     error(&mut driver, mark, "another error", |e| !same(e, own));
     driver.resting(0);
     let picture = driver.events.iter().rev().find(|e| e["event"] == "picture").unwrap();
