@@ -19,6 +19,7 @@ layout(std140) uniform Camera {
     float time; // seconds
     uvec2 size; // pixels
     uint frame;
+    uint still_frames; // since anything but the camera changed
     float delta_time;
 } camera;
 

@@ -6,6 +6,7 @@
 #include "shade/turns.glsl"
 #include "shade/kept.glsl"
 #include "shade/filter.glsl"
+#include "common/ggx.glsl"
 
 // Of a group: what it lists it sorts, so that rays of one kind which go the same ways are traced together.
 const ivec2 REGION = ivec2(64, 32);
@@ -40,6 +41,27 @@ bool findKept(ivec2 pixel, GBufferSurface seen, bool of_lattice, Own own, out iv
     return seenBefore(pixel, seen, params.ray_step, at);
 }
 
+// What has gathered with few rays alone is not as old as what ages by whole frames, by so much.
+const float OF_FEW = 0.5;
+
+// Rounds of the voxels without a change until their light has all but settled: of light of which half comes back, less than a
+// hundredth is missing.
+const int SETTLED_ROUNDS = 8;
+
+// Whether what is kept grows older in this frame. Where neither light nor camera's place changes what a surface reflects it does so in
+// one of a few frames: the fewer, the less its lobe has turned in all turns.
+bool ages(GBufferSurface seen, uint number, bool of_few) {
+    // By then each pixel has gathered what has settled.
+    bool settled = camera.still_frames > uint(SETTLED_ROUNDS * params.bounce_frames + params.turns);
+    if (of_few || !settled || camera.view_projection == camera.previous_view_projection) return true;
+    uint rarer = uint(params.gather_rest);
+    if (params.specular_cone) {
+        float turned = distance(seen.to_viewer, normalize(camera.previous_position - seen.position)) * float(params.turns);
+        rarer = uint(clamp(ggxAlpha(seen.surface.roughness) / max(turned, 1e-6), 1.0, float(rarer)));
+    }
+    return (camera.frame + number) % rarer == 0;
+}
+
 // Keeps what there is, and says how the pixel must gather, if it must.
 bool gathers(ivec2 pixel, uint number, out uint how) {
     GBufferSurface seen = gbufferAt(pixel);
@@ -57,8 +79,12 @@ bool gathers(ivec2 pixel, uint number, out uint how) {
     ivec2 at;
     bool kept = findKept(pixel, seen, isOfLattice(number), own, at);
     // Whichever pixels a surface moves through, it gathers once in all turns: no light is older, and no ray is wasted.
-    float turns = float(params.turns), in_turn = ageInTurn(number), age = kept ? ageAt(at) : in_turn;
-    bool due = age >= turns;
+    float turns = float(params.turns), in_turn = ageInTurn(number), age = in_turn + OF_FEW;
+    if (kept) {
+        age = ageAt(at);
+        if (ages(seen, number, fract(age) != 0.0)) age += 1.0;
+    }
+    bool due = floor(age) >= turns;
     // Where the picture grows, one pixel's heirs would all be due at once: those a little behind their own turn go back to it.
     if (due) age = in_turn <= 0.25 * turns ? in_turn : 0.0;
     if (!due) how = kept ? GATHER_MIRRORED : GATHER_FEW;

@@ -1,6 +1,5 @@
 // What pixels keep between their turns, and which have nothing to keep.
 #include "common/gbuffer_read.glsl"
-#include "common/random.glsl"
 #include "shade/list.glsl"
 
 uniform sampler2D lastDiffuse;
@@ -21,9 +20,10 @@ const float NOT_GATHERED = -1.0;
 bool seenBefore(ivec2 pixel, GBufferSurface seen, int apart, out ivec2 at) {
     vec4 clip = camera.previous_view_projection * vec4(seen.position, 1.0);
     if (clip.w <= 0.0) return false;
-    // To the nearest pixel, by chance as the point lies between them: what is kept neither blurs nor sticks to the picture.
-    Random r = Random(uvec4(pixel, camera.frame, 0u));
-    vec2 chance = next4(r).xy - 0.5;
+    // To the nearest pixel, as the point lies between them and the frame's share decides: what is kept neither blurs nor sticks to the
+    // picture, and neighbours stay neighbours, each with its own part of all directions. Shares are spread evenly over frames (R2
+    // sequence, Roberts 2018), so that what is kept never strays by more than a pixel or so.
+    vec2 chance = fract(float(camera.frame % 4096u) * vec2(0.7548776662, 0.5698402910)) - 0.5;
     vec2 middle = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) - 0.5;
     at = apart * ivec2(floor(middle / float(apart) + 0.5 + 0.98 * chance));
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(camera.size)))) return false;
@@ -33,7 +33,7 @@ bool seenBefore(ivec2 pixel, GBufferSurface seen, int apart, out ivec2 at) {
     return abs(before - range) < range * (0.002 + 2.0 * pixel_angle / max(dot(seen.face, seen.to_viewer), 0.05));
 }
 
-// Of what was kept there: frames since it was gathered, this one included.
+// Of what was kept there: frames since it was gathered.
 float ageAt(ivec2 at) {
-    return texelFetch(lastSpecular, at, 0).a + 1.0;
+    return texelFetch(lastSpecular, at, 0).a;
 }

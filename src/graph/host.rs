@@ -84,12 +84,13 @@ block! {
         time: f32,
         size: [u32; 2],
         frame: u32,
+        still_frames: u32,
         delta_time: f32,
     }
 }
 
 /// Where `camera` counts frames.
-pub(super) const CAMERA_FRAME: std::ops::Range<usize> =
+pub(super) const CAMERA_COUNTS: std::ops::Range<usize> =
     offset_of!(CameraBlock, frame)..offset_of!(CameraBlock, delta_time);
 
 block! {

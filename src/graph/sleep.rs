@@ -5,7 +5,7 @@
 //! ([`Settling`](super::settle::Settling)).
 
 use super::externals::{EXTERNALS, ExternalKind};
-use super::host::CAMERA_FRAME;
+use super::host::CAMERA_COUNTS;
 use super::link::{Linked, Target};
 use super::plan::{Plan, Step};
 use super::run::Redo;
@@ -172,7 +172,7 @@ impl Contents {
         let known = &self.externals[external];
         let uncounted = (name == "camera").then(|| {
             let mut bytes = known.clone();
-            bytes.get_mut(CAMERA_FRAME).into_iter().for_each(|frame| frame.fill(0));
+            bytes.get_mut(CAMERA_COUNTS).into_iter().for_each(|counts| counts.fill(0));
             bytes
         });
         for (reads, ids) in self.reads.iter().zip(&mut self.inputs).filter(|(reads, _)| reads.external == external) {

@@ -95,6 +95,8 @@ pub struct Session {
     size: (u32, u32),
     time: f64,
     frame: u32,
+    /// Frames since anything but the camera changed.
+    still_frames: u32,
     sent_params: bool,
 }
 
@@ -190,6 +192,7 @@ impl Lab {
             size: experiment.size,
             time: experiment.time,
             frame: 0,
+            still_frames: 0,
             sent_params: false,
         })
     }
@@ -394,7 +397,9 @@ impl Session {
     pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
         let mut updates = self.scene_gpu.updates(&self.scene, self.time, self.frame == 0)?;
         updates.append(&mut self.light_updates);
-        let camera = self.viewpoint.uniform(self.scene_gpu.origin, self.size, self.time, self.frame, delta);
+        self.still_frames = if updates.is_empty() && self.sent_params { self.still_frames.saturating_add(1) } else { 0 };
+        let frames = (self.frame, self.still_frames);
+        let camera = self.viewpoint.uniform(self.scene_gpu.origin, self.size, self.time, frames, delta);
         updates.push((self.scene_gpu.camera.clone(), camera));
         if !self.sent_params {
             updates.push((self.program.params_buffer(), self.params.uniform_bytes(&self.values)));

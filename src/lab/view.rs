@@ -38,8 +38,16 @@ impl Viewpoint {
         Viewpoint::placed(&PlacedCamera::new(eye.into(), centre.into(), 50.0), scene)
     }
 
-    /// The content of the block `camera` in a world that begins at `origin`, and on to the next frame.
-    pub fn uniform(&mut self, origin: Vec3, size: (u32, u32), time: f64, frame: u32, delta: f64) -> Vec<u8> {
+    /// The content of the block `camera` in a world that begins at `origin`, and on to the next frame. Frames are those that
+    /// went before, and of them the last in which nothing but the camera changed.
+    pub fn uniform(
+        &mut self,
+        origin: Vec3,
+        size: (u32, u32),
+        time: f64,
+        (frame, still_frames): (u32, u32),
+        delta: f64,
+    ) -> Vec<u8> {
         let c = &self.camera;
         let eye = c.eye - origin;
         let direction = (c.target - c.eye).try_normalize().unwrap_or(Vec3::NEG_Z);
@@ -69,6 +77,7 @@ impl Viewpoint {
             time: time as f32,
             size: [size.0, size.1],
             frame,
+            still_frames,
             delta_time: delta as f32,
         })
         .to_vec()
