@@ -397,7 +397,8 @@ impl Session {
     pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
         let mut updates = self.scene_gpu.updates(&self.scene, self.time, self.frame == 0)?;
         updates.append(&mut self.light_updates);
-        self.still_frames = if updates.is_empty() && self.sent_params { self.still_frames.saturating_add(1) } else { 0 };
+        self.still_frames =
+            if updates.is_empty() && self.sent_params { self.still_frames.saturating_add(1) } else { 0 };
         let frames = (self.frame, self.still_frames);
         let camera = self.viewpoint.uniform(self.scene_gpu.origin, self.size, self.time, frames, delta);
         updates.push((self.scene_gpu.camera.clone(), camera));

@@ -66,6 +66,8 @@ pub struct Scored {
     pub error: f64,
     /// Whether its relMSE is not told apart from the reference's noise.
     pub noisy: bool,
+    /// Name of the experiment that it is a variant of; empty where there is one alone.
+    pub experiment: String,
 }
 
 /// Everything that is shown.
@@ -207,7 +209,8 @@ impl Data {
             let scores = dot.scores.get(part)?;
             let error = error_of(metric, *scores.get(metric)?);
             let noisy = within_noise(*scores.get("relmse").unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
-            (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy })
+            let experiment = dot.labels.get("experiment").cloned().unwrap_or_default();
+            (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy, experiment })
         })
         .collect()
     }

@@ -8,7 +8,14 @@ use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (900, 560);
 const FONT: &str = "sans-serif";
-const DOT: RGBColor = RGBColor(70, 110, 160);
+/// Of the dots of each experiment, in turns.
+const DOTS: [RGBColor; 5] = [
+    RGBColor(70, 110, 160),
+    RGBColor(220, 150, 40),
+    RGBColor(90, 150, 80),
+    RGBColor(140, 90, 160),
+    RGBColor(110, 110, 110),
+];
 const FRONT: RGBColor = RGBColor(200, 60, 40);
 
 /// A metric by its usual name.
@@ -24,8 +31,9 @@ pub fn axis_title(metric: &str) -> String {
     }
 }
 
-/// The chart as SVG: its circles are the dots in their order; those on the front are red and joined; those that are not
-/// told apart from the reference's noise are hollow.
+/// The chart as SVG: its circles are the dots in their order, of a colour for each experiment; those on the front are larger and
+/// joined by a red line, and red where there is one experiment; those that are not told apart from the reference's noise are
+/// hollow.
 pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, LabError> {
     let mut svg = String::new();
     draw(&mut svg, title, metric, dots).map_err(|e| LabError::Request(format!("cannot draw '{title}': {e}")))?;
@@ -68,11 +76,31 @@ fn draw(svg: &mut String, title: &str, metric: &str, dots: &[Scored]) -> Result<
         steps.push(at);
     }
     chart.draw_series(std::iter::once(PathElement::new(steps, FRONT.stroke_width(1))))?;
+    let mut experiments: Vec<&str> = dots.iter().map(|d| d.experiment.as_str()).collect();
+    experiments.sort_unstable();
+    experiments.dedup();
+    let color_of = |name: &str| DOTS[experiments.iter().position(|e| *e == name).unwrap_or(0) % DOTS.len()];
     chart.draw_series(dots.iter().enumerate().map(|(i, d)| {
-        let color = if front.contains(&i) { FRONT } else { DOT };
+        let on_front = front.contains(&i);
+        let color = if on_front && experiments.len() < 2 { FRONT } else { color_of(&d.experiment) };
         let style = if d.noisy { color.stroke_width(2) } else { color.mix(0.85).filled() };
-        Circle::new(place(d), if front.contains(&i) { 5 } else { 4 }, style)
+        Circle::new(place(d), if on_front { 6 } else { 4 }, style)
     }))?;
+    if experiments.len() > 1 {
+        for name in &experiments {
+            let color = color_of(name);
+            // No circle: those are the dots.
+            let key = move |(x, y)| Rectangle::new([(x, y - 5), (x + 10, y + 5)], color.filled());
+            chart.draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?.label(*name).legend(key);
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE.mix(0.8))
+            .border_style(BLACK.mix(0.2))
+            .label_font((FONT, 15))
+            .draw()?;
+    }
     area.present()?;
     Ok(())
 }
@@ -103,5 +131,34 @@ pub fn short(v: f64) -> String {
         0.0 => "0".into(),
         _ if !(1e-3..1e4).contains(&v) => format!("{v:.0e}"),
         _ => format!("{}", format!("{v:.2e}").parse::<f64>().unwrap_or(v)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn experiments_have_colours_and_a_key() {
+        let dot = |ms: f64, error: f64, experiment: &str| Scored {
+            index: 0,
+            ms,
+            error,
+            noisy: false,
+            experiment: experiment.into(),
+        };
+        let dots = [dot(1.0, 0.2, "threads"), dot(2.0, 0.1, "threads"), dot(3.0, 0.3, "raster")];
+        let svg = scatter("Sponza", "relMSE", &dots).unwrap();
+        assert_eq!(svg.matches("<circle").count(), dots.len());
+        let fills = |svg: &str| -> Vec<String> {
+            let circles = svg.lines().filter(|l| l.starts_with("<circle"));
+            circles.filter_map(|l| Some(l.split("fill=\"").nth(1)?.split('"').next()?.to_string())).collect()
+        };
+        let colours = fills(&svg);
+        assert!(colours[0] == colours[1] && colours[1] != colours[2], "{colours:?}");
+        assert!(["threads", "raster"].iter().all(|name| svg.contains(name)));
+        // The front is red where there is one experiment, and there is no key.
+        let one = scatter("Sponza", "relMSE", &dots[..2]).unwrap();
+        assert!(fills(&one).iter().all(|c| *c != colours[0]) && !one.contains("threads"));
     }
 }
