@@ -95,7 +95,7 @@ fn draw(svg: &mut String, title: &str, metric: &str, dots: &[Scored]) -> Result<
         }
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
+            .position(SeriesLabelPosition::LowerLeft)
             .background_style(WHITE.mix(0.8))
             .border_style(BLACK.mix(0.2))
             .label_font((FONT, 15))
