@@ -37,6 +37,9 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
         "warp" => &[("warp_near", "1.0"), ("warp_far", "6.0")],
         "voxel_view" | "density" => &[("view", "voxels")],
         "cone_set" => &[("trace", "cones")],
+        // Of what the rasteriser draws; by default it draws where there is no GPU.
+        "shadow_format" => &[("shadow_map", "raster")],
+        "conservative" => &[("voxelizer", "raster")],
         "opacity" | "lod_clearance" => &[("trace", "interleaved")],
         "cone_rotate" => &[("trace", "cones"), ("cone_count", "5")],
         "trace" => &[("exact_rays", "8")],

@@ -197,7 +197,7 @@ fn closed_meshes_in_a_hundred_poses() {
     let modes = [
         Known {
             title: "raster off",
-            set: &[("conservative", "off")],
+            set: &[("voxelizer", "raster"), ("conservative", "off")],
             recall: (0.53, 0.57),
             precision: 1.0,
             leaky_6: (60, 102),
@@ -205,7 +205,7 @@ fn closed_meshes_in_a_hundred_poses() {
         },
         Known {
             title: "raster msaa",
-            set: &[("conservative", "msaa")],
+            set: &[("voxelizer", "raster"), ("conservative", "msaa")],
             recall: (0.56, 0.61),
             precision: 0.999,
             leaky_6: (0, 0),
@@ -213,7 +213,7 @@ fn closed_meshes_in_a_hundred_poses() {
         },
         Known {
             title: "raster dilate",
-            set: &[("conservative", "dilate")],
+            set: &[("voxelizer", "raster"), ("conservative", "dilate")],
             recall: (1.0, 1.0),
             precision: 1.0,
             leaky_6: (0, 0),
@@ -306,13 +306,15 @@ fn uneven_cells_are_compared_too() {
     let lab = lab(root());
     // Least recall and precision.
     let modes = [
-        ("msaa", ("conservative", "msaa"), 0.95, 0.999),
-        ("dilate", ("conservative", "dilate"), 1.0, 1.0),
-        ("compute", ("voxelizer", "compute"), 1.0, 1.0),
-        ("tessellated", ("voxelizer", "tessellated"), 0.97, 0.999),
+        ("msaa", "raster", ("conservative", "msaa"), 0.95, 0.999),
+        ("dilate", "raster", ("conservative", "dilate"), 1.0, 1.0),
+        ("compute", "compute", QUICK, 1.0, 1.0),
+        ("tessellated", "tessellated", QUICK, 0.97, 0.999),
     ];
-    for (warp, (title, mode, least, right)) in ["spline", "logistic"].into_iter().flat_map(|w| modes.map(|m| (w, m))) {
-        let settings = [("voxel_dim", "32"), ("warp", warp), mode, QUICK];
+    for (warp, (title, voxelizer, mode, least, right)) in
+        ["spline", "logistic"].into_iter().flat_map(|w| modes.map(|m| (w, m)))
+    {
+        let settings = [("voxel_dim", "32"), ("warp", warp), ("voxelizer", voxelizer), mode, QUICK];
         let mut session = prepare(&lab, &experiment("cornell", (16, 16), &settings), &VOXELS);
         let score = score_of(&mut session, &scene("cornell"));
         let (recall, precision) = (score.recall.unwrap(), score.precision.unwrap());

@@ -434,9 +434,9 @@ fn the_list_of_fragments_is_long_enough_for_every_slope() {
         ("perspective", vec![("warp", "perspective")]),
     ];
     let modes = [
-        ("off", vec![("conservative", "off")]),
-        ("msaa", vec![("conservative", "msaa")]),
-        ("dilate", vec![("conservative", "dilate")]),
+        ("off", vec![("voxelizer", "raster"), ("conservative", "off")]),
+        ("msaa", vec![("voxelizer", "raster"), ("conservative", "msaa")]),
+        ("dilate", vec![("voxelizer", "raster"), ("conservative", "dilate")]),
         ("tessellated", vec![("voxelizer", "tessellated")]),
         ("tessellated x2", vec![("voxelizer", "tessellated"), ("tess_rate", "2.0")]),
     ];

@@ -22,6 +22,6 @@ void main() {
     position = volumeToWorld(map, (vec3(cell) + at) / vec3(size));
     color = vec4(cellColor(ivec3(cell), (vec3(cell) + 0.5) / vec3(size), face), 1.0);
     // From inside a cube nothing else would be seen: the camera's own is left out.
-    bool own = uvec3(floor(worldToVolume(map, camera.position) * vec3(size))) == cell;
+    bool own = ivec3(floor(worldToVolume(map, camera.position) * vec3(size))) == ivec3(cell);
     gl_Position = own ? vec4(0.0, 0.0, 2.0, 1.0) : camera.view_projection * vec4(position, 1.0);
 }
