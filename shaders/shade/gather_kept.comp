@@ -48,8 +48,8 @@ const float OF_FEW = 0.5;
 // hundredth is missing.
 const int SETTLED_ROUNDS = 8;
 
-// Whether what is kept grows older in this frame. Where neither light nor camera's place changes what a surface reflects it does so in
-// one of a few frames: the fewer, the less its lobe has turned in all turns.
+// Whether what is kept grows older in this frame. Under a moving camera settled light does so in one of a few frames: in the fewer, the
+// less the surface's lobe turns in all turns.
 bool ages(GBufferSurface seen, uint number, bool of_few) {
     // By then each pixel has gathered what has settled.
     bool settled = camera.still_frames > uint(SETTLED_ROUNDS * params.bounce_frames + params.turns);
