@@ -233,7 +233,9 @@ fn a_cut_and_a_path() {
     // The third frame is the first after the cut.
     assert_eq!(change("uniform", "3"), 0.0);
     let faded = ["3", "24"].map(|frame| change("filtered", frame));
-    assert!(faded[0] > 10.0 * faded[1], "what was kept does not fade: {faded:?}");
+    // 18.9 on an NVIDIA H200.
+    let least = if common::on_software() { 20.0 } else { 15.0 };
+    assert!(faded[0] > least * faded[1], "what was kept does not fade: {faded:?}");
     let changes: Vec<f64> = frames
         .iter()
         .filter(|r| r["case"] == "path" && r["method"] == "uniform" && r["part"] == "total")
@@ -341,8 +343,9 @@ fn equal_cost() {
     assert_eq!(number("large", "diffuse relMSE"), value(&results, "still", "large", "diffuse relMSE").unwrap());
     let moving = ["strafe", "yaw"].map(|c| value(&results, c, "large", "diffuse E_t").unwrap());
     assert!((number("large", "diffuse E_t") - ((moving[0].powi(2) + moving[1].powi(2)) / 2.0).sqrt()).abs() < 1e-12);
-    // Queues of threads are as large for any grid: where those draw it is less than the eight times of the cells.
-    assert!(number("large", "memory MiB") > number("first", "memory MiB"));
+    // Queues of threads, which draw on hardware, are as large for any grid.
+    let times = if common::on_software() { 4.0 } else { 1.0 };
+    assert!(number("large", "memory MiB") > times * number("first", "memory MiB"));
     assert!(value(&results, "still", "large", "memory MiB").unwrap() >= number("large", "memory MiB"));
     // The two values next to the first method's time were timed, the nearer was taken, and the cases ran with it.
     let json: serde_json::Value = serde_json::from_str(&out("stability.json")).unwrap();

@@ -205,7 +205,8 @@ fn a_moving_camera_keeps_light_where_it_belongs() {
         // are too few to say so of them.
         let sure = turns > 1;
         for [energy, _, part] in [kept, changed] {
-            assert!(!sure || (energy - 1.0).abs() < 0.04, "{turns} turns: light is lost or made: {energy}");
+            let most = if common::on_software() { 0.03 } else { 0.04 };
+            assert!(!sure || (energy - 1.0).abs() < most, "{turns} turns: light is lost or made: {energy}");
             assert!(part * turns as f64 <= 1.5, "{turns} turns: {part} of the pixels gather in a frame");
         }
     }

@@ -13,8 +13,8 @@ use super::sleep::{Contents, Frame};
 use super::usage::{Barrier, Layouts, Res, Schedule, schedule};
 use crate::shader::{Resource, Shape};
 use crate::vulkan::{
-    Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, FrameSlot, Gpu, Image, Pipeline, Result, Sampler,
-    SamplerDesc, View, ViewDesc, VulkanError, format::Channels, vk,
+    Buffer, Commands, DescriptorPool, DescriptorSet, DescriptorWrite, FrameSlot, Gpu, Image, Pipeline, Recording,
+    Result, Sampler, SamplerDesc, View, ViewDesc, VulkanError, format::Channels, vk,
 };
 use gpu_allocator::MemoryLocation;
 use std::collections::HashMap;
@@ -73,6 +73,8 @@ pub struct Program {
     params: Arc<Buffer>,
     slots: Vec<Slot>,
     pub(super) frame: u64,
+    /// Frames that this program has run; the one before it may have run others.
+    ran: u64,
     /// The texture that every frame copies to the CPU.
     shown: Option<usize>,
     /// Steps where a pass begins.
@@ -97,11 +99,22 @@ pub enum Redo {
 /// A frame in flight.
 struct Slot {
     commands: FrameSlot,
+    /// By parity, the commands of its last frame, and what they do. Dropped behind the slot, which waits for them.
+    recorded: [Option<(Recorded, Recording)>; 2],
     cpu_ms: f64,
     /// Whether each of [`Program::starts`] has a timestamp.
     stamped: Vec<bool>,
     /// Where the shown texture is copied to.
     readback: Option<Buffer>,
+}
+
+/// All that decides which commands a frame has, but its parity.
+#[derive(PartialEq)]
+struct Recorded {
+    frame: Frame,
+    shown: Option<usize>,
+    /// The first two frames begin with other layouts than all after them.
+    first: Option<u64>,
 }
 
 struct StepGpu {
@@ -179,6 +192,7 @@ impl Program {
             params: params_buffer,
             slots: Vec::new(),
             frame: 0,
+            ran: 0,
             redo: Redo::All,
             contents: None,
         };
@@ -187,6 +201,7 @@ impl Program {
         for _ in 0..FRAMES_IN_FLIGHT {
             program.slots.push(Slot {
                 commands: FrameSlot::new(gpu, timestamps)?,
+                recorded: [None, None],
                 cpu_ms: 0.0,
                 stamped: Vec::new(),
                 readback: None,
@@ -419,15 +434,10 @@ impl Program {
         let finished = self.finish(slot)?;
         let parity = usize::try_from(self.frame % 2).unwrap_or(0);
         let mut slots = std::mem::take(&mut self.slots);
-        let readback = self.readback(slots[slot].readback.take());
+        let readback = self.readback(&mut slots[slot]);
         let start = Instant::now();
         let frame = self.work(updates, parity == 1);
-        slots[slot].stamped = self.runs(&frame.awake);
-        let result = readback.and_then(|readback| {
-            slots[slot].readback = readback;
-            let Slot { commands, stamped, readback, .. } = &mut slots[slot];
-            commands.submit(|commands| self.record(commands, updates, parity, (&frame, stamped), readback.as_ref()))
-        });
+        let result = readback.and_then(|readback| self.submit(&mut slots[slot], frame, updates, parity, readback));
         slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.slots = slots;
         if result.is_err() {
@@ -437,8 +447,35 @@ impl Program {
         }
         result?;
         self.frame += 1;
+        self.ran += 1;
         self.rest(parity);
         Ok(finished)
+    }
+
+    /// Sends what changed, and the commands of a frame behind it: those of the last one that did the same, if there is one.
+    /// Recording takes most of the time of a CPU's frame.
+    fn submit(
+        &self,
+        slot: &mut Slot,
+        frame: Frame,
+        updates: &[(Arc<Buffer>, Vec<u8>)],
+        parity: usize,
+        readback: Option<Buffer>,
+    ) -> Result<()> {
+        slot.readback = readback;
+        slot.stamped = self.runs(&frame.awake);
+        let Slot { commands, recorded, stamped, readback, .. } = slot;
+        let recorded = &mut recorded[parity];
+        let wanted = Recorded { frame, shown: self.shown, first: Some(self.ran).filter(|ran| *ran < 2) };
+        let recording = match recorded.take() {
+            Some((last, recording)) if last == wanted => recording,
+            _ => Recording::new(commands, |commands| {
+                self.record(commands, parity, (&wanted.frame, stamped), readback.as_ref());
+            })?,
+        };
+        commands.submit_again(&recording, |commands| send(commands, updates))?;
+        *recorded = Some((wanted, recording));
+        Ok(())
     }
 
     /// From the next frame on, does all or what changes.
@@ -487,12 +524,13 @@ impl Program {
     }
 
     /// A host buffer for the shown texture: the one there is, if it fits.
-    fn readback(&self, old: Option<Buffer>) -> Result<Option<Buffer>> {
+    fn readback(&self, slot: &mut Slot) -> Result<Option<Buffer>> {
         let Some(shown) = self.shown else { return Ok(None) };
         let size = self.plan.textures[shown].mip_bytes(0);
-        if let Some(buffer) = old.filter(|b| b.size == size.max(16).next_multiple_of(4)) {
+        if let Some(buffer) = slot.readback.take().filter(|b| b.size == size.max(16).next_multiple_of(4)) {
             return Ok(Some(buffer));
         }
+        slot.recorded = [None, None];
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
         Buffer::new(&self.gpu, "shown", size, usage, MemoryLocation::GpuToCpu).map(Some)
     }
@@ -530,7 +568,7 @@ impl Program {
     }
 
     fn finish(&mut self, slot: usize) -> Result<Option<FrameTimes>> {
-        let Slot { commands, cpu_ms, stamped, readback } = &mut self.slots[slot];
+        let Slot { commands, cpu_ms, stamped, readback, .. } = &mut self.slots[slot];
         let Some(ticks) = commands.wait()? else { return Ok(None) };
         let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
         let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass).zip(stamped.iter());
@@ -552,27 +590,10 @@ impl Program {
     fn record(
         &self,
         commands: &mut Commands<'_>,
-        updates: &[(Arc<Buffer>, Vec<u8>)],
         parity: usize,
         (frame, stamped): (&Frame, &[bool]),
         readback: Option<&Buffer>,
     ) {
-        use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
-        if !updates.is_empty() {
-            let barrier = |src, src_access, dst, dst_access| {
-                vk::MemoryBarrier2::default()
-                    .src_stage_mask(src)
-                    .src_access_mask(src_access)
-                    .dst_stage_mask(dst)
-                    .dst_access_mask(dst_access)
-            };
-            let (all, copy) = (Stages::ALL_COMMANDS, Stages::ALL_TRANSFER);
-            commands.barrier(Some(barrier(all, Access::empty(), copy, Access::TRANSFER_WRITE)), &[]);
-            for (buffer, bytes) in updates {
-                commands.update(buffer, bytes);
-            }
-            commands.barrier(Some(barrier(copy, Access::TRANSFER_WRITE, all, Access::MEMORY_READ)), &[]);
-        }
         let mut labelled = false;
         for (i, step) in self.plan.steps.iter().enumerate() {
             if self.starts.binary_search(&i).is_ok_and(|start| stamped[start]) {
@@ -836,6 +857,26 @@ impl Drop for Program {
     fn drop(&mut self) {
         // Waits for the frames in flight before anything they use is destroyed.
         self.slots.clear();
+    }
+}
+
+/// Writes new content into buffers, after all that reads the old one and before all that reads the new one.
+fn send(commands: &mut Commands<'_>, updates: &[(Arc<Buffer>, Vec<u8>)]) {
+    use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
+    if !updates.is_empty() {
+        let barrier = |src, src_access, dst, dst_access| {
+            vk::MemoryBarrier2::default()
+                .src_stage_mask(src)
+                .src_access_mask(src_access)
+                .dst_stage_mask(dst)
+                .dst_access_mask(dst_access)
+        };
+        let (all, copy) = (Stages::ALL_COMMANDS, Stages::ALL_TRANSFER);
+        commands.barrier(Some(barrier(all, Access::empty(), copy, Access::TRANSFER_WRITE)), &[]);
+        for (buffer, bytes) in updates {
+            commands.update(buffer, bytes);
+        }
+        commands.barrier(Some(barrier(copy, Access::TRANSFER_WRITE, all, Access::MEMORY_READ)), &[]);
     }
 }
 

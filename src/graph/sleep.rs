@@ -96,6 +96,7 @@ struct Still {
 }
 
 /// What there is to do in a frame.
+#[derive(PartialEq, Eq)]
 pub(super) struct Frame {
     /// Steps that run.
     pub awake: Vec<bool>,

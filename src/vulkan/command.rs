@@ -46,12 +46,7 @@ impl FrameSlot {
         // SAFETY: plain creations; `drop` destroys what was made, null or not.
         unsafe {
             let at = || VulkanError::at("create a frame");
-            let info = vk::CommandPoolCreateInfo::default()
-                .queue_family_index(gpu.family)
-                .flags(vk::CommandPoolCreateFlags::TRANSIENT);
-            slot.pool = d.create_command_pool(&info, None).map_err(at())?;
-            let info = vk::CommandBufferAllocateInfo::default().command_pool(slot.pool).command_buffer_count(1);
-            slot.buffer = d.allocate_command_buffers(&info).map_err(at())?[0];
+            (slot.pool, slot.buffer) = command_buffer(gpu)?;
             slot.fence = d.create_fence(&vk::FenceCreateInfo::default(), None).map_err(at())?;
             if slot.query_count > 0 {
                 let info = vk::QueryPoolCreateInfo::default()
@@ -109,35 +104,116 @@ impl FrameSlot {
         record: impl FnOnce(&mut Commands<'_>),
     ) -> Result<()> {
         self.wait()?;
+        self.written = self.record(self.pool, self.buffer, true, record)?;
+        self.send(&[self.buffer], semaphores)
+    }
+
+    /// Submits what `first` records, and behind it commands that were recorded before for this slot.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn submit_again(&mut self, recording: &Recording, first: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
+        self.wait()?;
+        self.record(self.pool, self.buffer, false, first)?;
+        self.written = recording.written;
+        self.send(&[self.buffer, recording.buffer], None)
+    }
+
+    /// Records a buffer anew, the only one of its pool; the number of its timestamps.
+    fn record(
+        &self,
+        pool: vk::CommandPool,
+        buffer: vk::CommandBuffer,
+        timed: bool,
+        record: impl FnOnce(&mut Commands<'_>),
+    ) -> Result<u32> {
         let d = &self.gpu.device;
-        let at = || VulkanError::at("submit a frame");
-        // SAFETY: the slot is not pending, so its pool may be reset; the lock keeps the queue to one thread.
+        let at = || VulkanError::at("record a frame");
+        let queries = (timed && self.query_count > 0).then_some((self.queries, 0));
+        // SAFETY: the buffer is the pool's, which is this slot's or a recording's: nothing of theirs is pending when they are
+        // recorded.
         unsafe {
-            d.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty()).map_err(at())?;
-            let info = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-            d.begin_command_buffer(self.buffer, &info).map_err(at())?;
+            d.reset_command_pool(pool, vk::CommandPoolResetFlags::empty()).map_err(at())?;
+            d.begin_command_buffer(buffer, &vk::CommandBufferBeginInfo::default()).map_err(at())?;
+            let mut commands = Commands { gpu: &self.gpu, handle: buffer, queries };
+            record(&mut commands);
+            let written = commands.queries.map_or(0, |q| q.1).min(self.query_count);
+            d.end_command_buffer(buffer).map_err(at())?;
+            Ok(written)
+        }
+    }
+
+    fn send(
+        &mut self,
+        buffers: &[vk::CommandBuffer],
+        semaphores: Option<(vk::Semaphore, vk::Semaphore)>,
+    ) -> Result<()> {
+        let buffers: Vec<_> =
+            buffers.iter().map(|b| vk::CommandBufferSubmitInfo::default().command_buffer(*b)).collect();
+        let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+        let part = |s| [vk::SemaphoreSubmitInfo::default().semaphore(s).stage_mask(all)];
+        let between = semaphores.map(|(wait, signal)| (part(wait), part(signal)));
+        let mut submit = vk::SubmitInfo2::default().command_buffer_infos(&buffers);
+        if let Some((wait, signal)) = &between {
+            submit = submit.wait_semaphore_infos(wait).signal_semaphore_infos(signal);
+        }
+        let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let d = &self.gpu.device;
+        // SAFETY: the buffers are recorded and not pending, nor are the slot's queries; the lock keeps the queue to one thread.
+        unsafe {
             if self.query_count > 0 {
                 d.reset_query_pool(self.queries, 0, self.query_count);
             }
-            let queries = (self.query_count > 0).then_some((self.queries, 0));
-            let mut commands = Commands { gpu: &self.gpu, handle: self.buffer, queries };
-            record(&mut commands);
-            self.written = commands.queries.map_or(0, |q| q.1).min(self.query_count);
-            d.end_command_buffer(self.buffer).map_err(at())?;
-            let buffers = [vk::CommandBufferSubmitInfo::default().command_buffer(self.buffer)];
-            let all = vk::PipelineStageFlags2::ALL_COMMANDS;
-            let part = |s| [vk::SemaphoreSubmitInfo::default().semaphore(s).stage_mask(all)];
-            let between = semaphores.map(|(wait, signal)| (part(wait), part(signal)));
-            let mut submit = vk::SubmitInfo2::default().command_buffer_infos(&buffers);
-            if let Some((wait, signal)) = &between {
-                submit = submit.wait_semaphore_infos(wait).signal_semaphore_infos(signal);
-            }
-            let submit = [submit];
-            let queue = self.gpu.queue.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            d.queue_submit2(*queue, &submit, self.fence).map_err(at())?;
-            self.pending = true;
+            d.queue_submit2(*queue, &[submit], self.fence).map_err(VulkanError::at("submit a frame"))?;
         }
+        self.pending = true;
         Ok(())
+    }
+}
+
+/// Commands that are recorded once for a slot and submitted many times from it. They end before their slot does.
+pub struct Recording {
+    gpu: Arc<Gpu>,
+    pool: vk::CommandPool,
+    buffer: vk::CommandBuffer,
+    written: u32,
+}
+
+impl Recording {
+    /// Records commands with the timestamps of a slot.
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn new(slot: &FrameSlot, record: impl FnOnce(&mut Commands<'_>)) -> Result<Recording> {
+        let (pool, buffer) = command_buffer(&slot.gpu)?;
+        let mut recording = Recording { gpu: slot.gpu.clone(), pool, buffer, written: 0 };
+        recording.written = slot.record(pool, buffer, true, record)?;
+        Ok(recording)
+    }
+}
+
+impl Drop for Recording {
+    fn drop(&mut self) {
+        // SAFETY: who holds a recording drops it when the slot's last frame has finished.
+        unsafe { self.gpu.device.destroy_command_pool(self.pool, None) };
+    }
+}
+
+/// A command buffer with a pool of its own.
+fn command_buffer(gpu: &Gpu) -> Result<(vk::CommandPool, vk::CommandBuffer)> {
+    let at = || VulkanError::at("create a command buffer");
+    let info = vk::CommandPoolCreateInfo::default().queue_family_index(gpu.family);
+    // SAFETY: plain creations; the pool is destroyed by who asked for it, or here.
+    unsafe {
+        let pool = gpu.device.create_command_pool(&info, None).map_err(at())?;
+        let info = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
+        match gpu.device.allocate_command_buffers(&info) {
+            Ok(buffers) => Ok((pool, buffers[0])),
+            Err(code) => {
+                gpu.device.destroy_command_pool(pool, None);
+                Err(at()(code))
+            }
+        }
     }
 }
 

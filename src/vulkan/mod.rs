@@ -14,7 +14,7 @@ mod sampler;
 mod surface;
 
 pub use ash::vk;
-pub use command::{Commands, FrameSlot};
+pub use command::{Commands, FrameSlot, Recording};
 pub use format::Format;
 pub use gpu::{DeviceInfo, Features, Gpu, GpuOptions, list_devices};
 pub use memory::{Bare, Buffer, Image, ImageDesc, Upload, View, ViewDesc, lay_together};

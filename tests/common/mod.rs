@@ -23,6 +23,11 @@ pub fn device() -> String {
     std::env::var("CONELAB_TEST_DEVICE").unwrap_or("llvmpipe".into())
 }
 
+/// Whether that is the software one: some bounds hold for its rasteriser alone.
+pub fn on_software() -> bool {
+    device() == "llvmpipe"
+}
+
 /// Compiled shaders and pipelines, kept between the tests of one build.
 pub fn cache() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("cache")
