@@ -22,6 +22,12 @@ LobeSample diffuseSample(Surface s, vec3 face, vec2 u) {
     return LobeSample(l, dot(l, face) > 0.0 ? s.albedo : vec3(0.0));
 }
 
+// Smith's masking of a direction at this cosine from the normal.
+float maskingOf(float cosine, float alpha) {
+    float a2 = alpha * alpha;
+    return 2.0 * cosine / (cosine + sqrt(a2 + (1.0 - a2) * cosine * cosine));
+}
+
 // Heitz 2018, "Sampling the GGX Distribution of Visible Normals".
 LobeSample specularSample(Surface s, vec3 face, vec3 view, vec2 u) {
     mat3 frame = frameOf(s.normal);
@@ -41,9 +47,17 @@ LobeSample specularSample(Surface s, vec3 face, vec3 view, vec2 u) {
     vec3 local = reflect(-v, half_way);
     vec3 l = frame * local;
     if (local.z <= 0.0 || dot(l, face) <= 0.0) return LobeSample(l, vec3(0.0));
-    float a2 = alpha * alpha;
-    float g1 = 2.0 * v.z / (v.z + sqrt(a2 + (1.0 - a2) * v.z * v.z));
-    return LobeSample(l, lobeWeight(s, frame, v, local, half_way, g1));
+    return LobeSample(l, lobeWeight(s, frame, v, local, half_way, maskingOf(v.z, alpha)));
+}
+
+// How dense directions of both are [1/sr].
+float diffuseDensity(Surface s, vec3 l) {
+    return max(dot(s.normal, l), 0.0) / PI;
+}
+
+float specularDensity(Surface s, vec3 view, vec3 l) {
+    float n_v = max(dot(s.normal, view), 1e-4);
+    return maskingOf(n_v, ggxAlpha(s.roughness)) * distribution(max(dot(s.normal, normalize(view + l)), 0.0), s.roughness) / (4.0 * n_v);
 }
 
 #endif

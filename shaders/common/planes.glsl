@@ -89,7 +89,7 @@ uint sideNumber(uint slot, uint side) {
     return slot * SIDES + side;
 }
 
-// times: how often it was gathered.
+// And how often it was gathered; or, of what leaves a side, the share of it that emitters emit.
 uvec2 packLight(vec3 light, float times) {
     light = min(light, 65504.0);
     return uvec2(packHalf2x16(light.rg), packHalf2x16(vec2(light.b, times)));

@@ -1,19 +1,28 @@
 // A few narrow cones or rays a pixel, other ones in each pixel of a block of 8x8 that traces any: shading filters over the block, so
 // that each surface sees up to 64 times as many (Segovia et al. 2006). What traces one is in modules/trace, which includes this after
-// saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps).
+// saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use), and whether places on emitters are drawn too.
 #include "cones/light.glsl"
+#include "cones/emitters.glsl"
 #include "common/ggx.glsl"
 #include "common/pattern.glsl"
 
-// Point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
-vec2 pixelPoint(int i) {
-    return evenPoint(uint(i) * uint(params.ray_patterns) + pixelNumber(uvec2(pixelCentre())));
+// Number of a point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
+uint pixelPointNumber(int i) {
+    return uint(i) * uint(params.ray_patterns) + pixelNumber(uvec2(pixelCentre()));
 }
 
-// The same, other ones in each block: what few directions cannot tell becomes noise and not a bias.
-vec2 blockPoint(int i) {
+vec2 pixelPoint(int i) {
+    return evenPoint(pixelPointNumber(i));
+}
+
+// Other points in each block: what few directions cannot tell becomes noise and not a bias.
+uint blockNumber() {
     uvec2 block = uvec2(pixelCentre()) >> 3;
-    return fract(pixelPoint(i) + evenPoint(block.x * 37u + block.y * 101u));
+    return block.x * 37u + block.y * 101u;
+}
+
+vec2 blockPoint(int i) {
+    return fract(pixelPoint(i) + evenPoint(blockNumber()));
 }
 
 // A cone has the share of the hemisphere that it has among those of 4x4 pixels, unless diffuse_aperture says otherwise: narrower
@@ -35,31 +44,93 @@ int specularRays(Surface s, vec3 v) {
     return clamp(int(ceil(params.lobe_share * share * float(gatherShare.lobe))), 1, max(gatherShare.lobe, 1));
 }
 
-// Cones over the hemisphere, then some directions of the lobe; a cone there has a sixteenth of it. One loop for both: what traces them is
-// large, and in the program once.
+// What a place on an emitter brings if nothing hides it.
+struct EmitterLight {
+    vec3 hemisphere; // as of `rays` rays
+    vec3 specular; // as of `lobe` rays
+};
+
+EmitterLight lightOfPlace(EmitterPlace place, Surface s, vec3 face, vec3 v, float rays, float lobe, float drawn) {
+    float cosine = dot(s.normal, place.direction);
+    if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0) return EmitterLight(vec3(0.0), vec3(0.0));
+    float found = drawn * place.by_area * place.distance * place.distance;
+    vec3 light = place.radiance * place.cosine * cosine;
+    return EmitterLight(
+        rays > 0.0 ? light * (rays / PI) / (found + rays * cosine / PI) : vec3(0.0),
+        lobe > 0.0 ? light * lobe * specularBrdf(s, v, place.direction) / (found + lobe * specularDensity(s, v, place.direction)) : vec3(0.0));
+}
+
+// A place of some that are drawn, and what it brings for all of them.
+EmitterPlace bestPlace(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe, float drawn, out EmitterLight light) {
+    float sum = 0.0, own = 0.0;
+    EmitterPlace best;
+    best.cosine = 0.0;
+    light = EmitterLight(vec3(0.0), vec3(0.0));
+    vec4 shift = evenPoint4(blockNumber(), vec4(0.5));
+    float choice = fract(shift.x + float(pixelPointNumber(number) & 0xffffu) * 0.6180339887);
+    for (int k = 0; k < CANDIDATES; k++) {
+        EmitterPlace place = drawEmitter(o.surface, evenPoint4(pixelPointNumber(number * CANDIDATES + k), shift));
+        EmitterLight found = lightOfPlace(place, s, face, v, rays, lobe, drawn);
+        float weight = luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
+        if (weight <= 0.0) continue;
+        sum += weight;
+        float chance = weight / sum;
+        if (choice < chance) {
+            choice /= chance;
+            best = place;
+            light = found;
+            own = weight;
+        } else {
+            choice = (choice - chance) / (1.0 - chance);
+        }
+    }
+    float scale = own > 0.0 ? sum / own : 0.0;
+    light.hemisphere *= scale;
+    light.specular *= scale;
+    return best;
+}
+
+// Cones over the hemisphere, then some directions of the lobe; a cone there has a sixteenth of it; then rays to emitters. One loop for
+// all: what traces them is large, and in the program once.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     mat3 frame = frameOf(s.normal);
     float tan_half = tanOfShare(params.pixel_cones), tan_lobe = 0.5 * ggxAlpha(s.roughness);
     int rays = gatherShare.rays, lobe = params.specular_cone ? specularRays(s, v) : 0;
+    int drawn = DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
+    float candidates = float(drawn * CANDIDATES);
     vec4 hemisphere = vec4(0.0);
     vec3 specular = vec3(0.0);
-    for (int i = gatherShare.first; i < rays + lobe; i += gatherShare.of) {
-        bool mirrors = i >= rays;
+    for (int i = gatherShare.first; i < rays + lobe + drawn; i += gatherShare.of) {
+        bool mirrors = i >= rays && i < rays + lobe, is_drawn = i >= rays + lobe;
         vec3 d, weight = vec3(0.0);
-        if (mirrors) {
+        RayUse use = MEETS_ALL;
+        EmitterLight light = EmitterLight(vec3(0.0), vec3(0.0));
+        if (is_drawn) {
+            EmitterPlace place = bestPlace(o, s, face, v, i - rays - lobe, float(rays), float(lobe), candidates, light);
+            if (place.cosine == 0.0) continue;
+            d = place.direction;
+            use.range = rangeTo(place, o.surface);
+        } else if (mirrors) {
             LobeSample l = specularSample(s, face, v, blockPoint(i - rays));
             d = l.direction;
             weight = l.weight;
             if (weight == vec3(0.0)) continue;
+            if (drawn > 0) use = RayUse(1e30, float(lobe) * specularDensity(s, v, d), candidates);
         } else {
             d = frame * cosineSample(pixelPoint(i));
             if (dot(d, face) <= 0.0) continue; // mapped normals lean
+            if (drawn > 0) use = RayUse(1e30, float(rays) * diffuseDensity(s, d), candidates);
         }
-        CONE_BEGINS(!mirrors ? uint(i) + 1u : i == rays ? 0u : uint(params.diffuse_cones + i - rays));
-        vec4 cone = traceAny(o, d, mirrors ? tan_lobe : tan_half, mirrors ? params.specular_steps : params.diffuse_steps);
-        vec3 light = coneRadiance(cone);
-        if (mirrors) specular += weight * light;
-        else hemisphere += vec4(light, 1.0 - cone.a);
+        CONE_BEGINS(is_drawn ? uint(params.diffuse_cones + i - rays) : !mirrors ? uint(i) + 1u : i == rays ? 0u : uint(params.diffuse_cones + i - rays));
+        vec4 cone = traceAny(o, d, mirrors ? tan_lobe : tan_half, mirrors ? params.specular_steps : params.diffuse_steps, use);
+        if (is_drawn) {
+            hemisphere.rgb += (1.0 - cone.a) * light.hemisphere;
+            specular += (1.0 - cone.a) * light.specular;
+            continue;
+        }
+        vec3 found = coneRadiance(cone);
+        if (mirrors) specular += weight * found;
+        else hemisphere += vec4(found, 1.0 - cone.a);
     }
     return Gathered(hemisphere / float(max(rays, 1)), specular / float(max(lobe, 1)));
 }

@@ -19,15 +19,16 @@ struct Gathered {
     vec3 specular; // radiance towards the viewer
 };
 
-// The rays of a surface that are gathered here: every `of`-th of `rays`, from `first` on, and of those into its lobe. What all threads
-// gather is summed up.
+// The rays of a surface that are gathered here: every `of`-th of `rays`, from `first` on, and of those into its lobe and to emitters. What
+// all threads gather is summed up.
 struct RayShare {
     int rays;
     int lobe; // of a surface that reflects by its lobe alone
+    int emitters; // to places on them
     int first;
     int of;
 };
-RayShare gatherShare = RayShare(params.diffuse_cones, params.diffuse_cones, 0, 1);
+RayShare gatherShare = RayShare(params.diffuse_cones, params.diffuse_cones, params.emitter_rays, 0, 1);
 
 // Centre of the pixel that is shaded: defined by the shader.
 vec2 pixelCentre();

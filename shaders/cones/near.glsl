@@ -19,6 +19,7 @@ const float NEAR_MARGIN = 0.05;
 struct Met {
     float distance; // of what is met, or so far nothing is [m]
     vec4 light; // radiance of what is met, and 1; or 0
+    float emitted; // share of it that is emitted by what is drawn as an emitter
 };
 
 // Which surface of a cell a ray from `at` along `dir` meets between `enter` and `leave`: its distance, less than `end`, or `end`
@@ -100,19 +101,22 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
         if (bit != 0) {
             uint met;
             float t = meetCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, met);
-            if (t < end) return Met(t * voxel, vec4(lightOf(MET_RADIANCE.list[met]), 1.0));
+            if (t < end) {
+                uvec2 packed = MET_RADIANCE.list[met];
+                return Met(t * voxel, vec4(lightOf(packed), 1.0), timesOf(packed));
+            }
         }
         bvec3 crossed = equal(borders, vec3(leave));
         ivec3 next = clamp(ivec3(floor(at + leave * dir)), first, first + edge - 1);
         cell = mix(next, mix(first - 1, first + edge, ahead), crossed);
         enter = leave;
     }
-    return Met(min(enter, end) * voxel, vec4(0.0)); // what lies behind the grid's border is not known here
+    return Met(min(enter, end) * voxel, vec4(0.0), 0.0); // what lies behind the grid's border is not known here
 }
 
 // The first surface within `range` [m] along d, from one cascade into the next coarser.
 Met meetSurface(ConeOrigin o, vec3 d, float range) {
-    Met met = Met(0.0, vec4(0.0));
+    Met met = Met(0.0, vec4(0.0), 0.0);
     for (int k = o.cascade; k < CASCADE_COUNT && met.light.a == 0.0 && met.distance < range; k++)
         met = meetInCascade(k, o, d, met.distance, range);
     return met;

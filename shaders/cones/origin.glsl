@@ -15,4 +15,13 @@ struct ConeOrigin {
     float weight; // of it; of the next one, the rest: so that no seam shows where a cascade ends
 };
 
+// What a ray is for.
+struct RayUse {
+    float range; // what lies farther is not met [m]
+    float density; // of such rays [1/sr], where places on emitters are drawn too and share their light with them; 0: the ray has all of it
+    float drawn; // such places, for each ray
+};
+
+const RayUse MEETS_ALL = RayUse(1e30, 0.0, 0.0);
+
 #endif

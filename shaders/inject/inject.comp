@@ -8,6 +8,7 @@
 #include "common/planes.glsl"
 #include "common/shadow_layers.glsl"
 #include "common/scene.glsl"
+#include "common/emitters.glsl"
 #include "modules/shadow_lookup.glsl"
 
 layout(local_size_x = 128) in;
@@ -95,6 +96,9 @@ void main() {
         mat3 axes = cellAxes(map, center);
         uint axis = uint(axisOfSlot(slot)), base = planeBase(slot);
         vec3 gathered = lightOf(sideGathered.list[i]);
-        sideRadiance.list[i] = packLight(radianceOf(sideOfSlot(slot, side), gathered, center, tapsOf(slot, side, base, axis), axes), 0.0);
+        Side s = sideOfSlot(slot, side);
+        vec3 radiance = radianceOf(s, gathered, center, tapsOf(slot, side, base, axis), axes);
+        float emitted = emitters.count > 0 ? luminance(s.emission) / max(luminance(radiance), 1e-20) : 0.0;
+        sideRadiance.list[i] = packLight(radiance, emitted);
     }
 }

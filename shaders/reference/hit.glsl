@@ -3,6 +3,7 @@
 #define HIT_GLSL
 #include "reference/trace.glsl"
 #include "common/brdf.glsl"
+#include "common/emitters.glsl"
 
 struct SurfaceHit {
     vec3 position;
@@ -10,6 +11,7 @@ struct SurfaceHit {
     vec3 view; // to where the ray came from
     Surface surface;
     vec3 emission;
+    float drawn; // how densely a place here is drawn as one on an emitter, by area [1/m^2]
 };
 
 SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
@@ -21,7 +23,8 @@ SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
     vec3 w = vec3(1.0 - hit.weights.x - hit.weights.y, hit.weights);
     vec3 v = -ray.direction;
     vec3 face = normalize(cross(t.b - t.a, t.c - t.a));
-    face = dot(face, v) < 0.0 ? -face : face;
+    bool front = dot(face, v) >= 0.0;
+    face = front ? face : -face;
 
     VertexAttributes a = loadAttributes(corners.vertices.x), b = loadAttributes(corners.vertices.y), c = loadAttributes(corners.vertices.z);
     vec3 n = normalize(normalToWorld(corners.instance, w.x * a.normal + w.y * b.normal + w.z * c.normal));
@@ -38,7 +41,7 @@ SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
     }
     vec2 rm = roughnessMetallic(m, uv, g);
     Surface s = makeSurface(n * side, baseColor(m, uv, g).rgb, rm.x, rm.y);
-    return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, uv, g));
+    return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, uv, g), emitterDensity(t.flags, hit.weights, front));
 }
 
 #endif

@@ -1,14 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // One sample of every pixel by path tracing (Kajiya 1986), with the surfaces, the BRDF and the lights of the
-// rasterised method. Every light is asked at every vertex (next-event estimation); directions are drawn from the
-// cosine and from the visible GGX normals. The first vertex sends out two rays, one for each lobe, so that
-// diffuse and specular light are known apart. Emission and the sky are met by the rays.
+// rasterised method. Every light is asked at every vertex (next-event estimation), and one place on all emitting surfaces;
+// directions are drawn from the cosine and from the visible GGX normals. The first vertex sends out two rays, one for each lobe, so
+// that diffuse and specular light are known apart. The sky is met by the rays, and so is emission, which both ways of finding it
+// share (reference/emitters.glsl).
 #include "params.glsl"
 #include "common/direct.glsl"
 #include "reference/hit.glsl"
 #include "common/ggx.glsl"
 #include "common/random.glsl"
+#include "reference/emitters.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -27,12 +29,8 @@ float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
     return blocked(Ray(from, to_light, end)) ? 0.0 : 1.0;
 }
 
-float luminance(vec3 c) {
-    return dot(c, vec3(0.2126, 0.7152, 0.0722));
-}
-
-// Radiance that arrives at p along -d after at most params.bounces turns, this ray being the first.
-vec3 incoming(vec3 p, vec3 d, inout Random random, out bool escaped) {
+// Radiance that arrives at p along -d after at most params.bounces turns, this ray being the first. density: of d, where it was drawn.
+vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escaped) {
     vec3 sum = vec3(0.0), weight = vec3(1.0);
     escaped = false;
     for (int bounce = 1; bounce <= params.bounces; bounce++) {
@@ -43,18 +41,23 @@ vec3 incoming(vec3 p, vec3 d, inout Random random, out bool escaped) {
             return sum + weight * sceneInfo.sky;
         }
         SurfaceHit h = surfaceOf(hit, ray, NO_FOOTPRINT);
-        sum += weight * (h.emission + directLight(h.surface, h.position, h.face, h.view));
+        vec3 emitted = h.emission * shareOfRay(density, h, hit.t);
+        sum += weight * (emitted + directLight(h.surface, h.position, h.face, h.view));
         if (bounce == params.bounces) break;
         vec4 u = next4(random);
         float shine = luminance(fresnel(h.surface.f0, max(dot(h.surface.normal, h.view), 0.0)));
         float chance = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
+        LobeLight drawn = emitterLight(h.surface, h.position, h.face, h.view, vec2(1.0 - chance, chance), random);
+        sum += weight * (drawn.diffuse + drawn.specular);
         LobeSample next;
         if (u.z < chance) {
             next = specularSample(h.surface, h.face, h.view, u.xy);
             next.weight /= chance;
+            density = chance * specularDensity(h.surface, h.view, next.direction);
         } else {
             next = diffuseSample(h.surface, h.face, u.xy);
             next.weight /= 1.0 - chance;
+            density = (1.0 - chance) * diffuseDensity(h.surface, next.direction);
         }
         weight *= next.weight;
         if (weight == vec3(0.0)) break;
@@ -104,9 +107,14 @@ void main() {
         Random other = Random(uvec4(random.key.xy, 1u << 16, random.key.w));
         bool sky = false, unused;
         // Its own albedo is left out of the test: black surfaces too have openness.
-        if (dot(one.direction, h.face) > 0.0) diffuse = one.weight * incoming(p, one.direction, random, sky);
+        if (dot(one.direction, h.face) > 0.0)
+            diffuse = one.weight * incoming(p, one.direction, diffuseDensity(h.surface, one.direction), random, sky);
         open = sky ? 1.0 : 0.0;
-        if (two.weight != vec3(0.0)) specular = two.weight * incoming(p, two.direction, other, unused);
+        if (two.weight != vec3(0.0))
+            specular = two.weight * incoming(p, two.direction, specularDensity(h.surface, h.view, two.direction), other, unused);
+        LobeLight drawn = emitterLight(h.surface, h.position, h.face, h.view, vec2(1.0), random);
+        diffuse += drawn.diffuse;
+        specular += drawn.specular;
         total = h.emission + direct + diffuse + specular;
     }
     if (any(isnan(total)) || any(isinf(total))) {

@@ -18,8 +18,10 @@ struct BvhTriangle {
     vec3 b;
     uint first_index; // of its three vertices in `indices`
     vec3 c;
-    uint masked;
+    uint flags; // the highest bit: an alpha mask; of an emitter the number of its first part and 1, from bit 24 on the parts of an edge
 };
+
+const uint MASKED = 0x80000000u;
 
 layout(std430) readonly buffer BvhNodes { BvhNode nodes[]; } bvhNodes;
 layout(std430) readonly buffer BvhTriangles { BvhTriangle triangles[]; } bvhTriangles;
@@ -161,7 +163,7 @@ Hit traceRay(Ray ray, Footprint f, bool any) {
                 BvhTriangle t = bvhTriangles.triangles[i];
                 Hit found;
                 if (!hitTriangle(shear, ray.origin, t, hit.t, found)) continue;
-                if (t.masked != 0 && cutOut(t, found.weights, f)) continue;
+                if ((t.flags & MASKED) != 0 && cutOut(t, found.weights, f)) continue;
                 hit = Hit(found.t, i, found.weights);
                 if (any) return hit;
             }

@@ -47,6 +47,7 @@ pub const EXTERNALS: &[External] = &[
     external("attributes", Storage),
     external("indices", Storage),
     external("triangles", Storage),
+    external("emitters", Storage),
     external("bvhNodes", Storage),
     external("bvhTriangles", Storage),
     external("materialTexture0", TextureArray),

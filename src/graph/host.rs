@@ -153,6 +153,20 @@ block! {
 }
 
 block! {
+    /// An element of `emitters`, behind its head of 16 bytes (std430).
+    EmitterBlock {
+        a: [f32; 3],
+        chance: f32,
+        to_b: [f32; 3],
+        other: u32,
+        to_c: [f32; 3],
+        sides: u32,
+        radiance: [f32; 3],
+        density: f32,
+    }
+}
+
+block! {
     /// An element of `instances` (std430).
     InstanceBlock {
         model: [f32; 16],
@@ -182,6 +196,7 @@ pub(super) fn mismatch(resource: &str, declared: &Layout) -> Option<(String, Opt
         "materials" => (MaterialBlock::members(), size_of::<MaterialBlock>(), true),
         "instances" => (InstanceBlock::members(), size_of::<InstanceBlock>(), true),
         "draws" => (DrawBlock::members(), size_of::<DrawBlock>(), true),
+        "emitters" => (EmitterBlock::members(), size_of::<EmitterBlock>(), true),
         _ => return None,
     };
     let declared = if elements { element(declared)? } else { (declared, None) };
@@ -205,10 +220,10 @@ pub(super) fn mismatch(resource: &str, declared: &Layout) -> Option<(String, Opt
     None
 }
 
-/// The struct of an array that is all of a block, and its stride.
+/// The struct of an array that is all of a block or ends it, and its stride.
 fn element(block: &Layout) -> Option<(&Layout, Option<u32>)> {
     match block.members() {
-        [list] => match &list.layout {
+        [.., list] => match &list.layout {
             Layout::Array { of, stride, .. } if !of.members().is_empty() => Some((&**of, Some(*stride))),
             _ => None,
         },

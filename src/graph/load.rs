@@ -86,6 +86,7 @@ pub const BUILTIN_VARIABLES: &[&str] = &[
     "directional_views",
     "light_count",
     "triangle_count",
+    "emitting_triangle_count",
     "scene_size",
     "seen_distance",
     "int64_atomics",

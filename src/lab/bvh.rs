@@ -1,5 +1,6 @@
 //! A hierarchy over all triangles of a scene in one pose, for shaders that trace rays (`shaders/include/trace.glsl`).
 
+use super::emitters::Emitters;
 use crate::graph::host::DrawBlock;
 use crate::vulkan::{Result, VulkanError};
 use bytemuck::{Pod, Zeroable};
@@ -19,7 +20,8 @@ struct TriangleBlock {
     b: [f32; 3],
     first_index: u32,
     c: [f32; 3],
-    masked: u32,
+    /// The highest bit: an alpha mask. The others: [`Emitters::number`](super::emitters::Emitters::number).
+    flags: u32,
 }
 
 /// What the triangles of a scene are, whatever its pose.
@@ -27,6 +29,8 @@ pub(super) struct Soup<'a> {
     pub positions: &'a [f32],
     pub indices: &'a [u32],
     pub draws: &'a [DrawBlock],
+    /// Of each mesh.
+    pub first_index: &'a [u32],
     /// Whether the draw's material has an alpha mask.
     pub masked: &'a dyn Fn(&DrawBlock) -> bool,
 }
@@ -50,8 +54,13 @@ pub(super) fn capacity(triangles: usize) -> (usize, usize) {
 ///
 /// # Errors
 /// A scene whose hierarchy is too deep for the shader's stack.
-pub(super) fn build(soup: &Soup<'_>, model: &dyn Fn(u32) -> Mat4, device: &str) -> Result<Hierarchy> {
-    let blocks = triangles(soup, model);
+pub(super) fn build(
+    soup: &Soup<'_>,
+    emitters: &Emitters,
+    model: &dyn Fn(u32) -> Mat4,
+    device: &str,
+) -> Result<Hierarchy> {
+    let blocks = triangles(soup, emitters, model);
     let corners: Vec<Triangle> =
         blocks.iter().map(|t| Triangle { v0: Vec3A::from(t.a), v1: Vec3A::from(t.b), v2: Vec3A::from(t.c) }).collect();
     // A leaf of one, and nothing in it, where there are no triangles: the shader always reads a root.
@@ -78,11 +87,11 @@ pub(super) fn build(soup: &Soup<'_>, model: &dyn Fn(u32) -> Mat4, device: &str) 
     Ok(Hierarchy { nodes: bytemuck::cast_slice(&nodes).to_vec(), triangles: bytemuck::cast_slice(&ordered).to_vec() })
 }
 
-fn triangles(soup: &Soup<'_>, model: &dyn Fn(u32) -> Mat4) -> Vec<TriangleBlock> {
+fn triangles(soup: &Soup<'_>, emitters: &Emitters, model: &dyn Fn(u32) -> Mat4) -> Vec<TriangleBlock> {
     let mut blocks = Vec::new();
     for (number, draw) in (0u32..).zip(soup.draws) {
         let model = model(draw.instance);
-        let masked = u32::from((soup.masked)(draw));
+        let masked = u32::from((soup.masked)(draw)) << 31;
         let corner = |i: u32| {
             let v = 3 * soup.indices[i as usize] as usize;
             let p = Vec3::new(soup.positions[v], soup.positions[v + 1], soup.positions[v + 2]);
@@ -92,7 +101,14 @@ fn triangles(soup: &Soup<'_>, model: &dyn Fn(u32) -> Mat4) -> Vec<TriangleBlock>
             let [a, b, c] = [0, 1, 2].map(|k| corner(first_index + k));
             // Impossible places would spread through the boxes; such a triangle is nowhere to be hit.
             if [a, b, c].iter().flatten().all(|x| x.is_finite()) {
-                blocks.push(TriangleBlock { a, draw: number, b, first_index, c, masked });
+                blocks.push(TriangleBlock {
+                    a,
+                    draw: number,
+                    b,
+                    first_index,
+                    c,
+                    flags: masked | emitters.number(number, first_index),
+                });
             }
         }
     }

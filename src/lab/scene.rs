@@ -1,6 +1,7 @@
 //! A scene on the device, as the fixed named resources that shaders read (`shaders/include/scene.glsl`).
 
 use super::bvh::{self, Soup};
+use super::emitters::Emitters;
 use super::materials::{self, NO_TEXTURE};
 use super::view::{lights, shadow_view_count};
 use crate::graph::host::{CameraBlock, DrawBlock, InstanceBlock, MaterialBlock, SceneInfoBlock};
@@ -26,6 +27,7 @@ pub struct SceneGpu {
     bounds: (Vec3, Vec3),
     instances: Arc<Buffer>,
     sent: Vec<InstanceBlock>,
+    emitters: Arc<Emitters>,
 }
 
 /// Bytes of the block `camera`.
@@ -72,6 +74,15 @@ impl SceneGpu {
         let instance_blocks = instances(scene, origin, 0.0, None);
         let instances = upload.buffer("instances", bytemuck::cast_slice(&instance_blocks), storage)?;
         let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
+        let masked = |d: &DrawBlock| is_masked(scene, d);
+        let soup = Soup {
+            positions: &positions,
+            indices: &indices,
+            draws: &draws,
+            first_index: &first_index,
+            masked: &masked,
+        };
+        let emitters = Arc::new(Emitters::new(scene, &soup, &attributes));
         let mut buffers = HashMap::from([
             ("camera", camera.clone()),
             ("indices", index_buffer.clone()),
@@ -82,13 +93,13 @@ impl SceneGpu {
             ("instances", instances.clone()),
             ("draws", upload.buffer("draws", bytemuck::cast_slice(&draws), storage)?),
             ("triangles", upload.buffer("triangles", bytemuck::cast_slice(&triangles), storage)?),
+            ("emitters", upload.buffer("emitters", &emitters.buffer(&instance_blocks), storage)?),
             ("positions", upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?),
             ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
         ]);
         if rays {
-            let masked = |d: &DrawBlock| is_masked(scene, d);
-            let soup = Soup { positions: &positions, indices: &indices, draws: &draws, masked: &masked };
-            buffers.extend(ray_buffers(&mut upload, hierarchy(&soup, &instance_blocks, &gpu.info.name)?, &info)?);
+            let found = hierarchy(&soup, &emitters, &instance_blocks, &gpu.info.name)?;
+            buffers.extend(ray_buffers(&mut upload, found, &info)?);
         }
         let limit = u64::from(gpu.info.limits.max_storage_buffer_range);
         if let Some((name, buffer)) = buffers.iter().find(|(_, b)| b.size > limit) {
@@ -133,6 +144,7 @@ impl SceneGpu {
             bounds: (low, high),
             instances,
             sent: instance_blocks,
+            emitters,
         })
     }
 
@@ -158,15 +170,17 @@ impl SceneGpu {
             ("sceneInfo", upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?),
             ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
             ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
+            ("emitters", upload.buffer("emitters", &self.emitters.buffer(&sent), storage)?),
         ];
         resources.buffers.extend(own);
         if self.has_rays() {
             // The other program moves its own instances, and the hierarchy with them.
-            let found = scene_hierarchy(scene, &sent, &gpu.info.name)?;
+            let found = scene_hierarchy(scene, &self.emitters, &sent, &gpu.info.name)?;
             resources.buffers.extend(ray_buffers(&mut upload, found, &info)?);
         }
         upload.finish()?;
-        Ok(SceneGpu { resources, camera, bytes: self.bytes, origin, info, bounds, instances, sent })
+        let emitters = self.emitters.clone();
+        Ok(SceneGpu { resources, camera, bytes: self.bytes, origin, info, bounds, instances, sent, emitters })
     }
 
     /// Buffers that change with time: the poses of animated instances, when they moved.
@@ -181,9 +195,12 @@ impl SceneGpu {
         }
         self.sent = now;
         let mut list = vec![(self.instances.clone(), bytemuck::cast_slice(&self.sent).to_vec())];
+        if let Some(buffer) = self.resources.buffers.get("emitters").filter(|_| self.emitters.move_in(scene)) {
+            list.push((buffer.clone(), self.emitters.buffer(&self.sent)));
+        }
         let rays = [self.resources.buffers.get("bvhNodes"), self.resources.buffers.get("bvhTriangles")];
         if let [Some(nodes), Some(triangles)] = rays {
-            let found = scene_hierarchy(scene, &self.sent, "this device")?;
+            let found = scene_hierarchy(scene, &self.emitters, &self.sent, "this device")?;
             list.push((nodes.clone(), found.nodes));
             list.push((triangles.clone(), found.triangles));
         }
@@ -217,17 +234,29 @@ impl SceneGpu {
 }
 
 /// The hierarchy over triangles in the pose of these instances.
-fn hierarchy(soup: &Soup<'_>, instances: &[InstanceBlock], device: &str) -> Result<bvh::Hierarchy> {
+fn hierarchy(
+    soup: &Soup<'_>,
+    emitters: &Emitters,
+    instances: &[InstanceBlock],
+    device: &str,
+) -> Result<bvh::Hierarchy> {
     let model = |i: u32| instances.get(i as usize).map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model));
-    bvh::build(soup, &model, device)
+    bvh::build(soup, emitters, &model, device)
 }
 
 /// [`hierarchy`] over all triangles of a scene that was uploaded before.
-fn scene_hierarchy(scene: &Scene, instances: &[InstanceBlock], device: &str) -> Result<bvh::Hierarchy> {
+fn scene_hierarchy(
+    scene: &Scene,
+    emitters: &Emitters,
+    instances: &[InstanceBlock],
+    device: &str,
+) -> Result<bvh::Hierarchy> {
     let (positions, _, indices, first_index) = vertices(scene);
     let draws = draws(scene, &first_index);
-    let soup = Soup { positions: &positions, indices: &indices, draws: &draws, masked: &|d| is_masked(scene, d) };
-    hierarchy(&soup, instances, device)
+    let masked = |d: &DrawBlock| is_masked(scene, d);
+    let soup =
+        Soup { positions: &positions, indices: &indices, draws: &draws, first_index: &first_index, masked: &masked };
+    hierarchy(&soup, emitters, instances, device)
 }
 
 /// The buffers of a hierarchy, with room for that of any other pose.

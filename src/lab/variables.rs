@@ -23,6 +23,7 @@ pub fn environment(scene: &Scene, size: (u32, u32), device: &DeviceInfo) -> Env 
     put("directional_views", f64::from(directional_view_count(&scene.lights)));
     put("light_count", scene.lights.len() as f64);
     put("triangle_count", scene.triangle_count() as f64);
+    put("emitting_triangle_count", scene.emitting_triangle_count() as f64);
     put("scene_size", f64::from(extent.max_element()));
     put("seen_distance", f64::from(scene.seen_distance));
     put("int64_atomics", f64::from(u8::from(device.features.int64_atomics)));

@@ -26,8 +26,10 @@ use glam::{Mat4, Quat, Vec3, Vec4};
 use indexmap::IndexMap;
 
 pub use error::SceneError;
+pub use mesh::Side;
 pub(crate) use shuffle::splitmix;
 pub use split::MAX_TRIANGLES;
+pub use texture::SmallPicture;
 pub(crate) use transform::origin_of;
 
 /// Everything that is rendered, and from where.

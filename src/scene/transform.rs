@@ -55,6 +55,15 @@ impl Scene {
         let of_mesh = |i: u32| self.meshes.get(i as usize).map_or(0, Mesh::triangle_count);
         self.instances.iter().map(|instance| of_mesh(instance.mesh)).sum()
     }
+
+    /// How many of them emit light.
+    pub fn emitting_triangle_count(&self) -> usize {
+        let emits = |m: u32| self.materials.get(m as usize).is_some_and(|m| m.emission != Vec3::ZERO);
+        let submeshes = |i: u32| self.meshes.get(i as usize).into_iter().flat_map(|mesh| &mesh.submeshes);
+        let of_mesh =
+            |i: u32| submeshes(i).filter(|s| emits(s.material)).map(|s| s.index_count as usize / 3).sum::<usize>();
+        self.instances.iter().map(|instance| of_mesh(instance.mesh)).sum()
+    }
 }
 
 /// [`Scene::origin`] of a scene with these bounds.

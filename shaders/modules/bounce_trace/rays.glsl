@@ -1,7 +1,9 @@
-// Voxels gather with rays that meet others' surfaces.
+// Voxels gather with rays that meet others' surfaces, and with rays to places on emitters.
 #include "modules/lookup.glsl"
 #include "cones/rays.glsl"
 
-vec4 traceBounce(ConeOrigin o, vec3 d) {
-    return traceVoxels(o, d);
+const bool BOUNCE_DRAWS_EMITTERS = !CURVED;
+
+vec4 traceBounce(ConeOrigin o, vec3 d, RayUse use) {
+    return traceVoxels(o, d, use);
 }

@@ -1,11 +1,11 @@
 // A ray that is not straight in cells, or crosses cascades: followed in quarters of a cell. Every voxel on the way hides as
 // much of it as its opacity says for the length inside. Returns radiance premultiplied by opacity, and opacity.
-vec4 traceVoxels(ConeOrigin o, vec3 d) {
+vec4 traceVoxels(ConeOrigin o, vec3 d, RayUse use) {
     vec3 origin = o.position;
     vec3 color = vec3(0.0);
     float through = 1.0, s = 0.0;
     int dim = params.voxel_dim;
-    for (int i = 0; i < 16 * dim; i++) {
+    for (int i = 0; i < 16 * dim && s < use.range; i++) {
         vec3 p = origin + s * d;
         int cascade = cascadeAt(p);
         vec3 u = worldToVolume(volume.maps[cascade], p);

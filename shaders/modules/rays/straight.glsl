@@ -2,9 +2,11 @@
 // planes. Returns radiance and 1, or 0 where it meets none.
 #include "cones/near.glsl"
 #include "cones/sample.glsl"
+#include "cones/emitters.glsl"
 
-vec4 traceVoxels(ConeOrigin o, vec3 d) {
-    Met met = meetSurface(o, d, 1e30);
+vec4 traceVoxels(ConeOrigin o, vec3 d, RayUse use) {
+    Met met = meetSurface(o, d, use.range);
+    met.light.rgb *= shareOfRay(use, met.light.rgb, met.emitted, met.distance);
     CONE_SAMPLED(0, met.distance, ConeSample(o.surface + met.distance * d, 0.0, 0.0, 2.0 * o.reach, 2.0 * o.reach, 0.0, met.light, false, true), met.light.a, 1.0 - met.light.a);
     return met.light;
 }

@@ -1,9 +1,11 @@
-// Rays that meet voxels' surfaces, however far.
+// Rays that meet voxels' surfaces, however far, and rays to places on emitters.
 #include "modules/lookup.glsl"
 #include "cones/rays.glsl"
 
-vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps) {
-    return traceVoxels(o, d);
+const bool DRAWS_EMITTERS = !CURVED;
+
+vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
+    return traceVoxels(o, d, use);
 }
 
 #include "cones/interleaved.glsl"

@@ -12,7 +12,7 @@ mod noise;
 mod openings;
 mod patterns;
 mod scales;
-mod shapes;
+pub(super) mod shapes;
 mod solid;
 mod street;
 mod thin_walls;

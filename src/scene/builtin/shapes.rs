@@ -6,10 +6,10 @@ use indexmap::IndexMap;
 use crate::scene::{Mesh, Submesh, Vertex};
 
 /// Faces of a cuboid that stands on something: all but the bottom.
-pub(super) const STANDING: [bool; 6] = [true, true, false, true, true, true];
+pub(in crate::scene) const STANDING: [bool; 6] = [true, true, false, true, true, true];
 
 /// Collects triangles by material; everything is placed by `transform`.
-pub(super) struct MeshBuilder {
+pub(in crate::scene) struct MeshBuilder {
     name: String,
     vertices: Vec<Vertex>,
     triangles: IndexMap<u32, Vec<u32>>,

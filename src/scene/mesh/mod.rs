@@ -1,5 +1,6 @@
 //! From triangles as a file gives them to meshes that can be relied on: finite, with area, normals and tangents.
 
+mod closed;
 mod normals;
 mod tangents;
 
@@ -7,6 +8,8 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+
+pub use closed::Side;
 
 use super::progress::Progress;
 use super::{Material, Mesh, Vertex};

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::io::Cursor;
 
+use glam::{Vec2, Vec3};
 use image::{ImageFormat, ImageReader, Limits, RgbaImage};
 
 use super::{Filter, Recipe, Source, Texture, TextureFormat, dds, mips, texture_from_rgba};
@@ -41,6 +42,50 @@ pub(in crate::scene) fn first_level_rgba(texture: &Texture) -> Result<Cow<'_, [u
     match texture.format {
         TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm => Ok(Cow::Borrowed(level)),
         format => dds::decompress(format, texture.width, texture.height, level).map(Cow::Owned),
+    }
+}
+
+/// A colour texture at a low resolution, linear.
+#[derive(Clone, Debug)]
+pub struct SmallPicture {
+    /// Texels.
+    pub width: u32,
+    /// Texels.
+    pub height: u32,
+    texels: Vec<Vec3>,
+}
+
+impl SmallPicture {
+    /// The texel at texture coordinates, which repeat.
+    pub fn at(&self, uv: Vec2) -> Vec3 {
+        let index = |t: f32, n: u32| ((t.rem_euclid(1.0) * n as f32) as u32).min(n - 1);
+        let place = index(uv.y, self.height) * self.width + index(uv.x, self.width);
+        self.texels.get(place as usize).copied().unwrap_or_default()
+    }
+}
+
+impl Texture {
+    /// The finest level that is at most so many texels wide and high; none where the texture has none or cannot be decoded.
+    pub fn small(&self, most: u32) -> Option<SmallPicture> {
+        let sized = (0u32..)
+            .zip(&self.mips)
+            .map(|(level, bytes)| ((self.width >> level).max(1), (self.height >> level).max(1), bytes));
+        let (width, height, bytes) = sized.clone().find(|(w, h, _)| w.max(h) <= &most).or_else(|| sized.last())?;
+        let rgba = match self.format {
+            TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm => Cow::Borrowed(bytes),
+            format => Cow::Owned(dds::decompress(format, width, height, bytes).ok()?),
+        };
+        let linear = |c: u8| {
+            let c = f32::from(c) / 255.0;
+            match self.format.is_srgb() {
+                false => c,
+                true if c <= 0.04045 => c / 12.92,
+                true => ((c + 0.055) / 1.055).powf(2.4),
+            }
+        };
+        let texels: Vec<Vec3> =
+            rgba.as_chunks::<4>().0.iter().map(|t| Vec3::from([t[0], t[1], t[2]].map(linear))).collect();
+        (texels.len() == (width * height) as usize).then_some(SmallPicture { width, height, texels })
     }
 }
 

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use super::progress::Progress;
 use super::{SceneError, Texture, TextureFormat};
 
+pub use decode::SmallPicture;
 pub(super) use decode::first_level_rgba;
 pub(super) use mips::{Filter, texture_from_rgba};
 

@@ -1,0 +1,51 @@
+// Light that comes to the voxels from each other: every listed side of a voxel gathers it with a few rays or narrow cones, its
+// neighbours in other directions, several threads a side. Injection reflects it, so that each frame adds a bounce. All that they meet
+// is last frame's, `volume` too; `placed` says where voxels lie now.
+#include "params.glsl"
+#include "common/voxels.glsl"
+#include "common/volume.glsl"
+
+layout(std430) readonly buffer LastPlanes { uvec4 quads[]; } lastPlanes;
+layout(std430) readonly buffer LastRadiance { uvec2 list[]; } lastRadiance;
+layout(std430) readonly buffer LastBricks { uvec4 words[]; } lastBricks;
+layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
+
+#define MET_PLANES lastPlanes
+#define MET_RADIANCE lastRadiance
+#define MET_BRICKS lastBricks
+#define MET_BLOCKS lastBlocks
+#include "modules/bounce_trace.glsl"
+#include "cones/near.glsl"
+#include "bounce/gather.glsl"
+#include "bounce/list.glsl"
+#include "bounce/placed.glsl"
+
+const uint BOUNCE_THREADS = 4;
+
+layout(local_size_x = BOUNCE_SIDES, local_size_y = BOUNCE_THREADS) in;
+
+shared vec3 shared_light[BOUNCE_THREADS][BOUNCE_SIDES];
+
+void main() {
+    uint lane = gl_LocalInvocationID.x, part = gl_LocalInvocationID.y, count = bounceCounter.count;
+    for (uint start = gl_WorkGroupID.x * BOUNCE_SIDES; start < count; start += gl_NumWorkGroups.x * BOUNCE_SIDES) {
+        vec3 light = vec3(0.0);
+        uint number = 0;
+        if (start + lane < count) {
+            uint i = bounceList.sides[start + lane], slot = i / SIDES, side = i % SIDES;
+            ivec3 cell = cellOfSlot(slot);
+            uint axis = uint(axisOfSlot(slot)), base = planeBase(slot);
+            Side s = sideOfSlot(slot, side);
+            number = sideNumber(slot, side);
+            if (s.normal != vec3(0.0))
+                light = gatherAt(slotPosition(placed.maps[cascadeOf(cell)], cell, base, side, axis), s.normal, patternOf(uvec3(cell)), int(part), int(BOUNCE_THREADS));
+        }
+        shared_light[part][lane] = light;
+        barrier();
+        if (part == 0 && start + lane < count) {
+            for (uint k = 1; k < BOUNCE_THREADS; k++) light += shared_light[k][lane];
+            sideGathered.list[number] = packLight(light, timesOf(sideGathered.list[number]));
+        }
+        barrier();
+    }
+}

@@ -1,0 +1,74 @@
+// Triangles that emit light, and places on them drawn as often as their power says (luminance times area). Large or textured ones are
+// told in parts of one radiance each. Both of their sides emit, but of what is closed only the outer ones are drawn.
+#ifndef EMITTERS_GLSL
+#define EMITTERS_GLSL
+
+struct Emitter {
+    vec3 a; // world
+    float chance; // that it is taken where the draw falls on it, and not `other` (Walker 1977)
+    vec3 to_b;
+    uint other;
+    vec3 to_c;
+    uint sides; // 0: both are seen, 1: the front alone, where corners turn counter-clockwise, 2: the back
+    vec3 radiance;
+    float density; // of places drawn on it [1/m^2]
+};
+
+layout(std430) readonly buffer Emitters {
+    uint count; // 0: none are drawn; rays alone meet them
+    float power;
+    uint pad0;
+    uint pad1;
+    Emitter list[];
+} emitters;
+
+float luminance(vec3 c) {
+    return dot(c, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// A place on an emitter as it is seen from somewhere.
+struct EmitterPlace {
+    vec3 direction; // to it
+    float distance; // m
+    vec3 radiance;
+    float cosine; // between it and the emitter's normal; 0: it is not seen
+    float by_area; // how densely places are drawn there [1/m^2]
+};
+
+// How dense directions are to places that are drawn so densely by area.
+float directionDensity(float by_area, float distance, float cosine) {
+    return by_area * distance * distance / max(cosine, 1e-6);
+}
+
+bool isOuter(uint sides, bool front) {
+    return sides == 0 || (sides == 1) == front;
+}
+
+// u: four numbers in [0, 1). There is an emitter.
+EmitterPlace drawEmitter(vec3 from, vec4 u) {
+    uint number = min(uint(u.x * float(emitters.count)), emitters.count - 1);
+    if (u.y >= emitters.list[number].chance) number = emitters.list[number].other;
+    Emitter e = emitters.list[number];
+    float side = sqrt(u.z);
+    vec3 to = e.a - from + side * (1.0 - u.w) * e.to_b + side * u.w * e.to_c;
+    float distance = length(to);
+    vec3 d = to / max(distance, 1e-20), n = cross(e.to_b, e.to_c);
+    float cosine = dot(n, d) / max(length(n), 1e-20);
+    bool seen = distance > 0.0 && abs(cosine) > 1e-6 && isOuter(e.sides, cosine < 0.0);
+    return EmitterPlace(d, distance, e.radiance, seen ? abs(cosine) : 0.0, e.density);
+}
+
+// Of a place that a ray has hit. flags: the number of the first part and 1, and from bit 24 on the parts of an edge.
+float emitterDensity(uint flags, vec2 weights, bool front) {
+    uint first = flags & 0xffffffu, parts = flags >> 24 & 0x7fu;
+    if (first == 0 || emitters.count == 0) return 0.0;
+    vec2 at = weights * float(parts);
+    uvec2 part = min(uvec2(at), uvec2(parts - 1));
+    vec2 within = at - vec2(part);
+    part.x = min(part.x, parts - 1 - part.y);
+    uint upper = within.x + within.y > 1.0 && part.x + part.y + 1 < parts ? 1u : 0u;
+    uint number = first - 1 + part.y * (2 * parts - part.y) + 2 * part.x + upper;
+    return isOuter(emitters.list[number].sides, front) ? emitters.list[number].density : 0.0;
+}
+
+#endif
