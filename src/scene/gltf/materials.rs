@@ -96,6 +96,7 @@ fn convert(
         normal_texture: normal.map(|t| ask(Recipe::Normal { image: image(t.texture()) })),
         emission_texture: emission.map(|t| ask(Recipe::Color { image: image(t.texture()), mask: None })),
         name: name.clone(),
+        ..Material::default()
     };
     (material, uv)
 }
