@@ -9,15 +9,22 @@ struct Surface {
     vec3 normal; // shading normal, facing the viewer
     vec3 albedo; // diffuse reflectance: base colour * (1 - metallic)
     vec3 f0; // reflectance at normal incidence
+    float f90; // and at grazing angles: 1, or less of what the author dimmed
     float roughness; // clamped: 0 makes GGX 0/0
 };
 
-Surface makeSurface(vec3 normal, vec3 base_color, float roughness, float metallic) {
-    return Surface(normal, base_color * (1.0 - metallic), mix(vec3(0.04), base_color, metallic), clamp(roughness, 0.03, 1.0));
+// Glass of refractive index 1.5, and nearly everything else that is no metal.
+const vec4 PLAIN_DIELECTRIC = vec4(vec3(0.04), 1.0);
+
+// dielectric: f0, and f90 in a, of what is no metal.
+Surface makeSurface(vec3 normal, vec3 base_color, float roughness, float metallic, vec4 dielectric) {
+    vec3 f0 = mix(dielectric.rgb, base_color, metallic);
+    float f90 = dielectric.a + (1.0 - dielectric.a) * metallic; // exactly 1 where both are
+    return Surface(normal, base_color * (1.0 - metallic), f0, f90, clamp(roughness, 0.03, 1.0));
 }
 
-vec3 fresnel(vec3 f0, float cosine) {
-    return f0 + (1.0 - f0) * pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0);
+vec3 fresnel(Surface s, float cosine) {
+    return s.f0 + (s.f90 - s.f0) * pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0);
 }
 
 // Trowbridge-Reitz. The thesis writes alpha = roughness; Burley and Unreal Engine 4 alpha = roughness^2.

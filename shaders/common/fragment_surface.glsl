@@ -25,7 +25,7 @@ vec3 shadingNormal(Material m, Gradient g, vec3 face) {
 
 Surface surfaceAt(Material m, Gradient g, vec3 face) {
     vec2 rm = roughnessMetallic(m, uv, g);
-    return makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y);
+    return makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y, dielectric(m));
 }
 
 #endif

@@ -4,6 +4,7 @@
 #include "common/scene.glsl"
 #include "common/brdf.glsl"
 #include "common/gbuffer.glsl"
+#include "common/dielectrics.glsl"
 
 struct GBufferSurface {
     bool any; // or the background
@@ -16,7 +17,7 @@ struct GBufferSurface {
 
 uniform sampler2D gbufferBase; // base colour, roughness
 uniform sampler2D gbufferNormals; // packed: shading, geometric
-uniform sampler2D gbufferEmission; // radiance, metallic
+uniform sampler2D gbufferEmission; // radiance, metallic with the dielectric's number
 uniform sampler2D gbufferDistance; // from the camera [m]; 0: background
 
 // Unit vector through a point of the picture. From the view and projection apart: their product's inverse has lost the
@@ -41,7 +42,10 @@ GBufferSurface gbufferAt(ivec2 pixel) {
     if (dot(seen.face, ray) > 0.0) seen.face = -seen.face;
     vec3 normal = unpackNormal(normals.xy);
     if (dot(normal, seen.face) < -0.5) normal = -normal; // mapped normals lean, mixtures may point anywhere
-    seen.surface = makeSurface(normal, base.rgb, base.a, emission.a);
+    uint number;
+    float metallic = unpackMetallic(emission.a, number);
+    vec4 dielectric = number == 0u ? PLAIN_DIELECTRIC : dielectrics.list[number];
+    seen.surface = makeSurface(normal, base.rgb, base.a, metallic, dielectric);
     seen.emission = emission.rgb;
     return seen;
 }

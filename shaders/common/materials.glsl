@@ -3,6 +3,7 @@
 // the fragment stage, where texture() would silently read mip 0.
 #ifndef MATERIALS_GLSL
 #define MATERIALS_GLSL
+#include "common/dielectrics.glsl"
 
 struct Material {
     vec4 base_color;
@@ -11,7 +12,7 @@ struct Material {
     float roughness;
     float alpha_cutoff; // 0: opaque
     float normal_scale;
-    uint flags; // 1: two-sided
+    uint flags; // 1: two-sided; from bit 8: number in dielectrics
     uint base_color_texture;
     uint metallic_roughness_texture; // G roughness, B metallic
     uint normal_texture;
@@ -76,6 +77,14 @@ vec2 roughnessMetallic(Material m, vec2 uv, Gradient g) {
     vec2 rm = vec2(m.roughness, m.metallic);
     if (m.metallic_roughness_texture != NO_TEXTURE) rm *= sampleTexture(m.metallic_roughness_texture, uv, g).gb;
     return rm;
+}
+
+uint dielectricNumber(Material m) {
+    return m.flags >> 8;
+}
+
+vec4 dielectric(Material m) {
+    return dielectrics.list[dielectricNumber(m)];
 }
 
 // Tangent-space normal; z is rebuilt, because two-channel formats (BC5) do not store it.

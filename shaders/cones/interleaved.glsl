@@ -39,7 +39,7 @@ float largest(vec3 v) {
 
 // Rays into the lobe, beside those over the hemisphere: by its share of the light that the surface reflects.
 int specularRays(Surface s, vec3 v) {
-    float mirrored = largest(fresnel(s.f0, max(dot(s.normal, v), 0.0)));
+    float mirrored = largest(fresnel(s, max(dot(s.normal, v), 0.0)));
     float share = mirrored / (mirrored + largest(s.albedo));
     return clamp(int(ceil(params.lobe_share * share * float(gatherShare.lobe))), 1, max(gatherShare.lobe, 1));
 }

@@ -19,6 +19,6 @@ void main() {
     vec2 rm = roughnessMetallic(m, uv, g);
     gbufferBase = vec4(baseColor(m, uv, g).rgb, rm.x);
     gbufferNormals = vec4(packNormal(shadingNormal(m, g, face)), packNormal(face));
-    gbufferEmission = vec4(emission(m, uv, g), rm.y);
+    gbufferEmission = vec4(emission(m, uv, g), packMetallic(rm.y, dielectricNumber(m)));
     gbufferDistance = length(to_viewer);
 }

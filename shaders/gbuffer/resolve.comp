@@ -65,6 +65,6 @@ void main() {
     vec2 rm = roughnessMetallic(m, uv, g);
     imageStore(gbufferBase, pixel, vec4(baseColor(m, uv, g).rgb, rm.x));
     imageStore(gbufferNormals, pixel, vec4(packNormal(mappedNormal(m, uv, g, normal, tangent, face)), packNormal(face)));
-    imageStore(gbufferEmission, pixel, vec4(emission(m, uv, g), rm.y));
+    imageStore(gbufferEmission, pixel, vec4(emission(m, uv, g), packMetallic(rm.y, dielectricNumber(m))));
     imageStore(gbufferDistance, pixel, vec4(along * length(ray)));
 }

@@ -40,7 +40,7 @@ SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
         }
     }
     vec2 rm = roughnessMetallic(m, uv, g);
-    Surface s = makeSurface(n * side, baseColor(m, uv, g).rgb, rm.x, rm.y);
+    Surface s = makeSurface(n * side, baseColor(m, uv, g).rgb, rm.x, rm.y, dielectric(m));
     return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, uv, g), emitterDensity(t.flags, hit.weights, front));
 }
 

@@ -45,7 +45,7 @@ vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escap
         sum += weight * (emitted + directLight(h.surface, h.position, h.face, h.view));
         if (bounce == params.bounces) break;
         vec4 u = next4(random);
-        float shine = luminance(fresnel(h.surface.f0, max(dot(h.surface.normal, h.view), 0.0)));
+        float shine = luminance(fresnel(h.surface, max(dot(h.surface.normal, h.view), 0.0)));
         float chance = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
         LobeLight drawn = emitterLight(h.surface, h.position, h.face, h.view, vec2(1.0 - chance, chance), random);
         sum += weight * (drawn.diffuse + drawn.specular);

@@ -1,7 +1,7 @@
 //! A scene's content as one number.
 
 use super::manifest::hex;
-use crate::scene::{LightKind, Scene};
+use crate::scene::{LightKind, Material, Scene};
 use sha2::{Digest, Sha256};
 
 /// SHA-256 over everything of a scene that can be seen: geometry, materials, textures, placement, motion, lights, sky.
@@ -54,6 +54,12 @@ pub fn scene_hash(scene: &Scene) -> String {
         hash.words(&[kind, u32::from(light.shadow)]);
         hash.floats(&[inner, outer]);
         [light.color, light.position, light.direction].iter().for_each(|v| hash.floats(&v.to_array()));
+    }
+    // Those that differ from nearly all alone: of other scenes the hash is what it was before there were any.
+    let plain = Material::default().dielectric();
+    for (i, m) in (0u32..).zip(&scene.materials).filter(|(_, m)| m.dielectric() != plain) {
+        hash.words(&[i]);
+        hash.floats(&m.dielectric().to_array());
     }
     hash.floats(&scene.sky.to_array());
     hex(&hash.0.finalize())

@@ -41,6 +41,7 @@ pub const EXTERNALS: &[External] = &[
     external("lights", Storage),
     external("shadowViews", Storage),
     external("materials", Storage),
+    external("dielectrics", Storage),
     external("instances", Storage),
     external("draws", Storage),
     external("positions", Storage),

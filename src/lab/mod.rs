@@ -1,6 +1,7 @@
 //! The lab: a device and what is loaded on it; turns an experiment into frames.
 
 mod bvh;
+mod dielectrics;
 mod emitters;
 mod materials;
 mod parts;

@@ -1,6 +1,7 @@
 //! A scene on the device, as the fixed named resources that shaders read (`shaders/include/scene.glsl`).
 
 use super::bvh::{self, Soup};
+use super::dielectrics::Dielectrics;
 use super::emitters::Emitters;
 use super::materials::{self, NO_TEXTURE};
 use super::view::{lights, shadow_view_count};
@@ -64,8 +65,9 @@ impl SceneGpu {
             instance_count: count(scene.instances.len()),
             pad: 0,
         };
+        let dielectrics = Dielectrics::of(&scene.materials);
         let material_blocks: Vec<MaterialBlock> =
-            scene.materials.iter().map(|m| material(m, &textures.handles)).collect();
+            scene.materials.iter().map(|m| material(m, dielectrics.number(m), &textures.handles)).collect();
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let index = vk::BufferUsageFlags::INDEX_BUFFER | storage;
         let index_buffer = upload.buffer("indices", bytemuck::cast_slice(&indices), index)?;
@@ -90,6 +92,7 @@ impl SceneGpu {
             ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
             ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
             ("materials", upload.buffer("materials", bytemuck::cast_slice(&material_blocks), storage)?),
+            ("dielectrics", upload.buffer("dielectrics", bytemuck::cast_slice(&dielectrics.list), storage)?),
             ("instances", instances.clone()),
             ("draws", upload.buffer("draws", bytemuck::cast_slice(&draws), storage)?),
             ("triangles", upload.buffer("triangles", bytemuck::cast_slice(&triangles), storage)?),
@@ -357,7 +360,7 @@ fn morton(p: Vec3) -> u32 {
     spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
 }
 
-fn material(m: &crate::scene::Material, handles: &[u32]) -> MaterialBlock {
+fn material(m: &crate::scene::Material, dielectric: u32, handles: &[u32]) -> MaterialBlock {
     let handle = |t: Option<u32>| t.and_then(|t| handles.get(t as usize)).copied().unwrap_or(NO_TEXTURE);
     MaterialBlock {
         base_color: m.base_color.to_array(),
@@ -366,7 +369,7 @@ fn material(m: &crate::scene::Material, handles: &[u32]) -> MaterialBlock {
         roughness: m.roughness,
         alpha_cutoff: m.alpha_cutoff,
         normal_scale: m.normal_scale,
-        flags: u32::from(m.two_sided),
+        flags: u32::from(m.two_sided) | dielectric << 8,
         base_color_texture: handle(m.base_color_texture),
         metallic_roughness_texture: handle(m.metallic_roughness_texture),
         normal_texture: handle(m.normal_texture),

@@ -89,6 +89,12 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness, 0 to 1.
     pub roughness: f32,
+    /// Index of refraction of what is no metal; 0: it reflects all that `specular_color` lets it.
+    pub ior: f32,
+    /// Scales what it reflects specularly, 0 to 1, metals apart.
+    pub specular: f32,
+    /// Colours that at normal incidence.
+    pub specular_color: Vec3,
     /// Emitted radiance.
     pub emission: Vec3,
     /// A fragment whose alpha is below this is not there; 0 = opaque, no mask.
@@ -110,6 +116,9 @@ impl Default for Material {
             base_color: Vec4::new(0.8, 0.8, 0.8, 1.0),
             metallic: 0.0,
             roughness: 1.0,
+            ior: 1.5,
+            specular: 1.0,
+            specular_color: Vec3::ONE,
             emission: Vec3::ZERO,
             alpha_cutoff: 0.0,
             two_sided: false,
@@ -119,6 +128,21 @@ impl Default for Material {
             normal_texture: None,
             emission_texture: None,
         }
+    }
+}
+
+impl Material {
+    /// Whether its mask cuts everything out.
+    pub fn is_left_out(&self) -> bool {
+        self.base_color.w < self.alpha_cutoff
+    }
+
+    /// Reflectance of the dielectric part at normal incidence, and in w at grazing angles (KHR_materials_specular); 0.04 and
+    /// 1 unless the author says otherwise.
+    pub fn dielectric(&self) -> Vec4 {
+        let n = f64::from(self.ior);
+        let from_index = if n == 0.0 { 1.0 } else { ((n - 1.0) / (n + 1.0)).powi(2) as f32 };
+        ((from_index * self.specular_color).min(Vec3::ONE) * self.specular).extend(self.specular)
     }
 }
 

@@ -29,12 +29,12 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     progress.step("materials", 0.4)?;
     let mut requests = Requests::default();
     let mut materials: Vec<Material> =
-        materials.unwrap_or_default().iter().map(|m| material(m, folder, &mut requests)).collect();
+        materials.unwrap_or_default().iter().map(|m| material(m, folder, &mut requests, &mut warnings)).collect();
     if models.iter().any(|model| model.mesh.material_id.is_none()) {
         materials.push(Material { two_sided: true, ..Material::default() });
     }
     progress.step("meshes", 0.5)?;
-    let raw = merge_objects(models, materials.len().saturating_sub(1) as u32, progress).map_err(fail)?;
+    let raw = merge_objects(models, &materials, progress).map_err(fail)?;
     let (meshes, dropped) = prepare_all(raw, &materials, progress).map_err(fail)?;
     warnings.extend(dropped.warning(&path.display().to_string()));
     progress.step("textures", 0.7)?;
@@ -97,11 +97,16 @@ impl<M, T, E> Parts for Result<(Vec<T>, M), E> {
 }
 
 /// Joins the pieces that tobj cuts at each `usemtl` into one mesh per object.
-fn merge_objects(models: Vec<tobj::Model>, default_material: u32, progress: Progress) -> Result<Vec<RawMesh>, String> {
+fn merge_objects(models: Vec<tobj::Model>, materials: &[Material], progress: Progress) -> Result<Vec<RawMesh>, String> {
+    let default_material = materials.len().saturating_sub(1) as u32;
     let mut meshes: Vec<RawMesh> = Vec::new();
     for tobj::Model { mesh: piece, name } in models {
         if progress.stopped() {
             return Err(String::new());
+        }
+        let material = piece.material_id.map_or(default_material, |id| id as u32);
+        if materials.get(material as usize).is_some_and(Material::is_left_out) {
+            continue;
         }
         let has_normals = !piece.normals.is_empty();
         let fits = |raw: &RawMesh| raw.mesh.name == name && raw.has_normals == has_normals;
@@ -121,14 +126,13 @@ fn merge_objects(models: Vec<tobj::Model>, default_material: u32, progress: Prog
             let uv = piece.texcoords.as_chunks::<2>().0.get(i).map_or([0.0; 2], |&[u, v]| [u, 1.0 - v]);
             mesh.vertices.push(Vertex { position: *position, normal, tangent: [0.0; 4], uv });
         }
-        let material = piece.material_id.map_or(default_material, |id| id as u32);
         let index_count = (piece.indices.len() / 3 * 3) as u32;
         mesh.submeshes.push(Submesh { first_index, index_count, material });
     }
     Ok(meshes)
 }
 
-fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Material {
+fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests, warnings: &mut Vec<String>) -> Material {
     let file = |value: &str| Source::File(folder.join(texture_file(value)));
     let unknown = |key: &str| mtl.unknown_param.get(key).map(String::as_str);
     let map = |key: &str| unknown(key).filter(|value| !value.is_empty()).map(file);
@@ -138,7 +142,14 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Mat
     let cutoff = number("alpha_cutoff").unwrap_or(0.5).clamp(0.0, 1.0);
     let color = mtl.diffuse_texture.as_deref().map(file);
     let alpha = mtl.dissolve_texture.as_deref().map(file);
-    let masked = alpha.is_some();
+    // `d` is opacity, `Tr` the rest. Without a map the surface is there, or it is not.
+    let opacity = mtl.dissolve.or_else(|| number("Tr").map(|t| 1.0 - t)).filter(|d| d.is_finite());
+    let opacity = opacity.unwrap_or(1.0).clamp(0.0, 1.0);
+    let masked = alpha.is_some() || opacity < cutoff;
+    if alpha.is_none() && opacity < 1.0 && cutoff > 0.0 {
+        let shown = if masked { "left out" } else { "opaque" };
+        warnings.push(format!("material '{name}' has an opacity of {opacity:.2}: it is {shown}"));
+    }
     let mask = (cutoff * 255.0).round() as u8;
     let base_color_texture = match (color, alpha) {
         (Some(image), None) => Some(Recipe::Color { image, mask: None }),
@@ -161,9 +172,12 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Mat
     let mut ask = |recipe: Recipe| requests.ask(recipe, name);
     Material {
         name: name.clone(),
-        base_color: color_or(mtl.diffuse, [0.8; 3]).extend(mtl.dissolve.unwrap_or(1.0).clamp(0.0, 1.0)),
+        base_color: color_or(mtl.diffuse, [0.8; 3]).extend(opacity),
         metallic: metallic.clamp(0.0, 1.0),
         roughness: roughness.clamp(0.0, 1.0),
+        ior: number("ior").unwrap_or(1.5).clamp(0.0, 1e6),
+        specular: number("specular").unwrap_or(1.0).clamp(0.0, 1.0),
+        specular_color: unknown("specular_color").and_then(three).unwrap_or(Vec3::ONE),
         emission: color_or(mtl.emissive, dark),
         alpha_cutoff: if masked { cutoff } else { 0.0 },
         // OBJ cannot say; windings of old files are unreliable, so nothing may be culled.
@@ -175,6 +189,13 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests) -> Mat
         normal_texture: normal_map.map(|image| ask(Recipe::Normal { image })),
         emission_texture: emission_map.map(|image| ask(Recipe::Color { image, mask: None })),
     }
+}
+
+/// Three numbers at or above 0.
+fn three(value: &str) -> Option<Vec3> {
+    let numbers: Vec<f32> = value.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    let color = Vec3::from_array(numbers.try_into().ok()?);
+    color.is_finite().then(|| color.max(Vec3::ZERO))
 }
 
 fn color_or(value: Option<[f32; 3]>, default: [f32; 3]) -> Vec3 {

@@ -84,8 +84,14 @@ fn notes(material: &Material) -> String {
     ] {
         notes.extend(texture.map(|_| what.to_owned()));
     }
-    if material.alpha_cutoff > 0.0 {
+    if material.is_left_out() {
+        notes.push("left out".to_owned());
+    } else if material.alpha_cutoff > 0.0 {
         notes.push(format!("mask at {:.2}", material.alpha_cutoff));
+    }
+    let reflects = material.dielectric();
+    if reflects != Material::default().dielectric() {
+        notes.push(format!("reflects {:.3}", reflects.truncate()));
     }
     if material.emission != glam::Vec3::ZERO {
         notes.push(format!("emits {:.2}", material.emission));

@@ -5,11 +5,11 @@ vec3 specularBrdf(Surface s, vec3 v, vec3 l) {
     float v_h = max(dot(v, h), 0.0);
     float n_l = max(dot(s.normal, l), 1e-4);
     float n_v = max(dot(s.normal, v), 1e-4);
-    return distribution(n_h, s.roughness) * visibility(n_l, n_v, s.roughness) * fresnel(s.f0, v_h);
+    return distribution(n_h, s.roughness) * visibility(n_l, n_v, s.roughness) * fresnel(s, v_h);
 }
 
 // BRDF * cosine / density of a direction drawn by the visible normals. v, l and half_way are in the normal's frame; g1: Smith's masking
 // of v. D is in the BRDF and in the density, g1 D / (4 n.v), and cancels.
 vec3 lobeWeight(Surface s, mat3 frame, vec3 v, vec3 l, vec3 half_way, float g1) {
-    return fresnel(s.f0, dot(v, half_way)) * visibility(l.z, v.z, s.roughness) * 4.0 * l.z * v.z / g1;
+    return fresnel(s, dot(v, half_way)) * visibility(l.z, v.z, s.roughness) * 4.0 * l.z * v.z / g1;
 }

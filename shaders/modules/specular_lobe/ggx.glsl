@@ -16,5 +16,5 @@ float specularHalfAngle(Surface s) {
 // How much of the cone's radiance goes to the viewer: the integral of the BRDF in use.
 vec3 specularWeight(Surface s, vec3 v) {
     vec2 albedo = textureLod(specularAlbedo, (vec2(sqrt(max(dot(s.normal, v), 0.0)), s.roughness) * 31.0 + 0.5) / 32.0, 0.0).rg;
-    return s.f0 * albedo.r + albedo.g;
+    return s.f0 * albedo.r + s.f90 * albedo.g;
 }

@@ -1,4 +1,5 @@
-// A cone in the mirror direction, 0.1 pi roughness wide, added as it is: everything shines (thesis, Section 4.5.2).
+// A cone in the mirror direction, 0.1 pi roughness wide, added as it is: everything shines (thesis, Section 4.5.2) that its
+// author has not told to shine less.
 vec3 specularDirection(Surface s, vec3 v) {
     return reflect(-v, s.normal);
 }
@@ -8,5 +9,5 @@ float specularHalfAngle(Surface s) {
 }
 
 vec3 specularWeight(Surface s, vec3 v) {
-    return vec3(1.0);
+    return vec3(s.f90);
 }

@@ -71,7 +71,7 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         "cameras": scene.cameras.iter().map(|(name, c)| lens(name, c)).collect::<Vec<_>>(),
         "accessors": writer.accessors,
         "bufferViews": writer.views,
-        "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_emissive_strength"],
+        "extensionsUsed": extensions_used(scene),
         "extensions": { "KHR_lights_punctual": { "lights": scene.lights.iter().map(light).collect::<Vec<_>>() } },
     });
     if !writer.channels.is_empty() {
@@ -82,7 +82,6 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         root.retain(|_, value| value.as_array().is_none_or(|array| !array.is_empty()));
     }
     if scene.lights.is_empty() {
-        root["extensionsUsed"] = json!(["KHR_materials_emissive_strength"]);
         root["extensions"] = json!({});
     }
     save(root, writer.bytes, path, binary)
@@ -214,6 +213,21 @@ impl Writer {
     }
 }
 
+fn extensions_used(scene: &Scene) -> Vec<&'static str> {
+    let plain = Material::default();
+    let mut used = vec!["KHR_materials_emissive_strength"];
+    let some = |differs: &dyn Fn(&Material) -> bool| scene.materials.iter().any(differs);
+    used.extend((!scene.lights.is_empty()).then_some("KHR_lights_punctual"));
+    used.extend(some(&|m| m.ior != plain.ior).then_some("KHR_materials_ior"));
+    used.extend(some(&|m| has_specular(m)).then_some("KHR_materials_specular"));
+    used
+}
+
+fn has_specular(material: &Material) -> bool {
+    let plain = Material::default();
+    (material.specular, material.specular_color) != (plain.specular, plain.specular_color)
+}
+
 fn material(material: &Material) -> Value {
     let strength = material.emission.max_element().max(1.0);
     let mut value = json!({
@@ -228,6 +242,14 @@ fn material(material: &Material) -> Value {
             "roughnessFactor": material.roughness,
         },
     });
+    if material.ior != Material::default().ior {
+        value["extensions"]["KHR_materials_ior"] = json!({ "ior": material.ior });
+    }
+    if has_specular(material) {
+        value["extensions"]["KHR_materials_specular"] = json!({
+            "specularFactor": material.specular, "specularColorFactor": material.specular_color.to_array(),
+        });
+    }
     if material.alpha_cutoff > 0.0 {
         value["alphaCutoff"] = json!(material.alpha_cutoff);
     }

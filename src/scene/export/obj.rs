@@ -82,6 +82,12 @@ fn write_material(
         Ok(entry)
     };
     let mut maps = Vec::new();
+    let plain = Material::default();
+    let (index, specular, color) = (material.ior, material.specular, material.specular_color);
+    if (index, specular, color) != (plain.ior, plain.specular, plain.specular_color) {
+        let [r, g, b] = color.to_array();
+        maps.push(format!("ior {index}\nspecular {specular}\nspecular_color {r} {g} {b}"));
+    }
     if let Some((i, image)) = texture(material.base_color_texture) {
         let entry = save(format!("{i}_color.png"), images::rgba_png(image, path)?)?;
         if material.alpha_cutoff > 0.0 {
@@ -103,7 +109,7 @@ fn write_material(
         maps.push(format!("map_Ke {entry}"));
     }
     let ([r, g, b, a], e) = (material.base_color.to_array(), material.emission);
-    // `two_sided` and `alpha_cutoff` are ours; other programs skip keys that they do not know.
+    // `two_sided`, `alpha_cutoff`, `ior` and `specular` are ours; other programs skip keys that they do not know.
     let text = format!(
         "newmtl {name}\nKd {r} {g} {b}\nd {a}\nKs 0 0 0\nPr {}\nPm {}\nKe {} {} {}\ntwo_sided {}\nalpha_cutoff {}\n{}\n\n",
         material.roughness,

@@ -1,41 +1,33 @@
-//! Materials, and which texture coordinates each of them reads.
+//! Materials.
 
 use std::path::Path;
 
 use ::gltf::material::AlphaMode;
 use ::gltf::{Document, texture};
-use glam::{Affine2, Vec2, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 
-use super::buffers;
-use crate::scene::Material;
+use super::means::Means;
+use super::placing::UvSource;
+use super::{buffers, extensions};
+use crate::scene::progress::Progress;
 use crate::scene::texture::{Recipe, Requests, Source};
+use crate::scene::{Material, SceneError};
 
-/// The texture coordinates of a material: a set, and a transform that is baked into the vertices.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct UvSource {
-    pub set: u32,
-    pub transform: Affine2,
-}
-
-impl Default for UvSource {
-    fn default() -> Self {
-        UvSource { set: 0, transform: Affine2::IDENTITY }
-    }
-}
-
-/// All materials, and after them the default one where a primitive has none.
+/// All materials, and after them the default one where a primitive has none; the coordinates that each reads.
 pub(super) fn read(
     document: &Document,
     data: &[Vec<u8>],
     folder: &Path,
     warnings: &mut Vec<String>,
-) -> (Vec<Material>, Vec<UvSource>, Requests) {
+    progress: Progress,
+) -> Result<(Vec<Material>, Vec<UvSource>, Requests), SceneError> {
     let mut requests = Requests::default();
     let images: Vec<Source> = document.images().map(|image| buffers::image(&image, document, data, folder)).collect();
+    let means = Means::load(document, &images, warnings, progress)?;
     let mut materials = Vec::new();
     let mut uv_sources = Vec::new();
     for material in document.materials() {
-        let (material, uv) = convert(&material, &images, &mut requests, warnings);
+        let (material, uv) = convert(&material, &images, &means, &mut requests, warnings);
         materials.push(material);
         uv_sources.push(uv);
     }
@@ -43,77 +35,140 @@ pub(super) fn read(
         materials.push(Material { base_color: Vec4::ONE, ..Material::default() });
         uv_sources.push(UvSource::default());
     }
-    (materials, uv_sources, requests)
+    Ok((materials, uv_sources, requests))
+}
+
+/// Its name, or a number.
+pub(super) fn name(material: &::gltf::Material) -> String {
+    let index = material.index().unwrap_or_default();
+    material.name().map_or_else(|| format!("material {index}"), str::to_owned)
+}
+
+/// What base colour, metallic and roughness come from.
+struct Base<'a> {
+    color: Option<texture::Info<'a>>,
+    /// Of roughness and metallic.
+    rough: Option<(texture::Info<'a>, Recipe)>,
+    /// With the factors.
+    material: Material,
+}
+
+fn metallic_roughness<'a>(from: &::gltf::Material<'a>, images: &[Source]) -> Base<'a> {
+    let pbr = from.pbr_metallic_roughness();
+    let material = Material {
+        base_color: finite4(pbr.base_color_factor()),
+        metallic: pbr.metallic_factor().clamp(0.0, 1.0),
+        roughness: pbr.roughness_factor().clamp(0.0, 1.0),
+        ..Material::default()
+    };
+    let rough = pbr.metallic_roughness_texture().map(|t| {
+        let image = source(&t, images);
+        (t, Recipe::MetallicRoughness { image })
+    });
+    Base { color: pbr.base_color_texture(), rough, material }
+}
+
+/// KHR_materials_pbrSpecularGlossiness: a dielectric whose reflectance is the specular colour, whatever it is.
+fn specular_glossiness<'a>(
+    from: &::gltf::material::PbrSpecularGlossiness<'a>,
+    name: &str,
+    images: &[Source],
+    means: &Means,
+    warnings: &mut Vec<String>,
+) -> Base<'a> {
+    let texture = from.specular_glossiness_texture();
+    let specular = (finite3(from.specular_factor()) * means.color(texture.as_ref()).truncate()).min(Vec3::ONE);
+    // What is reflected specularly is not diffuse.
+    let diffuse = finite4(from.diffuse_factor()) * Vec3::splat(1.0 - specular.max_element()).extend(1.0);
+    let gloss = from.glossiness_factor().clamp(0.0, 1.0);
+    if texture.is_some() {
+        warnings.push(format!(
+            "material '{name}': the specular colour in its texture (KHR_materials_pbrSpecularGlossiness) counts with its \
+             mean alone"
+        ));
+    }
+    let rough = texture.map(|t| {
+        let image = source(&t, images);
+        (t, Recipe::Glossiness { image, factor: (gloss * 255.0).round() as u8 })
+    });
+    let material = Material {
+        base_color: diffuse,
+        roughness: if rough.is_some() { 1.0 } else { 1.0 - gloss },
+        ior: 0.0,
+        specular_color: specular,
+        ..Material::default()
+    };
+    Base { color: from.diffuse_texture(), rough, material }
 }
 
 fn convert(
     from: &::gltf::Material,
     images: &[Source],
+    means: &Means,
     requests: &mut Requests,
     warnings: &mut Vec<String>,
 ) -> (Material, UvSource) {
-    let index = from.index().unwrap_or_default();
-    let name = from.name().map_or_else(|| format!("material {index}"), str::to_owned);
-    let pbr = from.pbr_metallic_roughness();
-    let image = |texture: ::gltf::Texture| images[texture.source().index()].clone();
-
+    let name = name(from);
+    let Base { color, rough, material } = match from.pbr_specular_glossiness() {
+        Some(gloss) => specular_glossiness(&gloss, &name, images, means, warnings),
+        None => metallic_roughness(from, images),
+    };
     let alpha_cutoff = match from.alpha_mode() {
         AlphaMode::Opaque => 0.0,
         AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).clamp(0.0, 1.0),
         AlphaMode::Blend => {
-            warnings.push(format!("material '{name}' blends, which is shown as a mask at alpha 0.5"));
+            warnings.push(match material.base_color.w {
+                a if a < 0.5 => format!("material '{name}' blends with an alpha of {a:.2} at most: it is left out"),
+                _ => format!("material '{name}' blends, which is shown as a mask at alpha 0.5"),
+            });
             0.5
         }
     };
     let mask = (alpha_cutoff > 0.0).then_some((alpha_cutoff * 255.0).round() as u8);
-    let color = pbr.base_color_texture();
-    let rough = pbr.metallic_roughness_texture();
-    let normal = from.normal_texture();
-    let emission = from.emissive_texture();
+    let lit = !from.unlit();
+    let rough = rough.filter(|_| lit);
+    let normal = from.normal_texture().filter(|_| lit);
+    let emission = from.emissive_texture().filter(|_| lit);
 
-    // Vertices carry one set of coordinates; the most visible texture decides which. The transform of a normal map
-    // cannot be read; exporters give all maps of a material the same.
-    let placed: Vec<UvSource> = [&color, &rough, &emission].into_iter().flatten().map(uv_source).collect();
-    let normal_set = normal.as_ref().map(|n| n.tex_coord());
-    let only_normal = UvSource { set: normal_set.unwrap_or(0), ..UvSource::default() };
-    let uv = placed.first().copied().unwrap_or(only_normal);
-    if placed.iter().any(|other| *other != uv) || normal_set.is_some_and(|set| set != uv.set) {
+    // Vertices carry one set of coordinates; the most visible texture decides which.
+    let infos = [color.as_ref(), rough.as_ref().map(|r| &r.0), emission.as_ref()];
+    let mut placed: Vec<UvSource> = infos.into_iter().flatten().map(UvSource::of).collect();
+    placed.extend(UvSource::of_normal_map(from).filter(|_| lit));
+    let uv = placed.first().copied().unwrap_or_default();
+    if placed.iter().any(|other| *other != uv) {
         warnings.push(format!("material '{name}' places its textures differently; all are placed like the first"));
     }
 
-    let emission_strength = from.emissive_strength().unwrap_or(1.0);
+    let strength = from.emissive_strength().unwrap_or(1.0).max(0.0);
     let mut ask = |recipe: Recipe| requests.ask(recipe, &name);
-    let material = Material {
-        base_color: finite4(pbr.base_color_factor()),
-        metallic: pbr.metallic_factor().clamp(0.0, 1.0),
-        roughness: pbr.roughness_factor().clamp(0.0, 1.0),
-        emission: finite3(from.emissive_factor()) * emission_strength.max(0.0),
+    let mut material = Material {
+        emission: finite3(from.emissive_factor().map(|c| c * strength)),
         alpha_cutoff,
         two_sided: from.double_sided(),
         normal_scale: normal.as_ref().map_or(1.0, |n| n.scale()),
-        base_color_texture: color.map(|t| ask(Recipe::Color { image: image(t.texture()), mask })),
-        metallic_roughness_texture: rough.map(|t| ask(Recipe::MetallicRoughness { image: image(t.texture()) })),
-        normal_texture: normal.map(|t| ask(Recipe::Normal { image: image(t.texture()) })),
-        emission_texture: emission.map(|t| ask(Recipe::Color { image: image(t.texture()), mask: None })),
+        base_color_texture: color.map(|t| ask(Recipe::Color { image: source(&t, images), mask })),
+        metallic_roughness_texture: rough.map(|(_, recipe)| ask(recipe)),
+        normal_texture: normal.map(|t| ask(Recipe::Normal { image: images[t.texture().source().index()].clone() })),
+        emission_texture: emission.map(|t| ask(Recipe::Color { image: source(&t, images), mask: None })),
         name: name.clone(),
+        ..material
     };
+    if lit {
+        extensions::specular(&mut material, from, means, warnings);
+        extensions::transmission(&mut material, from, means, warnings);
+        extensions::warn_of_others(from, &name, warnings);
+    } else {
+        extensions::unlit(&mut material);
+    }
     (material, uv)
 }
 
-fn uv_source(info: &texture::Info) -> UvSource {
-    let Some(transform) = info.texture_transform() else {
-        return UvSource { set: info.tex_coord(), ..UvSource::default() };
-    };
-    // KHR_texture_transform turns counter-clockwise in a frame whose v points down.
-    let placed = Affine2::from_scale_angle_translation(
-        Vec2::from_array(transform.scale()),
-        -transform.rotation(),
-        Vec2::from_array(transform.offset()),
-    );
-    UvSource { set: transform.tex_coord().unwrap_or(info.tex_coord()), transform: placed }
+fn source(info: &texture::Info, images: &[Source]) -> Source {
+    images[info.texture().source().index()].clone()
 }
 
-fn finite3(color: [f32; 3]) -> Vec3 {
+/// A colour of numbers at or above 0.
+pub(super) fn finite3(color: [f32; 3]) -> Vec3 {
     let color = Vec3::from_array(color);
     if color.is_finite() { color.max(Vec3::ZERO) } else { Vec3::ZERO }
 }

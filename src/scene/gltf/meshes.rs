@@ -5,7 +5,7 @@ use ::gltf::{Document, Semantic};
 use glam::Vec2;
 
 use super::accessors;
-use super::materials::UvSource;
+use super::placing::UvSource;
 use crate::scene::mesh::{Dropped, RawMesh, prepare_all};
 use crate::scene::progress::Progress;
 use crate::scene::{Material, Mesh, Submesh, Vertex};
@@ -30,6 +30,9 @@ pub(super) fn read(
             }
             let default = document.materials().len();
             let material = primitive.material().index().unwrap_or(default);
+            if materials[material].is_left_out() {
+                continue;
+            }
             let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
             if let Some(raw) = read.map_err(|problem| format!("mesh '{name}': {problem}"))? {
                 primitives.push(raw);

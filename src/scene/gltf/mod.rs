@@ -6,13 +6,16 @@
 mod accessors;
 mod animation;
 mod buffers;
+mod extensions;
 mod materials;
+mod means;
 mod meshes;
 mod nodes;
+mod placing;
 
 use std::path::Path;
 
-use ::gltf::json;
+use ::gltf::{Document, json};
 
 use super::progress::Progress;
 use super::{Scene, SceneError};
@@ -26,17 +29,16 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         hint: "Check the path and its permissions".into(),
         source,
     })?;
-    let file = ::gltf::Gltf::from_slice(&bytes)
+    let (document, blob) = parse(&bytes)
         .map_err(|error| fail(format!("{error}. Export it again as glTF 2.0 without compression extensions")))?;
     drop(bytes);
-    check(file.document.as_json()).map_err(|problem| fail(format!("{problem}. Export it again")))?;
+    check(document.as_json()).map_err(|problem| fail(format!("{problem}. Export it again")))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let document = file.document;
-    let buffers = buffers::load(&document, file.blob, folder).map_err(fail)?;
+    let buffers = buffers::load(&document, blob, folder).map_err(fail)?;
 
     progress.step("materials", 0.2)?;
     let mut warnings = Vec::new();
-    let (materials, uv_sources, requests) = materials::read(&document, &buffers, folder, &mut warnings);
+    let (materials, uv_sources, requests) = materials::read(&document, &buffers, folder, &mut warnings, progress)?;
     progress.step("meshes", 0.3)?;
     let (meshes, dropped) =
         meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings, progress).map_err(fail)?;
@@ -53,6 +55,15 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     (scene.meshes, scene.materials, scene.textures) = (meshes, materials, textures);
     scene.instances.retain(|instance| !scene.meshes[instance.mesh as usize].submeshes.is_empty());
     Ok(scene)
+}
+
+/// The document, validated, and the binary chunk.
+fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ::gltf::Error> {
+    let ::gltf::Gltf { document, blob } = ::gltf::Gltf::from_slice_without_validation(bytes)?;
+    let mut root = document.into_json();
+    // The crate reads it, and does not count it among what it supports.
+    root.extensions_required.retain(|name| name != "KHR_materials_specular");
+    Ok((Document::from_json(root)?, blob))
 }
 
 /// What the gltf crate takes for granted after its own validation, and what a damaged file may still break.

@@ -30,6 +30,7 @@ pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<String>) -> Result<Textur
         Recipe::ColorAndMask { color, alpha, mask } => {
             color_and_mask(color.as_ref(), alpha, f32::from(*mask) / 255.0, warnings)
         }
+        Recipe::Glossiness { image, factor } => glossiness(image, *factor, warnings),
         Recipe::RoughnessAndMetallic { roughness, metallic } => {
             roughness_and_metallic(roughness.as_ref(), metallic.as_ref(), warnings)
         }
@@ -138,6 +139,15 @@ fn roughness_and_metallic(
         RgbaImage::from_fn(width, height, |x, y| image::Rgba([255, red(&rough, x, y), red(&metal, x, y), 255]));
     let name = roughness.or(metallic).map(Source::name).unwrap_or_default();
     Ok(finish(merged, &name, false, Filter::Plain, warnings))
+}
+
+fn glossiness(image: &Source, factor: u8, warnings: &mut Vec<String>) -> Result<Texture, Failure> {
+    let mut texels = pixels(image)?;
+    for pixel in texels.pixels_mut() {
+        let gloss = u32::from(pixel.0[3]) * u32::from(factor) / 255;
+        pixel.0 = [255, 255 - gloss as u8, 255, 255];
+    }
+    Ok(finish(texels, &image.name(), false, Filter::Plain, warnings))
 }
 
 fn scaled(x: u32, from: u32, to: u32) -> u32 {

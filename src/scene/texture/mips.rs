@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
-use super::{Texture, TextureFormat};
+use super::{Texture, TextureFormat, first_level_rgba};
 
 /// What a mip level must keep of the level above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +60,21 @@ pub(in crate::scene) fn texture_from_rgba(
         }
     }
     Texture { name: name.into(), width, height, format, mips }
+}
+
+/// The mean of a texture, linear: of its last level.
+pub(super) fn mean_color(texture: &Texture) -> Result<Vec4, String> {
+    let level = texture.mips.len().saturating_sub(1);
+    let size = |n: u32| (n >> level).max(1);
+    let last = Texture {
+        name: texture.name.clone(),
+        width: size(texture.width),
+        height: size(texture.height),
+        format: texture.format,
+        mips: texture.mips.last().cloned().into_iter().collect(),
+    };
+    let texels = decode(&first_level_rgba(&last)?, texture.format.is_srgb());
+    Ok(texels.iter().sum::<Vec4>() / texels.len().max(1) as f32)
 }
 
 /// RGBA8 texels resampled to a smaller size by the same filter as the mips.

@@ -8,6 +8,7 @@ mod stand_in;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use glam::Vec4;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
@@ -48,6 +49,8 @@ pub(super) enum Recipe {
     Normal { image: Source },
     /// G = roughness, B = metallic in one image.
     MetallicRoughness { image: Source },
+    /// Glossiness in alpha, times a factor in 1/255ths; nothing of it is metal.
+    Glossiness { image: Source, factor: u8 },
     /// Roughness and metallic in grey images of their own (white without).
     RoughnessAndMetallic { roughness: Option<Source>, metallic: Option<Source> },
 }
@@ -70,18 +73,36 @@ impl Requests {
 
     /// Decodes everything. What cannot be decoded becomes a visible stand-in and a warning.
     pub fn load(self, progress: Progress) -> Result<(Vec<Texture>, Vec<String>), SceneError> {
+        self.each(progress, cook)
+    }
+
+    /// The mean of each, linear, in place of the textures. What cannot be decoded is white, and there is a warning.
+    pub fn means(self, progress: Progress) -> Result<(Vec<Vec4>, Vec<String>), SceneError> {
+        self.each(progress, |recipe, material| {
+            let mut warnings = Vec::new();
+            let mean = decode::cook(recipe, &mut warnings)
+                .and_then(|texture| mips::mean_color(&texture).map_err(|problem| (texture.name.clone(), problem)));
+            let mean = mean.unwrap_or_else(|(file, problem)| {
+                warnings.push(format!("texture {file} of material '{material}': {problem}; it is left out"));
+                Vec4::ONE
+            });
+            (mean, warnings)
+        })
+    }
+
+    /// What is made of each recipe, in parallel, and all warnings.
+    fn each<T: Send>(
+        self,
+        progress: Progress,
+        make: impl Fn(&Recipe, &str) -> (T, Vec<String>) + Sync,
+    ) -> Result<(Vec<T>, Vec<String>), SceneError> {
         let recipes: Vec<(Recipe, String)> = self.recipes.into_iter().collect();
         let one = |(recipe, material): &(Recipe, String)| {
-            if progress.stopped() { Err(SceneError::Cancelled) } else { Ok(cook(recipe, material)) }
+            if progress.stopped() { Err(SceneError::Cancelled) } else { Ok(make(recipe, material)) }
         };
-        let loaded: Vec<(Texture, Vec<String>)> = recipes.par_iter().map(one).collect::<Result<_, _>>()?;
-        let mut textures = Vec::new();
-        let mut warnings = Vec::new();
-        for (texture, more) in loaded {
-            textures.push(texture);
-            warnings.extend(more);
-        }
-        Ok((textures, warnings))
+        let made: Vec<(T, Vec<String>)> = recipes.par_iter().map(one).collect::<Result<_, _>>()?;
+        let (list, warnings): (Vec<T>, Vec<Vec<String>>) = made.into_iter().unzip();
+        Ok((list, warnings.concat()))
     }
 }
 

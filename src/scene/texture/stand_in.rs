@@ -9,7 +9,7 @@ pub(super) fn checkerboard(recipe: &Recipe, name: &str) -> Texture {
             (TextureFormat::Rgba8Srgb, Filter::Plain, [0, 0, 0, 255], [255, 0, 255, 255])
         }
         Recipe::Normal { .. } => (TextureFormat::Rgba8Unorm, Filter::Normal, [64, 128, 238, 255], [192, 128, 238, 255]),
-        Recipe::MetallicRoughness { .. } | Recipe::RoughnessAndMetallic { .. } => {
+        Recipe::MetallicRoughness { .. } | Recipe::Glossiness { .. } | Recipe::RoughnessAndMetallic { .. } => {
             (TextureFormat::Rgba8Unorm, Filter::Plain, [255, 0, 0, 255], [255, 255, 255, 255])
         }
     };

@@ -1,0 +1,49 @@
+//! Which texture coordinates a material reads.
+
+use ::gltf::json::extensions::texture::TextureTransform;
+use ::gltf::{Material, texture};
+use glam::{Affine2, Vec2};
+
+/// The texture coordinates of a material: a set, and a transform that is baked into the vertices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct UvSource {
+    pub set: u32,
+    pub transform: Affine2,
+}
+
+impl Default for UvSource {
+    fn default() -> Self {
+        UvSource { set: 0, transform: Affine2::IDENTITY }
+    }
+}
+
+impl UvSource {
+    pub fn of(info: &texture::Info) -> UvSource {
+        let Some(t) = info.texture_transform() else {
+            return UvSource { set: info.tex_coord(), ..UvSource::default() };
+        };
+        UvSource {
+            set: t.tex_coord().unwrap_or(info.tex_coord()),
+            transform: placed(t.offset(), t.rotation(), t.scale()),
+        }
+    }
+
+    /// Of a normal map, whose transform the crate does not read.
+    pub fn of_normal_map(material: &Material) -> Option<UvSource> {
+        let map = material.normal_texture()?;
+        let json = map.extension_value("KHR_texture_transform").cloned();
+        let transform: Option<TextureTransform> = json.and_then(|t| serde_json::from_value(t).ok());
+        Some(match transform {
+            None => UvSource { set: map.tex_coord(), ..UvSource::default() },
+            Some(t) => UvSource {
+                set: t.tex_coord.unwrap_or(map.tex_coord()),
+                transform: placed(t.offset.0, t.rotation.0, t.scale.0),
+            },
+        })
+    }
+}
+
+/// KHR_texture_transform turns counter-clockwise in a frame whose v points down.
+fn placed(offset: [f32; 2], rotation: f32, scale: [f32; 2]) -> Affine2 {
+    Affine2::from_scale_angle_translation(Vec2::from_array(scale), -rotation, Vec2::from_array(offset))
+}

@@ -1,0 +1,158 @@
+//! Light of emitting surfaces: what the reference finds of it against formulas, and what the method does against the reference.
+
+mod common;
+
+use common::{assert_clean, copy, experiment, floats, lab, mean, root, scene};
+use conelab::experiment::{CameraChoice, PlacedCamera};
+use conelab::reference::{Goal, gather};
+use conelab::scene::{
+    Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Texture, TextureFormat, Vertex,
+};
+use glam::{Mat4, Quat, Vec3, Vec4};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use tempfile::TempDir;
+
+const ALBEDO: f64 = 0.5;
+const RADIANCE: f64 = 7.0;
+
+/// A place for references of a test alone.
+fn own_home() -> TempDir {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["passes", "shaders"] {
+        copy(&root().join(folder), &home.path().join(folder));
+    }
+    home
+}
+
+/// A level square around the origin, by its edge.
+fn square(edge: f32, material: u32) -> Mesh {
+    let at = |x: f32, z: f32| Vertex {
+        position: [(x - 0.5) * edge, 0.0, (z - 0.5) * edge],
+        normal: [0.0, 1.0, 0.0],
+        tangent: [1.0, 0.0, 0.0, 1.0],
+        uv: [x, z],
+    };
+    Mesh {
+        name: "square".into(),
+        vertices: vec![at(0.0, 0.0), at(0.0, 1.0), at(1.0, 1.0), at(1.0, 0.0)],
+        indices: vec![0, 1, 2, 0, 2, 3],
+        submeshes: vec![Submesh { first_index: 0, index_count: 6, material }],
+    }
+}
+
+/// A floor, and a square lamp of this edge a metre above its middle.
+fn under_a_lamp(edge: f32) -> Scene {
+    let floor = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), ..Material::default() };
+    let lamp = Material { emission: Vec3::splat(RADIANCE as f32), base_color: Vec4::W, ..Material::default() };
+    let place = |mesh: u32, height: f32| Instance {
+        name: format!("square {mesh}"),
+        mesh,
+        transform: Mat4::from_translation(Vec3::Y * height),
+        animation: None,
+    };
+    Scene {
+        name: "lamp".into(),
+        meshes: vec![square(200.0, 0), square(edge, 1)],
+        materials: vec![floor, lamp],
+        instances: vec![place(0, 0.0), place(1, 1.0)],
+        ..Scene::default()
+    }
+}
+
+/// The share of the cosine-weighted hemisphere over a point that a square a metre above it fills (Siegel and Howell, C-11).
+fn form_factor(edge: f64) -> f64 {
+    let half = edge / 2.0;
+    let root = (1.0 + half * half).sqrt();
+    4.0 / std::f64::consts::PI * half / root * (half / root).atan()
+}
+
+/// Mean diffuse light of the floor's middle after one turn, and the noise of its total, by so many samples.
+fn floor_light(scene: Scene, samples: u64, time: f64) -> (f64, f64) {
+    let home = own_home();
+    let lab = lab(home.path());
+    let mut look = experiment("lamp", (16, 12), &[]);
+    look.camera = CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 1.0));
+    look.time = time;
+    let keep_on = &mut |_| ControlFlow::Continue(());
+    let found = gather(&lab, &look, &Arc::new(scene), 1, Goal::Samples(samples), keep_on).unwrap();
+    assert_clean(&lab);
+    (found.parts["diffuse"].mean.mean(), found.parts["diffuse"].noise.relmse)
+}
+
+#[test]
+fn lamps_from_two_centimetres_to_thirty_metres_light_the_floor_by_their_form_factor() {
+    for edge in [0.02, 0.3, 1.0, 5.0, 30.0] {
+        let expected = ALBEDO * RADIANCE * form_factor(edge);
+        let (found, noise) = floor_light(under_a_lamp(edge as f32), 64, 0.0);
+        println!("a lamp of {edge} m: {found:.6}, by its form factor {expected:.6}, noise {noise:.1e}");
+        assert!((found / expected - 1.0).abs() < 0.01, "{edge} m: {found}, not {expected}");
+    }
+}
+
+#[test]
+fn a_lamp_whose_texture_is_half_black_gives_half_its_light() {
+    let mut scene = under_a_lamp(1.0);
+    let row: Vec<u8> = (0..64).flat_map(|x| [if x < 32 { 255 } else { 0 }; 4]).collect();
+    scene.textures.push(Texture {
+        name: "half".into(),
+        width: 64,
+        height: 64,
+        format: TextureFormat::Rgba8Srgb,
+        mips: vec![row.repeat(64)],
+    });
+    scene.materials[1].emission_texture = Some(0);
+    let expected = 0.5 * ALBEDO * RADIANCE * form_factor(1.0);
+    let (found, noise) = floor_light(scene, 256, 0.0);
+    println!("{found:.5}, expected {expected:.5}, noise {noise:.1e}");
+    assert!((found / expected - 1.0).abs() < 0.01, "{found}, not {expected}");
+}
+
+#[test]
+fn a_lamp_that_moves_takes_its_light_along() {
+    let key = |time: f32, height: f32| Keyframe {
+        time,
+        translation: Vec3::Y * (height - 1.0),
+        rotation: Quat::IDENTITY,
+    };
+    let mut scene = under_a_lamp(0.5);
+    scene.instances[1].animation = Some(Animation { keyframes: vec![key(0.0, 1.0), key(1.0, 2.0)], repeat: false });
+    for (time, height) in [(0.0, 1.0), (0.5, 1.5), (1.0, 2.0)] {
+        let expected = ALBEDO * RADIANCE * form_factor(0.5 / height);
+        let (found, _) = floor_light(scene.clone(), 64, time);
+        println!("{height} m high: {found:.5}, expected {expected:.5}");
+        assert!((found / expected - 1.0).abs() < 0.01, "{height} m: {found}, not {expected}");
+    }
+}
+
+/// A box lit by a lamp of 47 x 38 cm under its ceiling, seen from inside and from 7 m away: what all wide cones lost.
+#[test]
+fn a_small_lamp_lights_its_room() {
+    let home = own_home();
+    let lab = lab(home.path());
+    for camera in ["default", "outside"] {
+        let mut look = experiment("small-quad", (64, 48), &[("voxel_dim", "96"), ("gather_frames", "4")]);
+        look.camera = CameraChoice::Named(camera.into());
+        let keep_on = &mut |_| ControlFlow::Continue(());
+        let truth = gather(&lab, &look, &scene("small-quad"), 64, Goal::Samples(256), keep_on).unwrap();
+        let wanted = ["radiance", "diffuseIndirect"].map(String::from).to_vec();
+        let (mut session, _) = lab.prepare(&look, scene("small-quad"), |_| Ok(wanted)).unwrap();
+        for _ in 0..24 {
+            session.frame(0.0).unwrap();
+        }
+        session.finish().unwrap();
+        let energy = mean(&floats(&mut session, "radiance", 0)) / truth.parts["total"].mean.mean();
+        // The floor before the boxes: the lowest rows of the picture.
+        let (found, rgb) = (floats(&mut session, "diffuseIndirect", 0), &truth.parts["diffuse"].mean.rgb);
+        let row = |y: usize| y * 64 + 8..y * 64 + 56;
+        let rows: Vec<usize> = if camera == "default" { row(46).chain(row(47)).collect() } else { row(40).collect() };
+        let floor = [
+            rows.iter().map(|i| f64::from(found[*i][1])).sum::<f64>(),
+            rows.iter().map(|i| f64::from(rgb[*i][1])).sum::<f64>(),
+        ];
+        println!("from {camera}: energy {energy:.3}, of the floor {:.3}", floor[0] / floor[1]);
+        assert!((0.9..1.1).contains(&energy), "from {camera}: energy {energy}");
+        assert!((0.8..1.2).contains(&(floor[0] / floor[1])), "from {camera}: the floor has {floor:?}");
+        assert_clean(&lab);
+    }
+}
