@@ -52,12 +52,12 @@ vec3 gatherAt(vec3 p, vec3 n, uint pattern, int first, int of) {
         vec3 d, light;
         if (i < rays) {
             d = frame * cosineSample(evenPoint(uint(i) * 64u + pattern));
-            if (drawn > 0) use = RayUse(1e30, float(rays) * dot(d, n) / PI, candidates);
+            if (drawn > 0) use = RayUse(1e30, float(rays) * dot(d, n) / PI, candidates, 1e30);
         } else {
             EmitterPlace place = bestPlace(o.surface, n, uint(i - rays) * 64u + pattern, vec4(0.5), candidates, light);
             if (place.cosine == 0.0) continue;
             d = place.direction;
-            use.range = rangeTo(place, o.surface);
+            use = rayTo(place, o.surface);
         }
         vec4 met = traceBounce(o, d, use);
         sum += i < rays ? coneRadiance(met) / float(rays) : (1.0 - met.a) * light;

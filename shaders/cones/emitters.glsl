@@ -12,10 +12,12 @@
 #endif
 
 // Of this many places one is taken, by what it would bring if nothing hid it (Talbot et al. 2005).
-const int CANDIDATES = 4;
+const int CANDIDATES = 8;
 
-// So far before an emitter a ray ends: its own voxels, and what lies with it in them, are not met [voxels].
-const float EMITTER_MARGIN = 1.0;
+// So far before a place a ray ends: planes are not exacter than this. And so far before it an emitter that is met is the lamp itself,
+// which a voxel or two may show larger than it is [voxels].
+const float EMITTER_MARGIN = 0.25;
+const float LAMP = 2.0;
 
 // Share of the light that a ray has met. emitted: the part of it that emitters emit.
 float shareOfRay(RayUse use, vec3 light, float emitted, float distance) {
@@ -29,12 +31,12 @@ vec4 evenPoint4(uint number, vec4 shift) {
     return fract(shift + float(number & 0xffffu) * vec4(0.8566748838, 0.7338918566, 0.6287067210, 0.5385972572));
 }
 
-// How far a ray to a place goes.
-float rangeTo(EmitterPlace place, vec3 from) {
+// A ray to a place.
+RayUse rayTo(EmitterPlace place, vec3 from) {
     float voxel;
     vec3 dir, p = from + place.distance * place.direction;
     cellAlong(volume.maps[cascadeAt(p)], p, place.direction, voxel, dir);
-    return place.distance - EMITTER_MARGIN * voxel;
+    return RayUse(place.distance - EMITTER_MARGIN * voxel, 0.0, 0.0, place.distance - LAMP * voxel);
 }
 
 #endif
