@@ -21,7 +21,7 @@ vec3 gatherAt(vec3 p, vec3 n, uint pattern, int first, int of) {
     vec3 sum = vec3(0.0);
     for (int i = first; i < params.bounce_cones; i += of) {
         vec3 d = frame * cosineSample(evenPoint(uint(i) * 64u + pattern));
-        sum += coneRadiance(traceBounce(o, d));
+        sum += coneRadiance(traceBounce(o, d), d, PI / float(params.bounce_cones));
     }
     return sum / float(params.bounce_cones);
 }

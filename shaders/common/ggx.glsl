@@ -46,4 +46,17 @@ LobeSample specularSample(Surface s, vec3 face, vec3 view, vec2 u) {
     return LobeSample(l, lobeWeight(s, frame, v, local, half_way, g1));
 }
 
+// How dense diffuseSample draws l [1/sr].
+float diffuseDensity(Surface s, vec3 l) {
+    return max(dot(s.normal, l), 0.0) / PI;
+}
+
+// How dense specularSample draws l [1/sr]: as dense as the visible normals half way, over 4 v.h.
+float specularDensity(Surface s, vec3 view, vec3 l) {
+    vec3 v = view * frameOf(s.normal);
+    float n_v = normalize(vec3(v.xy, max(v.z, 1e-4))).z, alpha = ggxAlpha(s.roughness), a2 = alpha * alpha;
+    float masking = 2.0 / (n_v + sqrt(a2 + (1.0 - a2) * n_v * n_v)); // Smith's, over n.v
+    return 0.25 * masking * distribution(max(dot(s.normal, normalize(view + l)), 0.0), s.roughness);
+}
+
 #endif

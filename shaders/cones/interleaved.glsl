@@ -41,6 +41,8 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     mat3 frame = frameOf(s.normal);
     float tan_half = tanOfShare(params.pixel_cones), tan_lobe = 0.5 * ggxAlpha(s.roughness);
     int rays = gatherShare.rays, lobe = params.specular_cone ? specularRays(s, v) : 0;
+    // What each of them stands for.
+    float spread = PI / float(max(rays, 1)), lobe_spread = lobeSolidAngle(s) / float(max(lobe, 1));
     vec4 hemisphere = vec4(0.0);
     vec3 specular = vec3(0.0);
     for (int i = gatherShare.first; i < rays + lobe; i += gatherShare.of) {
@@ -57,7 +59,7 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
         }
         CONE_BEGINS(!mirrors ? uint(i) + 1u : i == rays ? 0u : uint(params.diffuse_cones + i - rays));
         vec4 cone = traceAny(o, d, mirrors ? tan_lobe : tan_half, mirrors ? params.specular_steps : params.diffuse_steps);
-        vec3 light = coneRadiance(cone);
+        vec3 light = coneRadiance(cone, d, mirrors ? lobe_spread : spread);
         if (mirrors) specular += weight * light;
         else hemisphere += vec4(light, 1.0 - cone.a);
     }

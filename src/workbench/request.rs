@@ -103,6 +103,7 @@ impl RenderRequest {
             size: self.size,
             time: self.clock.at,
             sky: None,
+            environment: None,
             lights: Vec::new(),
             params,
             sources,
