@@ -5,10 +5,10 @@ mod file;
 mod level;
 mod sun;
 
-use super::{Light, LightKind, Scene};
+use super::{Light, LightKind, Scene, SceneError};
 use glam::{Quat, Vec3};
 use std::f32::consts::{PI, TAU};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 pub(super) use clear_sky::clear_sky;
@@ -88,6 +88,18 @@ impl Environment {
 }
 
 impl Scene {
+    /// The scene under another picture of the sky; an empty path leaves it as it is.
+    ///
+    /// # Errors
+    /// A picture that cannot be read.
+    pub fn under(mut self, file: &Path) -> Result<Scene, SceneError> {
+        if !file.as_os_str().is_empty() {
+            let read = file::read(file, &mut self.warnings).map_err(|message| SceneError::Environment { message })?;
+            (self.environment, self.sky) = (Some(read), Vec3::ONE);
+        }
+        Ok(self)
+    }
+
     /// All that methods with lights are lit by: the scene's lights, then the sun of its sky.
     pub fn all_lights(&self) -> Vec<Light> {
         let sun = self.environment.as_ref().and_then(|e| e.sun(self.sky, e.rotation));
