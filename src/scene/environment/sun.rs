@@ -45,7 +45,7 @@ pub(super) fn find(level: &Level) -> Option<Sun> {
     let all: f64 = bright.iter().enumerate().map(|(i, l)| l * sizes[i / width]).sum();
     let limit = TIMES_MEAN * all / (4.0 * std::f64::consts::PI);
     let (brightest, most) = bright.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
-    if !(*most > limit) {
+    if *most <= limit {
         return None;
     }
     let to = |i: usize| {
