@@ -27,8 +27,8 @@ vec3 skyLookup(vec3 d, float spread, int layer) {
     if (sceneInfo.sky_turn < 0.0) return sceneInfo.sky;
     float level = skyLevel(d, spread);
     vec2 place = skyPlace(d);
-    // It goes round, but ends above and below.
-    float margin = 0.5 / float(textureSize(skyTexture, min(int(ceil(level)), textureQueryLevels(skyTexture) - 1)).y);
+    // It goes round, but ends above and below. Not from textureSize: Mesa's software device takes one invocation's level for all.
+    float margin = 0.5 / float(max(textureSize(skyTexture, 0).y >> int(ceil(level)), 1));
     place.y = clamp(place.y, margin, 1.0 - margin);
     return sceneInfo.sky * textureLod(skyTexture, vec3(place, float(layer)), level).rgb;
 }

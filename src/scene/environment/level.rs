@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn every_level_has_the_mean_over_all_directions() {
         for (width, height) in [(64, 32), (37, 19), (5, 1), (1, 1)] {
-            let texel = |i: u32| [0.0, ((i * 7919) % 101) as f32, 1.0];
+            let texel = |i: u32| [0.0, ((i * 7919) % 101 + 1) as f32, 1.0];
             let level = Level { width, height, texels: (0..width * height).map(texel).collect() };
             let expected = mean(&level);
             let levels = level.chain();
