@@ -5,9 +5,7 @@ mod common;
 use common::{assert_clean, copy, experiment, floats, lab, mean, root, scene};
 use conelab::experiment::{CameraChoice, PlacedCamera};
 use conelab::reference::{Goal, gather};
-use conelab::scene::{
-    Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Texture, TextureFormat, Vertex,
-};
+use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Texture, TextureFormat, Vertex};
 use glam::{Mat4, Quat, Vec3, Vec4};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -110,11 +108,8 @@ fn a_lamp_whose_texture_is_half_black_gives_half_its_light() {
 
 #[test]
 fn a_lamp_that_moves_takes_its_light_along() {
-    let key = |time: f32, height: f32| Keyframe {
-        time,
-        translation: Vec3::Y * (height - 1.0),
-        rotation: Quat::IDENTITY,
-    };
+    let key =
+        |time: f32, height: f32| Keyframe { time, translation: Vec3::Y * (height - 1.0), rotation: Quat::IDENTITY };
     let mut scene = under_a_lamp(0.5);
     scene.instances[1].animation = Some(Animation { keyframes: vec![key(0.0, 1.0), key(1.0, 2.0)], repeat: false });
     for (time, height) in [(0.0, 1.0), (0.5, 1.5), (1.0, 2.0)] {

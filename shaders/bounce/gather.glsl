@@ -60,7 +60,7 @@ vec3 gatherAt(vec3 p, vec3 n, uint pattern, int first, int of) {
             use = rayTo(place, o.surface);
         }
         vec4 met = traceBounce(o, d, use);
-        sum += i < rays ? coneRadiance(met) / float(rays) : (1.0 - met.a) * light;
+        sum += i < rays ? coneRadiance(met, d, PI / float(rays)) / float(rays) : (1.0 - met.a) * light;
     }
     return sum;
 }

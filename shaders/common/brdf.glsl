@@ -39,6 +39,12 @@ float distribution(float n_h, float roughness) {
     return a2 / (PI * d * d);
 }
 
+// About the solid angle that the lobe has around its middle: seen from above its density there is D / 4 [sr].
+float lobeSolidAngle(Surface s) {
+    float alpha = ggxAlpha(s.roughness);
+    return min(4.0 * PI * alpha * alpha, PI);
+}
+
 // Smith-Schlick G / (4 n.l n.v), k = (roughness + 1)^2 / 8; the cosines cancel.
 float visibility(float n_l, float n_v, float roughness) {
     float k = (roughness + 1.0) * (roughness + 1.0) / 8.0;

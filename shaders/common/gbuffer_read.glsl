@@ -5,6 +5,7 @@
 #include "common/brdf.glsl"
 #include "common/gbuffer.glsl"
 #include "common/dielectrics.glsl"
+#include "common/view_ray.glsl"
 
 struct GBufferSurface {
     bool any; // or the background
@@ -19,14 +20,6 @@ uniform sampler2D gbufferBase; // base colour, roughness
 uniform sampler2D gbufferNormals; // packed: shading, geometric
 uniform sampler2D gbufferEmission; // radiance, metallic with the dielectric's number
 uniform sampler2D gbufferDistance; // from the camera [m]; 0: background
-
-// Unit vector through a point of the picture. From the view and projection apart: their product's inverse has lost the
-// digits that a short shadow bias needs.
-vec3 viewRay(vec2 pixel) {
-    vec2 clip = pixel / vec2(camera.size) * 2.0 - 1.0;
-    vec3 d = vec3(clip.x / camera.projection[0][0], clip.y / camera.projection[1][1], -1.0);
-    return normalize(transpose(mat3(camera.view)) * d);
-}
 
 GBufferSurface gbufferAt(ivec2 pixel) {
     GBufferSurface seen;

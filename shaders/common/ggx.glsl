@@ -50,7 +50,7 @@ LobeSample specularSample(Surface s, vec3 face, vec3 view, vec2 u) {
     return LobeSample(l, lobeWeight(s, frame, v, local, half_way, maskingOf(v.z, alpha)));
 }
 
-// How dense directions of both are [1/sr].
+// How dense diffuseSample and specularSample draw l [1/sr].
 float diffuseDensity(Surface s, vec3 l) {
     return max(dot(s.normal, l), 0.0) / PI;
 }

@@ -16,8 +16,8 @@ struct Light {
     float range; // 0: no end
     float cos_inner;
     float cos_outer;
-    float pad0;
-    float pad1;
+    uint of_sky; // 1: it stands for a part of the sky's picture
+    float pad;
 };
 
 layout(std430) readonly buffer Lights { Light lights[]; } lights;

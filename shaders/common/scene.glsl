@@ -28,12 +28,12 @@ layout(std140) uniform SceneInfo {
     uint light_count;
     vec3 bounds_max;
     uint shadow_views;
-    vec3 sky; // radiance
+    vec3 sky; // radiance, or what the picture's is multiplied by
     uint triangle_count;
     uint draw_count;
     uint vertex_count;
     uint instance_count;
-    uint pad;
+    float sky_turn; // of the sky's picture about y, 0 to 1; below 0: there is none
 } sceneInfo;
 
 struct Instance {

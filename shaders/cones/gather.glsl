@@ -17,7 +17,7 @@ vec4 gatherDiffuse(ConeOrigin o, vec3 n) {
         float weight = i == 0 ? set.axial_weight : (1.0 - set.axial_weight) / float(set.count - 1);
         CONE_BEGINS(uint(i) + 1u);
         vec4 cone = traceAny(o, d, set.tan_half, params.diffuse_steps, uint(i) + 1u);
-        sum += weight * vec4(coneRadiance(cone), 1.0 - cone.a);
+        sum += weight * vec4(coneRadiance(cone, d, coneSolidAngle(set.tan_half)), 1.0 - cone.a);
     }
     return sum;
 }
@@ -26,7 +26,8 @@ vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     vec3 d = specularDirection(s, v);
     d = normalize(d + face * max(0.02 - dot(d, face), 0.0)); // mapped normals may reflect into the surface
     CONE_BEGINS(0u);
-    return coneRadiance(traceAny(o, d, tan(specularHalfAngle(s)), params.specular_steps, 0u)) * specularWeight(s, v);
+    float tan_half = tan(specularHalfAngle(s));
+    return coneRadiance(traceAny(o, d, tan_half, params.specular_steps, 0u), d, coneSolidAngle(tan_half)) * specularWeight(s, v);
 }
 
 // Diffuse and specular cones are traced in two places: the compiler makes two loops of them, each the faster for it.

@@ -98,6 +98,8 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     int rays = gatherShare.rays, lobe = params.specular_cone ? specularRays(s, v) : 0;
     int drawn = DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
     float candidates = float(drawn * CANDIDATES);
+    // What each of them stands for.
+    float spread = PI / float(max(rays, 1)), lobe_spread = lobeSolidAngle(s) / float(max(lobe, 1));
     vec4 hemisphere = vec4(0.0);
     vec3 specular = vec3(0.0);
     for (int i = gatherShare.first; i < rays + lobe + drawn; i += gatherShare.of) {
@@ -128,7 +130,7 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
             specular += (1.0 - cone.a) * light.specular;
             continue;
         }
-        vec3 found = coneRadiance(cone);
+        vec3 found = coneRadiance(cone, d, mirrors ? lobe_spread : spread);
         if (mirrors) specular += weight * found;
         else hemisphere += vec4(found, 1.0 - cone.a);
     }

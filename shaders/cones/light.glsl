@@ -11,6 +11,7 @@
 #include "common/scene.glsl"
 #include "common/brdf.glsl"
 #include "cones/origin.glsl"
+#include "common/sky.glsl"
 #include "modules/escape.glsl"
 
 // What a surface's cones gather.

@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "params.glsl"
-#include "common/scene.glsl"
+#include "common/sky.glsl"
+#include "common/view_ray.glsl"
 #include "preview/preview.glsl"
 
 layout(location = 0) out vec4 display;
 
 void main() {
-    display = encoded(sceneInfo.sky);
+    display = encoded(skyBehind(viewRay(gl_FragCoord.xy)));
 }

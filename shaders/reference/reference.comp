@@ -3,12 +3,13 @@
 // One sample of every pixel by path tracing (Kajiya 1986), with the surfaces, the BRDF and the lights of the
 // rasterised method. Every light is asked at every vertex (next-event estimation), and one place on all emitting surfaces;
 // directions are drawn from the cosine and from the visible GGX normals. The first vertex sends out two rays, one for each lobe, so
-// that diffuse and specular light are known apart. The sky is met by the rays, and so is emission, which both ways of finding it
-// share (reference/emitters.glsl).
+// that diffuse and specular light are known apart. Emission and the sky are met by the rays too; of emission (reference/emitters.glsl) and of
+// a sky's picture (reference/sky.glsl) both ways of finding it share the light.
 #include "params.glsl"
 #include "common/direct.glsl"
 #include "reference/hit.glsl"
 #include "common/ggx.glsl"
+#include "reference/sky.glsl"
 #include "common/random.glsl"
 #include "reference/emitters.glsl"
 
@@ -23,31 +24,45 @@ layout(rgba32f) uniform image2DArray occlusionSum;
 layout(std430) buffer ReferenceErrors { uint not_finite; } referenceErrors;
 
 float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
+    if (light.of_sky != 0) return 0.0; // the picture has it
     if (light.shadow_view < 0) return 1.0; // casts no shadows
     vec3 from = offsetPoint(p, face);
     float end = light.kind == LIGHT_DIRECTIONAL ? 1e30 : distance(light.position, from) * 0.9999;
     return blocked(Ray(from, to_light, end)) ? 0.0 : 1.0;
 }
 
-// Radiance that arrives at p along -d after at most params.bounces turns, this ray being the first. density: of d, where it was drawn.
-vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escaped) {
+// Radiance that arrives at p along -d after at most params.bounces turns, this ray being the first. density: of d among those that
+// were drawn. sun: of a sky's picture, if it is the sun that this ray meets.
+vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escaped, out vec3 sun) {
     vec3 sum = vec3(0.0), weight = vec3(1.0);
     escaped = false;
+    sun = vec3(0.0);
     for (int bounce = 1; bounce <= params.bounces; bounce++) {
         Ray ray = Ray(p, d, 1e30);
         Hit hit = traceRay(ray, NO_FOOTPRINT, false);
         if (hit.triangle == NO_HIT) {
             escaped = bounce == 1;
-            return sum + weight * sceneInfo.sky;
+            if (!skyHasPicture()) return sum + weight * sceneInfo.sky;
+            SkyShine shine = skyShine(d);
+            weight *= lobeShare(shine, density);
+            if (escaped) sun = weight * shine.sun;
+            else sum += weight * shine.sun;
+            return sum + weight * shine.sky;
         }
         SurfaceHit h = surfaceOf(hit, ray, NO_FOOTPRINT);
         vec3 emitted = h.emission * shareOfRay(density, h, hit.t);
         sum += weight * (emitted + directLight(h.surface, h.position, h.face, h.view));
-        if (bounce == params.bounces) break;
-        vec4 u = next4(random);
         float shine = luminance(fresnel(h.surface, max(dot(h.surface.normal, h.view), 0.0)));
         float chance = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
-        LobeLight drawn = emitterLight(h.surface, h.position, h.face, h.view, vec2(1.0 - chance, chance), random);
+        bool last = bounce == params.bounces;
+        vec2 sent = last ? vec2(0.0) : vec2(1.0 - chance, chance);
+        if (skyHasPicture()) {
+            SkyLight sky = skyLight(h.surface, h.position, h.face, h.view, sent, last, next4(random));
+            sum += weight * (sky.diffuse + sky.specular + sky.direct);
+        }
+        if (last) break;
+        vec4 u = next4(random);
+        LobeLight drawn = emitterLight(h.surface, h.position, h.face, h.view, sent, random);
         sum += weight * (drawn.diffuse + drawn.specular);
         LobeSample next;
         if (u.z < chance) {
@@ -95,7 +110,7 @@ void main() {
     Ray ray = Ray(start, d, 1e30);
     Hit hit = traceRay(ray, f, false);
 
-    vec3 total = sceneInfo.sky, direct = vec3(0.0), diffuse = vec3(0.0), specular = vec3(0.0);
+    vec3 total = skyBehind(d), direct = vec3(0.0), diffuse = vec3(0.0), specular = vec3(0.0);
     float open = 1.0;
     if (hit.triangle != NO_HIT) {
         SurfaceHit h = surfaceOf(hit, ray, f);
@@ -105,16 +120,27 @@ void main() {
         LobeSample one = diffuseSample(h.surface, h.face, v.xy), two = specularSample(h.surface, h.face, h.view, v.zw);
         // Numbers of its own: a path does not depend on how long the other one is.
         Random other = Random(uvec4(random.key.xy, 1u << 16, random.key.w));
-        bool sky = false, unused;
+        SkyLight sky = NO_SKY_LIGHT;
+        if (skyHasPicture()) {
+            Random third = Random(uvec4(random.key.xy, 2u << 16, random.key.w));
+            sky = skyLight(h.surface, h.position, h.face, h.view, vec2(1.0), false, next4(third));
+        }
+        bool escaped = false, unused;
+        vec3 sun = vec3(0.0);
         // Its own albedo is left out of the test: black surfaces too have openness.
-        if (dot(one.direction, h.face) > 0.0)
-            diffuse = one.weight * incoming(p, one.direction, diffuseDensity(h.surface, one.direction), random, sky);
-        open = sky ? 1.0 : 0.0;
-        if (two.weight != vec3(0.0))
-            specular = two.weight * incoming(p, two.direction, specularDensity(h.surface, h.view, two.direction), other, unused);
+        if (dot(one.direction, h.face) > 0.0) {
+            diffuse = one.weight * incoming(p, one.direction, diffuseDensity(h.surface, one.direction), random, escaped, sun);
+            direct += one.weight * sun;
+        }
+        open = escaped ? 1.0 : 0.0;
+        if (two.weight != vec3(0.0)) {
+            specular = two.weight * incoming(p, two.direction, specularDensity(h.surface, h.view, two.direction), other, unused, sun);
+            direct += two.weight * sun;
+        }
         LobeLight drawn = emitterLight(h.surface, h.position, h.face, h.view, vec2(1.0), random);
-        diffuse += drawn.diffuse;
-        specular += drawn.specular;
+        diffuse += sky.diffuse + drawn.diffuse;
+        specular += sky.specular + drawn.specular;
+        direct += sky.direct;
         total = h.emission + direct + diffuse + specular;
     }
     if (any(isnan(total)) || any(isinf(total))) {

@@ -6,6 +6,7 @@
 #include "common/gbuffer_read.glsl"
 #include "common/shadow.glsl"
 #include "common/direct.glsl"
+#include "common/sky.glsl"
 #include "shade/filter.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -64,7 +65,7 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     GBufferSurface seen = gbufferAt(pixel);
-    vec3 total = sceneInfo.sky, normal = vec3(-1.0), lit = vec3(0.0), diffuse = vec3(0.0);
+    vec3 total = vec3(0.0), normal = vec3(-1.0), lit = vec3(0.0), diffuse = vec3(0.0);
     Filtered light = Filtered(vec4(0.0, 0.0, 0.0, 1.0), vec3(0.0));
     if (seen.any) {
         light = params.pattern == 1 ? unfiltered(pixel) : filtered(pixel, seen);
@@ -72,6 +73,8 @@ void main() {
         diffuse = seen.surface.albedo * light.hemisphere.rgb;
         total = lit + diffuse + light.specular + seen.emission;
         normal = seen.surface.normal;
+    } else {
+        total = skyBehind(viewRay(vec2(pixel) + 0.5));
     }
     float covered = seen.any ? 1.0 : 0.0;
     imageStore(radiance, pixel, vec4(total, 1.0));

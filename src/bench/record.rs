@@ -2,7 +2,7 @@
 //! (docs/sweeps.md).
 
 use super::{Bench, Times};
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, environment_text};
 use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::{LabError, Workspace};
 use crate::measure::{Frames, Warm};
@@ -194,6 +194,11 @@ impl Recorded {
         ]);
         if let Some(sky) = experiment.sky {
             settings.insert("sky".into(), format!("{sky:?}"));
+        }
+        if let Some(environment) = &experiment.environment {
+            let mut change = environment.value.clone();
+            change.file = change.file.map(|file| from_root(home, Path::new(&file)));
+            settings.insert("environment".into(), environment_text(&change));
         }
         if point.labels.iter().any(|(name, _)| name == "graph") {
             settings.insert("graph".into(), format!("{:?}", experiment.graph));

@@ -62,6 +62,13 @@ pub fn scene_hash(scene: &Scene) -> String {
         hash.floats(&m.dielectric().to_array());
     }
     hash.floats(&scene.sky.to_array());
+    // Scenes without a picture keep the number that they had before there were any.
+    if let Some(environment) = &scene.environment {
+        let (width, height) = environment.picture.size();
+        hash.words(&[width, height]);
+        hash.bytes(bytemuck::cast_slice(environment.picture.texels()));
+        hash.floats(&[environment.rotation]);
+    }
     hex(&hash.0.finalize())
 }
 

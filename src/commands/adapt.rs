@@ -1,6 +1,6 @@
 //! What several commands let the command line change of an experiment.
 
-use crate::experiment::{CameraChoice, Experiment, PlacedCamera, check_size};
+use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, PlacedCamera, check_size};
 use crate::graph::source::{At, Loc};
 use crate::lab::LabError;
 use crate::scene::Scene;
@@ -31,6 +31,12 @@ pub struct Changes {
     /// Set a parameter; may be given many times.
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<String>,
+    /// Another picture of the sky: an equirectangular HDR or EXR file.
+    #[arg(long, value_name = "FILE")]
+    environment: Option<String>,
+    /// Rotation of the sky's picture about y, degrees.
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    sky_rotation: Option<f32>,
     /// Time of the first frame, s.
     #[arg(long)]
     time: Option<f64>,
@@ -60,6 +66,14 @@ impl Changes {
         if !experiment.time.is_finite() {
             return Err(LabError::Request("--time must be a finite number of seconds".into()));
         }
+        if self.environment.is_some() || self.sky_rotation.is_some() {
+            let over =
+                EnvironmentChange { file: self.environment.clone(), rotation: self.sky_rotation, intensity: None };
+            over.check().map_err(LabError::Request)?;
+            let at = At { file: experiment.sources.add("--environment".as_ref(), String::new()), offset: 0 };
+            let before = experiment.environment.take().map(|e| e.value).unwrap_or_default();
+            experiment.environment = Some(Loc { value: before.overlaid(over), at });
+        }
         // Later settings win, and messages about them point at the command line.
         let file = experiment.sources.add("--set".as_ref(), self.set.join("\n"));
         let mut offset = 0;
@@ -77,7 +91,11 @@ impl Changes {
 /// The experiment's scene, lit as the experiment says.
 pub fn open_scene(experiment: &Experiment) -> Result<Scene, LabError> {
     let mut scene = super::open_scene(&experiment.scene)?;
+    let told = scene.warnings.len();
     experiment.adapt_scene(&mut scene)?;
+    for warning in scene.warnings.iter().skip(told) {
+        eprintln!("warning: {warning}");
+    }
     Ok(scene)
 }
 

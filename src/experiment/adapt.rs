@@ -3,15 +3,17 @@
 use super::{Experiment, LightChange};
 use crate::graph::source::{Diagnostic, Loc};
 use crate::lab::LabError;
-use crate::scene::{Light, LightKind, Scene};
+use crate::scene::{Light, LightKind, Scene, environment};
 use glam::Vec3;
+use std::path::Path;
 use std::sync::Arc;
 
 impl Experiment {
     /// Changes sky and lights of the scene as the experiment says. Doing it twice changes nothing more.
     ///
     /// # Errors
-    /// Lights that the scene does not have, and fields that a light of that kind does not have, with their places.
+    /// Lights that the scene does not have, and fields that a light of that kind does not have, with their places; a picture
+    /// of the sky that cannot be read or is not there.
     pub fn adapt_scene(&self, scene: &mut Scene) -> Result<(), LabError> {
         let mut errors = Vec::new();
         for (name, change) in &self.lights {
@@ -31,6 +33,26 @@ impl Experiment {
             return Err(LabError::Input(errors));
         }
         scene.sky = self.sky.map_or(scene.sky, Vec3::from);
+        self.adapt_environment(scene).map_err(|error| LabError::Input(vec![error]))
+    }
+
+    fn adapt_environment(&self, scene: &mut Scene) -> Result<(), Diagnostic> {
+        let Some(Loc { value: change, at }) = &self.environment else { return Ok(()) };
+        let has = |scene: &Scene, file: &str| {
+            scene.environment.as_ref().is_some_and(|e| e.file.as_deref() == Some(Path::new(file)))
+        };
+        if let Some(file) = change.file.as_ref().filter(|file| !has(scene, file)) {
+            let read = environment::read(Path::new(file), &mut scene.warnings);
+            scene.environment = Some(read.map_err(|message| self.sources.error(*at, message))?);
+        }
+        let Some(environment) = &mut scene.environment else {
+            let message = format!("scene '{}' has no environment: name its `file`", scene.name);
+            return Err(self.sources.error(*at, message));
+        };
+        environment.rotation = change.rotation.unwrap_or(environment.rotation);
+        if change.file.is_some() || change.intensity.is_some() {
+            scene.sky = self.sky.map_or(Vec3::ONE, Vec3::from) * change.intensity.unwrap_or(1.0);
+        }
         Ok(())
     }
 
@@ -40,14 +62,16 @@ impl Experiment {
     /// As [`Experiment::adapt_scene`].
     pub fn adapted(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, LabError> {
         let name = scene.name.clone();
-        let mut light = Scene { name, lights: scene.lights.clone(), sky: scene.sky, ..Scene::default() };
+        let (lights, environment) = (scene.lights.clone(), scene.environment.clone());
+        let mut light = Scene { name, lights, sky: scene.sky, environment, ..Scene::default() };
         self.adapt_scene(&mut light)?;
-        if light.lights == scene.lights && light.sky == scene.sky {
+        if (&light.lights, light.sky, &light.environment) == (&scene.lights, scene.sky, &scene.environment) {
             return Ok(scene);
         }
         let mut scene = scene;
         let changed = Arc::make_mut(&mut scene);
-        (changed.lights, changed.sky) = (light.lights, light.sky);
+        (changed.lights, changed.sky, changed.environment) = (light.lights, light.sky, light.environment);
+        changed.warnings.extend(light.warnings);
         Ok(scene)
     }
 

@@ -6,14 +6,14 @@ mod read;
 mod spans;
 mod write;
 
-pub(crate) use read::scene_path;
-pub(crate) use write::placed_text;
+pub(crate) use read::{in_folder, scene_path};
+pub(crate) use write::{environment_text, placed_text};
 pub use write::{resolved_text, write};
 
 use crate::graph::param::Params;
 use crate::graph::source::{At, Loc, Sources};
 use crate::lab::LabError;
-use crate::scene::Camera;
+use crate::scene::{Camera, environment};
 use glam::Vec3;
 use serde::Deserialize;
 
@@ -103,6 +103,37 @@ pub struct LightChange {
     pub outer: Option<f64>,
 }
 
+/// What an experiment changes of the sky's picture; what is absent stays as the scene has it.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct EnvironmentChange {
+    /// HDR or EXR file of another picture; its rotation is 0 and its intensity 1 unless they are said.
+    pub file: Option<String>,
+    /// Degrees about y.
+    pub rotation: Option<f32>,
+    /// Factor of the picture, 0 or more; multiplies the experiment's `sky`.
+    pub intensity: Option<f32>,
+}
+
+impl EnvironmentChange {
+    /// This, and what `over` says in its place.
+    pub fn overlaid(self, over: EnvironmentChange) -> EnvironmentChange {
+        EnvironmentChange {
+            file: over.file.or(self.file),
+            rotation: over.rotation.or(self.rotation),
+            intensity: over.intensity.or(self.intensity),
+        }
+    }
+
+    /// Whether its numbers can be.
+    ///
+    /// # Errors
+    /// The text for the user.
+    pub fn check(&self) -> Result<(), String> {
+        environment::check(self.rotation.unwrap_or(0.0), self.intensity.unwrap_or(1.0))
+    }
+}
+
 /// An experiment.
 #[derive(Clone, Debug)]
 pub struct Experiment {
@@ -120,6 +151,8 @@ pub struct Experiment {
     pub time: f64,
     /// Radiance of the sky, instead of the scene's.
     pub sky: Option<(f32, f32, f32)>,
+    /// Changes to the sky's picture.
+    pub environment: Option<Loc<EnvironmentChange>>,
     /// Changes to the scene's lights, by name.
     pub lights: Vec<(Loc<String>, LightChange)>,
     /// (name, value as RON, where it stands).

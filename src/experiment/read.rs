@@ -1,6 +1,8 @@
 //! Reading experiments.
 
-use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, Experiment, LightChange, PlacedCamera, check_size};
+use super::{
+    CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera, check_size,
+};
 use crate::graph::source::{Diagnostic, Entries, Loc, Severity, Sources};
 use glam::Vec3;
 use serde::Deserialize;
@@ -51,6 +53,8 @@ struct ExperimentFile {
     #[serde(default)]
     sky: Option<Loc<(f32, f32, f32)>>,
     #[serde(default)]
+    environment: Option<Loc<EnvironmentChange>>,
+    #[serde(default)]
     lights: Entries<LightChange>,
     #[serde(default)]
     params: Entries<RawText>,
@@ -97,6 +101,11 @@ fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Dia
     if let Some(sky) = parsed.sky.as_ref().filter(|s| !is_colour(s.value)) {
         errors.push(sources.error(sky.at, "the sky's radiance must be finite and not negative"));
     }
+    if let Some(environment) = &parsed.environment
+        && let Err(message) = environment.value.check()
+    {
+        errors.push(sources.error(environment.at, message));
+    }
     for (name, change) in &parsed.lights.0 {
         if let Err(message) = check_light(&change.value) {
             errors.push(sources.error(change.at, format!("light '{}': {message}", name.value)));
@@ -114,6 +123,7 @@ fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Dia
         size,
         time: parsed.time.map_or(0.0, |t| t.value),
         sky: parsed.sky.map(|s| s.value),
+        environment: parsed.environment.map(|Loc { value, at }| Loc { value: in_folder(folder, value), at }),
         lights: parsed.lights.0.into_iter().map(|(name, change)| (name, change.value)).collect(),
         params: parsed.params.0.into_iter().map(|(name, value)| (name, value.value.0)).collect(),
         sources,
@@ -139,6 +149,11 @@ fn check_light(change: &LightChange) -> Result<(), String> {
         return Err("its angles must be 0 to 89 degrees".into());
     }
     Ok(())
+}
+
+/// The same with its file looked up beside the experiment first.
+pub(crate) fn in_folder(folder: &Path, change: EnvironmentChange) -> EnvironmentChange {
+    EnvironmentChange { file: change.file.map(|file| scene_path(folder, &file)), ..change }
 }
 
 /// Names stay; files are looked up beside the experiment first.

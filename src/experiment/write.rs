@@ -2,14 +2,14 @@
 
 use super::adapt::change_to;
 use super::spans::{self, Body, Edits};
-use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, Experiment, LightChange, PlacedCamera};
+use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera};
 use crate::graph::param::{Params, Value};
 use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::LabError;
 use crate::scene::Scene;
 use std::path::{Component, Path, PathBuf};
 
-/// Writes an experiment to `path`: graph, scene, camera, size, what was given of time, sky and lights, and the
+/// Writes an experiment to `path`: graph, scene, camera, size, what was given of time, sky, its picture and lights, and the
 /// parameters that differ from `defaults`. The file is read back before it takes its place. A file that is replaced is
 /// edited in place: comments stay, lines that say the same stay, values that changed are replaced where they stand, and
 /// those that became defaults go with their lines.
@@ -29,6 +29,7 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
     let differing = params.list.iter().zip(&params.values).zip(&defaults.values).filter(|((_, v), d)| v != d);
     let wanted = Wanted {
         scene: scene_text(&experiment.scene, path),
+        environment: environment_in(experiment, path),
         params: differing.map(|((p, v), _)| (p.name.clone(), value_text(v))).collect(),
         values: &params,
         experiment,
@@ -64,6 +65,12 @@ pub fn resolved_text(
     let mut resolved = experiment.clone();
     resolved.camera = CameraChoice::Placed(*camera);
     resolved.sky = Some(scene.sky.into());
+    resolved.environment = scene.environment.as_ref().map(|environment| {
+        let file = experiment.environment.as_ref().and_then(|e| e.value.file.clone());
+        // Its intensity is in the sky's factor.
+        let value = EnvironmentChange { file, rotation: Some(environment.rotation), intensity: None };
+        Loc { value, at: At::default() }
+    });
     // A change is for all lights of a name: only a name of one light can be written out.
     let single = |name: &str| !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1;
     let lights = scene.lights.iter().filter(|l| single(&l.name));
@@ -71,6 +78,7 @@ pub fn resolved_text(
     let all = params.list.iter().zip(&params.values).map(|(p, v)| (p.name.clone(), value_text(v)));
     let wanted = Wanted {
         scene: scene_text(&experiment.scene, path),
+        environment: environment_in(&resolved, path),
         params: all.collect(),
         values: &params,
         experiment: &resolved,
@@ -88,6 +96,7 @@ fn exists(path: &Path) -> LabError {
 struct Wanted<'e> {
     experiment: &'e Experiment,
     scene: String,
+    environment: String,
     params: Vec<(String, String)>,
     values: &'e Params,
 }
@@ -117,6 +126,7 @@ fn read_back(
         ("size", found.size == experiment.size),
         ("time", found.time == experiment.time),
         ("sky", found.sky == experiment.sky),
+        ("environment", same_environment(&found, experiment)),
         ("lights", changes(&found) == changes(experiment)),
         ("params", values == params.values),
     ];
@@ -130,6 +140,16 @@ fn changes(experiment: &Experiment) -> Vec<(&str, LightChange)> {
     let mut list: Vec<_> = experiment.lights.iter().map(|(name, change)| (name.value.as_str(), *change)).collect();
     list.sort_by_key(|l| l.0);
     list
+}
+
+fn same_environment(a: &Experiment, b: &Experiment) -> bool {
+    let change = |e: &Experiment| e.environment.as_ref().map(|e| e.value.clone()).unwrap_or_default();
+    let (a, b) = (change(a), change(b));
+    let same_file = match (&a.file, &b.file) {
+        (Some(a), Some(b)) => same_scene(a, b),
+        (a, b) => a == b,
+    };
+    same_file && (a.rotation, a.intensity) == (b.rotation, b.intensity)
 }
 
 fn same_scene(a: &str, b: &str) -> bool {
@@ -146,6 +166,26 @@ fn scene_text(scene: &str, path: &Path) -> String {
         file.starts_with(project).then(|| between(&folder, &file))?.to_str().map(String::from)
     };
     relative().unwrap_or_else(|| scene.to_string())
+}
+
+/// The environment as the file `path` says it: nothing where the experiment says nothing. A file outside the project has
+/// its whole path, so that it is found from everywhere.
+fn environment_in(experiment: &Experiment, path: &Path) -> String {
+    let Some(Loc { value: change, .. }) = &experiment.environment else { return String::new() };
+    let file = change.file.as_ref().map(|file| {
+        let text = scene_text(file, path);
+        let whole = Path::new(file).canonicalize().ok().filter(|_| text == *file);
+        whole.and_then(|p| p.to_str().map(String::from)).unwrap_or(text)
+    });
+    environment_text(&EnvironmentChange { file, ..change.clone() })
+}
+
+/// An environment as RON.
+pub(crate) fn environment_text(change: &EnvironmentChange) -> String {
+    let file = change.file.as_ref().map(|file| format!("file: {}", quoted(file)));
+    let numbers = [("rotation", change.rotation), ("intensity", change.intensity)];
+    let numbers = numbers.iter().filter_map(|(n, v)| v.map(|v| format!("{n}: {v:?}")));
+    format!("({})", file.into_iter().chain(numbers).collect::<Vec<_>>().join(", "))
 }
 
 /// The way from a folder to a file, both absolute.
@@ -204,7 +244,7 @@ impl Wanted<'_> {
     }
 
     /// Every field but the maps: name, text, and whether leaving it out says the same.
-    fn fields(&self) -> [(&'static str, String, bool); 6] {
+    fn fields(&self) -> [(&'static str, String, bool); 7] {
         let e = self.experiment;
         [
             ("graph", quoted(&e.graph), false),
@@ -213,6 +253,7 @@ impl Wanted<'_> {
             ("size", format!("({}, {})", e.size.0, e.size.1), e.size == DEFAULT_SIZE),
             ("time", format!("{:?}", e.time), e.time == 0.0),
             ("sky", e.sky.map_or(String::new(), vector), e.sky.is_none()),
+            ("environment", self.environment.clone(), e.environment.is_none()),
         ]
     }
 }
@@ -247,7 +288,9 @@ fn edited(wanted: &Wanted, defaults: &Params, path: &Path) -> Option<String> {
     let old = Experiment::read(path).ok()?;
     let text = std::fs::read_to_string(path).ok()?;
     let body = spans::body(&text, 0)?;
-    let old_wanted = Wanted { experiment: &old, scene: String::new(), params: Vec::new(), values: wanted.values };
+    let environment = environment_in(&old, path);
+    let old_wanted =
+        Wanted { experiment: &old, scene: String::new(), environment, params: Vec::new(), values: wanted.values };
     let same_scene = same_scene(&old.scene, &wanted.experiment.scene);
     let mut edits = Edits::new();
     let mut lines = Vec::new();

@@ -28,8 +28,9 @@ const fn external(name: &'static str, kind: ExternalKind) -> External {
 /// Number of arrays that material textures are spread over.
 pub const MATERIAL_ARRAYS: usize = 12;
 
-/// The resources that a scene has only for graphs that name them: a hierarchy over all triangles, for rays.
-pub const RAY_RESOURCES: [&str; 2] = ["bvhNodes", "bvhTriangles"];
+/// The resources that a scene has only for graphs that name them: a hierarchy over all triangles, for rays, and the sky as
+/// they draw directions from it.
+pub const RAY_RESOURCES: [&str; 3] = ["bvhNodes", "bvhTriangles", "skyTexels"];
 
 use ExternalKind::{Storage, TextureArray, Uniform};
 
@@ -51,6 +52,8 @@ pub const EXTERNALS: &[External] = &[
     external("emitters", Storage),
     external("bvhNodes", Storage),
     external("bvhTriangles", Storage),
+    external("skyTexels", Storage),
+    external("skyTexture", TextureArray),
     external("materialTexture0", TextureArray),
     external("materialTexture1", TextureArray),
     external("materialTexture2", TextureArray),

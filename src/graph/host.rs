@@ -105,7 +105,7 @@ block! {
         draw_count: u32,
         vertex_count: u32,
         instance_count: u32,
-        pad: u32,
+        sky_turn: f32,
     }
 }
 
@@ -120,8 +120,8 @@ block! {
         range: f32,
         cos_inner: f32,
         cos_outer: f32,
-        pad0: f32,
-        pad1: f32,
+        of_sky: u32,
+        pad: f32,
     }
 }
 

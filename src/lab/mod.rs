@@ -6,6 +6,7 @@ mod emitters;
 mod materials;
 mod parts;
 mod scene;
+mod sky;
 mod variables;
 mod view;
 mod workspace;
@@ -428,6 +429,11 @@ impl Session {
             self.light_updates = self.scene_gpu.set_lights(lights, sky);
         }
         same
+    }
+
+    /// Turns the sky's picture to that rotation about y in degrees, from the next frame on, and its sun with it.
+    pub fn turn_sky(&mut self, rotation: f32) {
+        self.light_updates = self.scene_gpu.turn_sky(rotation);
     }
 
     /// Sees the next frames from another camera. The frame before stays known to what compares frames.

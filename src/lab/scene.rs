@@ -4,10 +4,13 @@ use super::bvh::{self, Soup};
 use super::dielectrics::Dielectrics;
 use super::emitters::Emitters;
 use super::materials::{self, NO_TEXTURE};
-use super::view::{lights, shadow_view_count};
-use crate::graph::host::{CameraBlock, DrawBlock, InstanceBlock, MaterialBlock, SceneInfoBlock};
+use super::sky;
+use super::view::lights;
+use crate::graph::host::{
+    CameraBlock, DrawBlock, InstanceBlock, LightBlock, MaterialBlock, SceneInfoBlock, ShadowBlock,
+};
 use crate::graph::run::{Geometry, SceneResources};
-use crate::scene::{Light, Scene};
+use crate::scene::{Environment, Light, Scene};
 use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, VulkanError, vk};
 use glam::{Mat4, Vec3};
 use std::collections::HashMap;
@@ -25,10 +28,42 @@ pub struct SceneGpu {
     /// Where the shaders' world begins in the scene's.
     pub origin: Vec3,
     info: SceneInfoBlock,
+    lighting: Lighting,
     bounds: (Vec3, Vec3),
     instances: Arc<Buffer>,
     sent: Vec<InstanceBlock>,
     emitters: Arc<Emitters>,
+}
+
+/// What the scene is lit by, as it was changed last.
+#[derive(Clone)]
+struct Lighting {
+    lights: Vec<Light>,
+    /// Factor of the sky's picture, or its radiance.
+    sky: Vec3,
+    environment: Option<Environment>,
+    /// What the picture is divided by on the device.
+    sky_scale: f32,
+}
+
+impl Lighting {
+    fn of(scene: &Scene) -> Lighting {
+        let (lights, environment) = (scene.lights.clone(), scene.environment.clone());
+        Lighting { lights, sky: scene.sky, sky_scale: sky::scale_of(environment.as_ref()), environment }
+    }
+
+    /// The lights' blocks and shadow views, that of the sky's sun last.
+    fn blocks(&self, bounds: (Vec3, Vec3), origin: Vec3) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
+        let sun = self.environment.as_ref().and_then(|e| e.sun(self.sky, e.rotation));
+        let all: Vec<Light> = self.lights.iter().cloned().chain(sun).collect();
+        lights((&all, self.lights.len()), bounds, origin)
+    }
+
+    /// The part of `sceneInfo` that changes with it.
+    fn inform(&self, info: SceneInfoBlock) -> SceneInfoBlock {
+        let rotation = self.environment.as_ref().map(|e| e.rotation);
+        SceneInfoBlock { sky: (self.sky * self.sky_scale).to_array(), sky_turn: sky::turn_of(rotation), ..info }
+    }
 }
 
 /// Bytes of the block `camera`.
@@ -42,6 +77,7 @@ impl SceneGpu {
     pub fn new(gpu: &Arc<Gpu>, scene: &Scene, origin: Vec3, rays: bool) -> Result<SceneGpu> {
         let mut upload = Upload::new(gpu);
         let textures = materials::upload(gpu, scene, &mut upload)?;
+        let sky = sky::texture(gpu, scene.environment.as_ref(), &mut upload)?;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let (positions, attributes, indices, first_index) = vertices(scene);
         let draws = draws(scene, &first_index);
@@ -51,20 +87,21 @@ impl SceneGpu {
         let commands: Vec<[u32; 5]> =
             (0u32..).zip(&draws).map(|(i, d)| [d.index_count, 1, d.first_index, 0, i]).collect();
         let (low, high) = scene.bounds();
-        let (light_blocks, shadow_blocks) = lights(&scene.lights, (low, high), origin);
+        let lighting = Lighting::of(scene);
+        let (light_blocks, shadow_blocks) = lighting.blocks((low, high), origin);
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        let info = SceneInfoBlock {
+        let info = lighting.inform(SceneInfoBlock {
             bounds_min: (low - origin).to_array(),
             light_count: count(light_blocks.len()),
             bounds_max: (high - origin).to_array(),
-            shadow_views: shadow_view_count(&scene.lights),
-            sky: scene.sky.to_array(),
+            shadow_views: count(shadow_blocks.len()),
+            sky: [0.0; 3],
             triangle_count: count(draws.iter().map(|d| d.index_count as usize / 3).sum()),
             draw_count: count(draws.len()),
             vertex_count: count(positions.len() / 3),
             instance_count: count(scene.instances.len()),
-            pad: 0,
-        };
+            sky_turn: 0.0,
+        });
         let dielectrics = Dielectrics::of(&scene.materials);
         let material_blocks: Vec<MaterialBlock> =
             scene.materials.iter().map(|m| material(m, dielectrics.number(m), &textures.handles)).collect();
@@ -103,6 +140,8 @@ impl SceneGpu {
         if rays {
             let found = hierarchy(&soup, &emitters, &instance_blocks, &gpu.info.name)?;
             buffers.extend(ray_buffers(&mut upload, found, &info)?);
+            let texels = sky::texels(scene.environment.as_ref());
+            buffers.insert("skyTexels", upload.buffer("skyTexels", bytemuck::cast_slice(&texels), storage)?);
         }
         let limit = u64::from(gpu.info.limits.max_storage_buffer_range);
         if let Some((name, buffer)) = buffers.iter().find(|(_, b)| b.size > limit) {
@@ -114,7 +153,7 @@ impl SceneGpu {
             });
         }
         upload.finish()?;
-        let bytes = buffers.values().map(|b| b.size).sum::<u64>() + textures.bytes;
+        let bytes = buffers.values().map(|b| b.size).sum::<u64>() + textures.bytes + sky.bytes;
         let sampler = Arc::new(Sampler::new(
             gpu,
             &SamplerDesc {
@@ -131,7 +170,7 @@ impl SceneGpu {
         Ok(SceneGpu {
             resources: SceneResources {
                 buffers,
-                textures: names.zip(textures.views).collect(),
+                textures: names.zip(textures.views).chain([("skyTexture", sky.view)]).collect(),
                 sampler,
                 geometry: Geometry {
                     indices: index_buffer,
@@ -144,6 +183,7 @@ impl SceneGpu {
             bytes,
             origin,
             info,
+            lighting,
             bounds: (low, high),
             instances,
             sent: instance_blocks,
@@ -165,8 +205,9 @@ impl SceneGpu {
         let instances = upload.buffer("instances", bytemuck::cast_slice(&sent), storage)?;
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
-        let info = SceneInfoBlock { sky: scene.sky.to_array(), ..self.info };
-        let (light_blocks, shadow_blocks) = lights(&scene.lights, bounds, origin);
+        let lighting = Lighting::of(scene);
+        let info = lighting.inform(self.info);
+        let (light_blocks, shadow_blocks) = lighting.blocks(bounds, origin);
         let own = [
             ("instances", instances.clone()),
             ("camera", camera.clone()),
@@ -183,7 +224,7 @@ impl SceneGpu {
         }
         upload.finish()?;
         let emitters = self.emitters.clone();
-        Ok(SceneGpu { resources, camera, bytes: self.bytes, origin, info, bounds, instances, sent, emitters })
+        Ok(SceneGpu { resources, camera, bytes: self.bytes, origin, info, lighting, bounds, instances, sent, emitters })
     }
 
     /// Buffers that change with time: the poses of animated instances, when they moved.
@@ -218,8 +259,22 @@ impl SceneGpu {
     /// Buffers that change with colours, directions, positions and cone angles of the lights, and with the sky. The
     /// scene has as many lights and shadow maps as the one that was uploaded, and its geometry.
     pub fn set_lights(&mut self, list: &[Light], sky: Vec3) -> Vec<(Arc<Buffer>, Vec<u8>)> {
-        let (light_blocks, shadow_blocks) = lights(list, self.bounds, self.origin);
-        self.info.sky = sky.to_array();
+        self.lighting.lights = list.to_vec();
+        self.lighting.sky = sky;
+        self.relit()
+    }
+
+    /// Buffers that change with the rotation of the sky's picture, degrees about y.
+    pub fn turn_sky(&mut self, rotation: f32) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+        if let Some(environment) = &mut self.lighting.environment {
+            environment.rotation = rotation;
+        }
+        self.relit()
+    }
+
+    fn relit(&mut self) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+        let (light_blocks, shadow_blocks) = self.lighting.blocks(self.bounds, self.origin);
+        self.info = self.lighting.inform(self.info);
         let contents: [(&str, &[u8]); 3] = [
             ("lights", bytemuck::cast_slice(&light_blocks)),
             ("shadowViews", bytemuck::cast_slice(&shadow_blocks)),

@@ -13,15 +13,16 @@ pub fn environment(scene: &Scene, size: (u32, u32), device: &DeviceInfo) -> Env 
     let (low, high) = scene.bounds();
     let (origin, extent) = (origin_of((low, high)), high - low);
     let (low, high) = (low - origin, high - origin);
+    let lights = scene.all_lights();
     let mut env = Env::new();
     let mut put = |name: &str, value: f64| {
         env.insert(name.to_string(), Var::Number(value));
     };
     put("width", f64::from(size.0));
     put("height", f64::from(size.1));
-    put("shadow_views", f64::from(shadow_view_count(&scene.lights)));
-    put("directional_views", f64::from(directional_view_count(&scene.lights)));
-    put("light_count", scene.lights.len() as f64);
+    put("shadow_views", f64::from(shadow_view_count(&lights)));
+    put("directional_views", f64::from(directional_view_count(&lights)));
+    put("light_count", lights.len() as f64);
     put("triangle_count", scene.triangle_count() as f64);
     put("emitting_triangle_count", scene.emitting_triangle_count() as f64);
     put("scene_size", f64::from(extent.max_element()));

@@ -96,9 +96,13 @@ fn camera(placed: &PlacedCamera, (low, high): (Vec3, Vec3)) -> Camera {
     }
 }
 
-/// Lights of a scene with these bounds, and the views of their shadow maps. Lights and bounds are in the scene's world,
-/// what comes back is in one that begins at `origin`.
-pub(super) fn lights(lights: &[Light], (low, high): (Vec3, Vec3), origin: Vec3) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
+/// Lights of a scene with these bounds, and the views of their shadow maps. Those beyond the first `own` stand for a part
+/// of the sky's picture. Lights and bounds are in the scene's world, what comes back is in one that begins at `origin`.
+pub(super) fn lights(
+    (lights, own): (&[Light], usize),
+    (low, high): (Vec3, Vec3),
+    origin: Vec3,
+) -> (Vec<LightBlock>, Vec<ShadowBlock>) {
     let bounds = (low - origin, high - origin);
     let (mut blocks, mut views) = (Vec::new(), Vec::new());
     for (number, light) in (0u32..).zip(lights) {
@@ -121,8 +125,8 @@ pub(super) fn lights(lights: &[Light], (low, high): (Vec3, Vec3), origin: Vec3) 
             range: 0.0,
             cos_inner: inner.cos(),
             cos_outer: outer.cos(),
-            pad0: 0.0,
-            pad1: 0.0,
+            of_sky: u32::from(number as usize >= own),
+            pad: 0.0,
         });
     }
     (blocks, views)

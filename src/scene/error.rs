@@ -23,6 +23,9 @@ pub enum SceneError {
     /// A scene file names a model that is not on this machine.
     #[error("{}:{line}:{column}: {message}", path.display())]
     NoModel { path: PathBuf, line: usize, column: usize, message: String },
+    /// A picture of the sky that cannot be read; the message names its file.
+    #[error("{message}")]
+    Environment { message: String },
     /// A file could not be written.
     #[error("cannot write {}: {message}. Check that the folder exists, is writable and has space", path.display())]
     Write { path: PathBuf, message: String },

@@ -5,6 +5,7 @@
 
 pub mod builtin;
 pub(crate) mod defaults;
+pub(crate) mod environment;
 mod error;
 mod export;
 mod file;
@@ -25,6 +26,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Quat, Vec3, Vec4};
 use indexmap::IndexMap;
 
+pub use environment::{Environment, SUN, SkyPicture};
 pub use error::SceneError;
 pub use mesh::Side;
 pub(crate) use shuffle::splitmix;
@@ -43,8 +45,10 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     pub lights: Vec<Light>,
     pub cameras: IndexMap<String, Camera>,
-    /// Radiance of the sky, the same in every direction.
+    /// Radiance of the sky: the same in every direction, or times that of the environment's picture.
     pub sky: Vec3,
+    /// The sky as a picture.
+    pub environment: Option<Environment>,
     /// The median distance of what the scene's own camera sees, when it was opened [m]; 0: not known.
     pub seen_distance: f32,
     /// What is not as its author meant it (missing files, dropped triangles, stand-ins); each names the file.

@@ -24,6 +24,14 @@ impl Scene {
         writeln!(out, "instances  {} ({moving} animated)", self.instances.len())?;
         writeln!(out, "bounds     {low:.3} to {high:.3}, {:.2} x {:.2} x {:.2} m", size.x, size.y, size.z)?;
         writeln!(out, "sky        radiance {:.3}", self.sky)?;
+        if let Some(environment) = &self.environment {
+            let ((width, height), turned) = (environment.picture.size(), environment.rotation);
+            writeln!(
+                out,
+                "           times a picture of {width}x{height}, {}, turned by {turned} deg",
+                environment.name()
+            )?;
+        }
 
         writeln!(out, "\nmaterials  {}", self.materials.len())?;
         let width = self.materials.iter().map(|m| m.name.chars().count()).max().unwrap_or(0).clamp(4, 32);
@@ -43,8 +51,9 @@ impl Scene {
             let Texture { name, width, height, format, mips } = texture;
             writeln!(out, "  {name}  {width}x{height} {format:?}, {} mips", mips.len())?;
         }
-        writeln!(out, "\nlights     {}", self.lights.len())?;
-        for light in &self.lights {
+        let lights = self.all_lights();
+        writeln!(out, "\nlights     {}", lights.len())?;
+        for light in &lights {
             let (color, position, direction) = (light.color, light.position, light.direction);
             let shadow = if light.shadow { "shadow" } else { "no shadow" };
             let about = match light.kind {

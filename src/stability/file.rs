@@ -291,7 +291,8 @@ impl Suite {
             experiment.params.retain(|(name, _)| has(&name.value));
         }
         for setting in self.set.iter().chain(&method.set).chain(&case.set).filter(|s| s.name.value != "graph") {
-            let field = ["scene", "camera", "size", "time", "sky"].contains(&setting.name.value.as_str());
+            let field =
+                ["scene", "camera", "size", "time", "sky", "environment"].contains(&setting.name.value.as_str());
             let own = method.set.iter().any(|s| std::ptr::eq(s, setting));
             if field || own || has(&setting.name.value) {
                 apply(setting, &mut experiment);

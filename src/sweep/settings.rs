@@ -1,6 +1,6 @@
 //! One thing that a point sets: a parameter of the graph, or a field of the experiment.
 
-use crate::experiment::{CameraChoice, Experiment, check_size, scene_path};
+use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, check_size, in_folder, scene_path};
 use crate::graph::file::RawText;
 use crate::graph::source::{At, Loc, options};
 use serde::de::DeserializeOwned;
@@ -9,7 +9,7 @@ use std::path::Path;
 /// Name and value as RON.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// graph, scene, camera, size, time, sky, or a parameter.
+    /// graph, scene, camera, size, time, sky, environment, or a parameter.
     pub name: Loc<String>,
     /// RON.
     pub text: String,
@@ -47,6 +47,13 @@ impl Setting {
                     return Err("the sky's radiance must be finite and not negative".into());
                 }
                 experiment.sky = Some(sky);
+            }
+            "environment" => {
+                let change = self.read::<EnvironmentChange>("(file: \"sky.hdr\", rotation: degrees, intensity: 1)")?;
+                change.check()?;
+                let before = experiment.environment.take().map(|e| e.value).unwrap_or_default();
+                let value = before.overlaid(in_folder(folder, change));
+                experiment.environment = Some(Loc { value, at: At { file, offset: self.name.at.offset } });
             }
             _ => {
                 let at = At { file, offset: self.name.at.offset };

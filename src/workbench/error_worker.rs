@@ -2,16 +2,16 @@
 //! rendered afresh, as a sweep would, so that neither the picture's frames nor their times wait for it.
 
 use super::report::Report;
+use super::request::LightState;
 use crate::capture::scene_hash;
 use crate::experiment::{Experiment, placed_text};
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of, params_of};
 use crate::metrics::{Compared, Kind, Linear, relmse, structure};
 use crate::reference::{GRAPH, Reference, find};
 use crate::report::error_of;
-use crate::scene::{Light, Scene};
+use crate::scene::Scene;
 use crate::sweep::{Subject, numbers};
 use crossbeam_channel::Receiver;
-use glam::Vec3;
 use std::sync::Arc;
 
 /// The error that is asked for.
@@ -47,8 +47,8 @@ pub struct ErrorRequest {
     pub experiment: Experiment,
     /// The scene with its own light.
     pub scene: Arc<Scene>,
-    /// Lights and sky that differ from the scene's own.
-    pub lights: Option<(Vec<Light>, Vec3)>,
+    /// Light that differs from the scene's own.
+    pub lights: Option<LightState>,
     /// Frames until the picture has settled.
     pub frames: usize,
 }
@@ -199,9 +199,7 @@ fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
     let named = crate::lab::parts_of(&loaded.graph).into_iter().find(|p| p.0 == part);
     let (_, texture) = named.ok_or_else(missing)?;
     let mut session: Session = lab.build(&experiment, &loaded, scene, vec![texture], Some(&reuse))?;
-    if let Some((lights, sky)) = lights
-        && !session.set_lights(&lights, sky)
-    {
+    if lights.is_some_and(|lights| !lights.light(&mut session)) {
         return Err(LabError::Request("the light changed more than a session can follow".into()));
     }
     for _ in 0..frames {

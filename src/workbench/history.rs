@@ -33,7 +33,7 @@ impl State {
     /// opened.
     fn same(&self, other: &State, opened: bool) -> bool {
         let (a, b) = (&self.desired, &other.desired);
-        let edit = a.sides == b.sides && a.scene == b.scene && a.lights == b.lights;
+        let edit = a.sides == b.sides && (&a.scene, &a.environment, &a.lights) == (&b.scene, &b.environment, &b.lights);
         let view = a.camera == b.camera && self.fixed_size == other.fixed_size && self.name == other.name;
         edit && (view || !opened)
     }
@@ -97,8 +97,10 @@ impl Workbench {
     pub(super) fn go(&mut self, back: bool) {
         let now = self.state();
         let Some((State { desired, name, fixed_size, time }, opened)) = self.history.step(now, back) else { return };
-        if self.desired.scene != desired.scene {
+        if (&self.desired.scene, &self.desired.environment) != (&desired.scene, &desired.environment) {
             self.open_scene(&desired.scene);
+            self.view.picture.clone_from(&desired.environment);
+            self.desired.environment = desired.environment;
             // It is seen as it was, not as an experiment would have it.
             self.returning = desired.camera.is_some();
             self.desired.camera = desired.camera;

@@ -43,7 +43,7 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{TextureId, Ui, Vec2};
 use engine::{Engine, Order};
 use events::Events;
-use opening::side_of;
+use opening::{picture_of, side_of};
 use report::{DeviceReport, GraphInfo, PictureReport};
 use request::RenderRequest;
 use std::path::{Path, PathBuf};
@@ -174,6 +174,7 @@ impl Workbench {
         let desired = RenderRequest {
             sides: [Some(side_of(&experiment)), None],
             scene: options.scene.unwrap_or_else(|| experiment.scene.clone()),
+            environment: picture_of(&experiment),
             size: options.size.unwrap_or((0, 0)),
             redo: options.redo,
             clock: request::Clock { at: experiment.time, jumps: 1, ..request::Clock::default() },
@@ -441,6 +442,7 @@ impl Workbench {
 fn differs(a: &RenderRequest, b: &RenderRequest) -> bool {
     a.sides != b.sides
         || a.scene != b.scene
+        || a.environment != b.environment
         || a.lights != b.lights
         || a.camera != b.camera
         || a.path != b.path

@@ -34,6 +34,7 @@ impl Workbench {
                 self.sides[0].errors.clear();
                 if side_of(&experiment) != self.desired.sides[0].clone().unwrap_or_default()
                     || experiment.scene != self.desired.scene
+                    || picture_of(&experiment) != self.desired.environment
                 {
                     self.open(&experiment);
                     self.status = format!("read {} again", path.display());
@@ -48,13 +49,15 @@ impl Workbench {
         self.history.opens();
         self.name.clone_from(&experiment.name);
         self.desired.sides[0] = Some(side_of(experiment));
-        if self.desired.scene == experiment.scene {
+        if self.desired.scene == experiment.scene && self.desired.environment == picture_of(experiment) {
             if let Some(scene) = &self.scene {
                 self.desired.camera = viewpoint_of(experiment, scene).ok().map(|v| v.camera);
                 self.desired.lights = save::lights(experiment, scene).unwrap_or_default();
             }
         } else {
             self.open_scene(&experiment.scene);
+            self.desired.environment = picture_of(experiment);
+            self.view.picture.clone_from(&self.desired.environment);
         }
         self.experiment = Some(experiment.clone());
         self.desired.clock.at = experiment.time;
@@ -63,6 +66,8 @@ impl Workbench {
 
     pub(super) fn open_scene(&mut self, spec: &str) {
         self.desired.scene = spec.to_string();
+        self.desired.environment.clear();
+        self.view.picture.clear();
         self.desired.lights = None;
         self.returning = false;
         self.watch.scene(spec);
@@ -87,6 +92,11 @@ impl Workbench {
         let side = self.desired.sides[0].clone().unwrap_or_default();
         Experiment { name: self.name.clone(), ..self.desired.experiment(&side) }
     }
+}
+
+/// The file of the picture that an experiment gives the sky.
+pub(super) fn picture_of(experiment: &Experiment) -> String {
+    experiment.environment.as_ref().and_then(|e| e.value.file.clone()).unwrap_or_default()
 }
 
 /// A side that shows an experiment.

@@ -4,7 +4,8 @@ use crate::camera_path::CameraPath;
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::run::Redo;
 use crate::graph::source::{At, Loc, Sources};
-use crate::scene::{Camera, Light};
+use crate::lab::Session;
+use crate::scene::{Camera, Light, Scene};
 use glam::Vec3;
 
 /// A graph with the parameters that are not at their defaults.
@@ -48,6 +49,34 @@ pub struct InspectTarget {
     pub slice: u32,
 }
 
+/// What of a scene's light changes while it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightState {
+    /// The scene's lights.
+    pub lights: Vec<Light>,
+    /// Radiance of the sky, or what its picture is multiplied by.
+    pub sky: Vec3,
+    /// Of the sky's picture about y, degrees.
+    pub rotation: f32,
+}
+
+impl LightState {
+    /// As the scene has it.
+    pub fn of(scene: &Scene) -> LightState {
+        let rotation = scene.environment.as_ref().map_or(0.0, |e| e.rotation);
+        LightState { lights: scene.lights.clone(), sky: scene.sky, rotation }
+    }
+
+    /// Lights a session from its next frame on; false where it would take a new one.
+    pub fn light(&self, session: &mut Session) -> bool {
+        let follows = session.set_lights(&self.lights, self.sky);
+        if follows {
+            session.turn_sky(self.rotation);
+        }
+        follows
+    }
+}
+
 /// Everything that decides what is rendered.
 #[derive(Clone, Debug, Default)]
 pub struct RenderRequest {
@@ -55,8 +84,10 @@ pub struct RenderRequest {
     pub sides: [Option<SideRequest>; 2],
     /// Built-in name or path of the scene.
     pub scene: String,
-    /// Lights and sky that differ from the scene's own.
-    pub lights: Option<(Vec<Light>, Vec3)>,
+    /// File of a picture of the sky in place of the scene's own; empty: none.
+    pub environment: String,
+    /// Light that differs from the scene's own.
+    pub lights: Option<LightState>,
     /// The camera; the scene's own until it is known.
     pub camera: Option<Camera>,
     /// A path that the camera follows in the scene's time.
@@ -103,6 +134,7 @@ impl RenderRequest {
             size: self.size,
             time: self.clock.at,
             sky: None,
+            environment: None,
             lights: Vec::new(),
             params,
             sources,

@@ -1,12 +1,11 @@
 //! Saving: experiments and captures, as the window's state says.
 
-use super::request::{RenderRequest, SideRequest};
+use super::request::{LightState, RenderRequest, SideRequest};
 use crate::capture::{self, Resource, What};
-use crate::experiment::{CameraChoice, Experiment, LightChange};
+use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, LightChange};
 use crate::graph::source::{At, Loc};
 use crate::lab::{Lab, LabError};
 use crate::scene::{Light, LightKind, Scene};
-use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -19,8 +18,12 @@ pub fn experiment(
     scene: Option<&Scene>,
 ) -> Experiment {
     let mut experiment = Experiment { name: name.into(), time, ..desired.experiment(side) };
-    if let (Some((lights, sky)), Some(scene)) = (&desired.lights, scene) {
+    let at = At::default();
+    let file = Some(desired.environment.clone()).filter(|file| !file.is_empty());
+    let mut picture = EnvironmentChange { file, ..EnvironmentChange::default() };
+    if let (Some(LightState { lights, sky, rotation }), Some(scene)) = (&desired.lights, scene) {
         experiment.sky = (*sky != scene.sky).then(|| (*sky).into());
+        picture.rotation = scene.environment.as_ref().filter(|e| e.rotation != *rotation).map(|_| *rotation);
         experiment.lights = lights
             .iter()
             .zip(&scene.lights)
@@ -28,6 +31,7 @@ pub fn experiment(
             .map(|(light, own)| (Loc { value: own.name.clone(), at: At::default() }, change(light, own)))
             .collect();
     }
+    experiment.environment = (picture != EnvironmentChange::default()).then_some(Loc { value: picture, at });
     experiment
 }
 
@@ -59,12 +63,12 @@ fn change(light: &Light, own: &Light) -> LightChange {
 ///
 /// # Errors
 /// The experiment changes a light that the scene does not have.
-pub fn lights(experiment: &Experiment, scene: &Arc<Scene>) -> Result<Option<(Vec<Light>, Vec3)>, LabError> {
-    if experiment.sky.is_none() && experiment.lights.is_empty() {
+pub fn lights(experiment: &Experiment, scene: &Arc<Scene>) -> Result<Option<LightState>, LabError> {
+    if experiment.sky.is_none() && experiment.environment.is_none() && experiment.lights.is_empty() {
         return Ok(None);
     }
     let adapted = experiment.adapted(scene.clone())?;
-    Ok(Some((adapted.lights.clone(), adapted.sky)))
+    Ok(Some(LightState::of(&adapted)).filter(|lights| *lights != LightState::of(scene)))
 }
 
 /// Captures an experiment into `folder/NAME`, or the next name that is free.

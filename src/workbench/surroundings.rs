@@ -2,6 +2,7 @@
 
 use super::Workbench;
 use super::motion;
+use super::request::LightState;
 use crate::lab::Viewpoint;
 use crate::scene::{Light, LightKind};
 use egui::{DragValue, Ui};
@@ -93,24 +94,60 @@ impl Workbench {
 
     fn lights(&mut self, ui: &mut Ui) {
         let Some(scene) = self.scene.clone() else { return };
-        let (mut lights, mut sky) = self.desired.lights.clone().unwrap_or((scene.lights.clone(), scene.sky));
+        let own = LightState::of(&scene);
+        let mut now = self.desired.lights.clone().unwrap_or_else(|| own.clone());
+        let LightState { lights, sky, rotation } = &mut now;
         ui.horizontal(|ui| {
             for x in [&mut sky.x, &mut sky.y, &mut sky.z] {
                 ui.add(DragValue::new(x).range(0.0..=1e6).speed(0.01));
             }
-            ui.label("sky radiance").on_hover_text("Linear RGB, W/(m² sr)");
+            match scene.environment {
+                None => ui.label("sky radiance").on_hover_text("Linear RGB, W/(m² sr)"),
+                Some(_) => ui.label("times the sky's picture"),
+            };
         });
+        if let Some(environment) = &scene.environment {
+            ui.label(format!("picture: {}", environment.name()));
+            ui.add(egui::Slider::new(rotation, 0.0..=360.0).suffix(" deg").text("rotation"));
+            intensity(ui, sky);
+        }
+        self.picture_file(ui);
         for (i, light) in lights.iter_mut().enumerate() {
             let name = if light.name.is_empty() { format!("light {}", i + 1) } else { light.name.clone() };
             egui::CollapsingHeader::new(name).id_salt(("light", i)).default_open(i < 3).show(ui, |ui| one(ui, light));
         }
-        let own = (scene.lights.clone(), scene.sky);
-        let differs = (&lights, sky) != (&own.0, own.1);
+        let differs = now != own;
         if ui.add_enabled(differs, egui::Button::new("reset lights")).clicked() {
             self.desired.lights = None;
         } else {
-            self.desired.lights = differs.then_some((lights, sky));
+            self.desired.lights = differs.then_some(now);
         }
+    }
+
+    /// Another picture for the sky, by its file's name.
+    fn picture_file(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let field = egui::TextEdit::singleline(&mut self.view.picture).hint_text("sky.hdr or sky.exr");
+            let done = ui.add(field.desired_width(180.0)).lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            let clicked = ui.button("load").on_hover_text("A picture of the sky; empty: the scene's own").clicked();
+            if (done || clicked) && self.view.picture.trim() != self.desired.environment {
+                self.desired.environment = self.view.picture.trim().into();
+                self.desired.lights = None;
+            }
+        });
+    }
+}
+
+/// One factor for all of the sky's colours.
+fn intensity(ui: &mut Ui, sky: &mut Vec3) {
+    let before = sky.max_element();
+    let mut now = before;
+    ui.horizontal(|ui| {
+        ui.add(DragValue::new(&mut now).range(0.0..=1e6).speed(0.01));
+        ui.label("intensity");
+    });
+    if now != before {
+        *sky = if before > 0.0 { *sky * (now / before) } else { Vec3::splat(now) };
     }
 }
 

@@ -13,6 +13,8 @@ pub struct View {
     pub split: f32,
     /// Whether B is shown when flipping.
     pub flipped: bool,
+    /// What is typed as the file of the sky's picture.
+    pub picture: String,
     /// Multiplies the absolute difference.
     pub gain: u32,
     /// Mouse.
@@ -30,6 +32,7 @@ impl Default for View {
             mode: Mode::Split,
             split: 0.5,
             flipped: false,
+            picture: String::new(),
             gain: 8,
             steering: motion::Mode::Orbit,
             speed: 1.0,

@@ -110,5 +110,8 @@ impl<'a> Sources<'a> {
 /// Whether two experiments look at the same: only then can one reference be for both.
 fn same_view(a: &Experiment, b: &Experiment) -> bool {
     let lights = |e: &Experiment| e.lights.iter().map(|(name, l)| (name.value.clone(), *l)).collect::<Vec<_>>();
-    (&a.scene, &a.camera, a.time, a.sky) == (&b.scene, &b.camera, b.time, b.sky) && lights(a) == lights(b)
+    let picture = |e: &Experiment| e.environment.as_ref().map(|e| e.value.clone());
+    (&a.scene, &a.camera, a.time, a.sky) == (&b.scene, &b.camera, b.time, b.sky)
+        && lights(a) == lights(b)
+        && picture(a) == picture(b)
 }

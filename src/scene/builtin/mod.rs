@@ -13,6 +13,7 @@ mod openings;
 mod patterns;
 mod scales;
 pub(super) mod shapes;
+mod sky_window;
 mod solid;
 mod street;
 mod thin_walls;
@@ -53,6 +54,7 @@ const ALL: &[(&str, &str, Build)] = &[
     ("street", "a street between tall houses with recessed windows and balconies under a grey sky", street::build),
     ("gloss", "glossy tiles and a mirror in a room with a window", gloss::build),
     ("foliage", "trees and bushes of small leaves, some cut out by a mask", foliage::build),
+    ("sky-window", "a room that a picture of a clear sky lights through a window, sun and all", sky_window::build),
     ("vases", "a hall of fifty vases in relief, a million triangles", vases::build),
 ];
 

@@ -4,6 +4,7 @@ use glam::{Mat4, Quat, Vec3};
 use indexmap::IndexMap;
 use serde::Deserialize;
 
+use crate::scene::environment::check as check_environment;
 use crate::scene::{Animation, Camera, Keyframe, Light, LightKind, builtin};
 
 /// A whole scene file.
@@ -15,6 +16,8 @@ pub(super) struct SceneFile {
     pub lights: Vec<LightEntry>,
     /// Radiance; without it, that of the first model.
     pub sky: Option<Sky>,
+    /// A picture that multiplies the radiance.
+    pub environment: Option<EnvironmentEntry>,
     pub cameras: IndexMap<String, CameraEntry>,
 }
 
@@ -32,6 +35,40 @@ impl TryFrom<Vec3> for Sky {
         } else {
             Err("the sky's radiance must be finite and 0 or more".into())
         }
+    }
+}
+
+/// A picture of the sky.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "EnvironmentFields")]
+pub(super) struct EnvironmentEntry {
+    pub file: String,
+    /// Degrees about y.
+    pub rotation: f32,
+    pub intensity: f32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct EnvironmentFields {
+    file: String,
+    #[serde(default)]
+    rotation: f32,
+    #[serde(default = "whole")]
+    intensity: f32,
+}
+
+fn whole() -> f32 {
+    1.0
+}
+
+impl TryFrom<EnvironmentFields> for EnvironmentEntry {
+    type Error = String;
+
+    fn try_from(fields: EnvironmentFields) -> Result<Self, String> {
+        let EnvironmentFields { file, rotation, intensity } = fields;
+        check_environment(rotation, intensity)?;
+        Ok(EnvironmentEntry { file, rotation, intensity })
     }
 }
 

@@ -5,9 +5,11 @@ mod format;
 
 use std::path::{Path, PathBuf};
 
+use glam::Vec3;
+
 use super::progress::Progress;
-use super::{Scene, SceneError, builtin, defaults, open};
-use format::{ModelEntry, SceneFile};
+use super::{Environment, Scene, SceneError, builtin, defaults, environment, open};
+use format::{EnvironmentEntry, ModelEntry, SceneFile};
 
 /// Opens a scene file and everything that it names.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
@@ -19,13 +21,25 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let file = parse(&text, path)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut scene = Scene { name: file.name.clone().unwrap_or(name), ..Scene::default() };
-    let mut sky = None;
+    let (mut sky, mut picture) = (None, None);
     for (i, entry) in file.models.iter().enumerate() {
         let model = load_model(entry, path, &text, progress.share(i, file.models.len()))?;
-        sky = sky.or(Some(model.sky));
+        if i == 0 {
+            (sky, picture) = (Some(model.sky), model.environment.clone());
+        }
         compose::add(&mut scene, model, entry);
     }
-    scene.sky = file.sky.map(|s| s.0).or(sky).unwrap_or(defaults::SKY);
+    match &file.environment {
+        Some(entry) => {
+            scene.environment = Some(open_environment(entry, path, &text, &mut scene.warnings)?);
+            scene.sky = file.sky.map_or(Vec3::ONE, |s| s.0) * entry.intensity;
+        }
+        // A radiance of its own takes the place of the first model's sky, picture and all.
+        None => {
+            scene.environment = picture.filter(|_| file.sky.is_none());
+            scene.sky = file.sky.map(|s| s.0).or(sky).unwrap_or(defaults::SKY);
+        }
+    }
     for light in &file.lights {
         scene.lights.push(light.to_light(scene.lights.len()));
     }
@@ -39,6 +53,23 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         scene.cameras.insert("default".into(), camera);
     }
     Ok(scene)
+}
+
+fn open_environment(
+    entry: &EnvironmentEntry,
+    scene_file: &Path,
+    text: &str,
+    warnings: &mut Vec<String>,
+) -> Result<Environment, SceneError> {
+    let candidates = places(&entry.file, scene_file);
+    // Where it is nowhere, the message is about the first place.
+    let found = candidates.iter().find(|candidate| candidate.is_file()).or(candidates.first());
+    let opened = environment::read(found.map_or(Path::new(""), PathBuf::as_path), warnings);
+    let environment = opened.map_err(|message| {
+        let (line, column) = position_of(text, &entry.file);
+        SceneError::SceneFile { path: scene_file.into(), line, column, message }
+    })?;
+    Ok(Environment { rotation: entry.rotation, ..environment })
 }
 
 fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progress) -> Result<Scene, SceneError> {

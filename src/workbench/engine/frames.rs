@@ -2,6 +2,7 @@
 
 use super::super::renderdoc;
 use super::super::report::{PictureReport, Report};
+use super::super::request::LightState;
 use super::{LONG, Run, Submitted};
 use crate::graph::run::FrameTimes;
 use crate::lab::LabError;
@@ -55,9 +56,8 @@ impl Run<'_> {
             session.place_camera(&path.at(self.clock.now));
         }
         if std::mem::take(&mut side.lights) {
-            let own = session.scene.clone();
-            let (lights, sky) = self.desired.lights.as_ref().map_or((&own.lights, own.sky), |(l, s)| (l, *s));
-            session.set_lights(lights, sky);
+            let lights = self.desired.lights.clone().unwrap_or_else(|| LightState::of(&session.scene));
+            lights.light(session);
         }
         session.set_time(self.clock.now);
         session.set_redo(self.desired.redo);

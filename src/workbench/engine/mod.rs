@@ -142,7 +142,7 @@ struct Run<'a> {
     error_requests: Sender<ErrorRequest>,
     scene: Option<Arc<Scene>>,
     /// What was loaded: name, revision; and how many scenes were.
-    scene_key: Option<(String, u64)>,
+    scene_key: Option<(String, String, u64)>,
     scene_number: u64,
     loading: Option<Arc<AtomicBool>>,
     loaded: Sender<Result<Arc<Scene>, SceneError>>,

@@ -5,13 +5,14 @@ use super::Run;
 use crate::lab::LabError;
 use crate::scene::{Scene, SceneError};
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 impl Run<'_> {
     pub(super) fn load_scene(&mut self) {
-        let key = (self.desired.scene.clone(), self.desired.scene_revision);
+        let key = (self.desired.scene.clone(), self.desired.environment.clone(), self.desired.scene_revision);
         if key.0.is_empty() || self.scene_key.as_ref() == Some(&key) {
             return;
         }
@@ -38,6 +39,7 @@ impl Run<'_> {
                 }
                 ControlFlow::Continue(())
             });
+            let scene = scene.and_then(|scene| scene.under(Path::new(&key.1)));
             // A load that was replaced by another has nobody to report to.
             if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
                 let _ = loaded.send(scene.map(Arc::new));

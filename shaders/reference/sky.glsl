@@ -1,0 +1,98 @@
+// Directions drawn from the sky's picture, as dense as it is bright, and weighed against those that surfaces draw (Veach and Guibas
+// 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", the balance heuristic).
+#ifndef REFERENCE_SKY_GLSL
+#define REFERENCE_SKY_GLSL
+#include "common/ggx.glsl"
+#include "common/sky.glsl"
+
+// Width, height, two words of nothing; radiance around the sun and nothing; sums up to each row, from 0 to 1; in each row sums up to each
+// texel; texels in halves, two words each, of which bit 48 says that it is the sun's.
+layout(std430) readonly buffer SkyTexels { uint words[]; } skyTexels;
+
+const uint SKY_AROUND = 4, SKY_ROWS = 8;
+
+// What comes from a direction: the sun is light that arrives directly, as from a light.
+struct SkyShine {
+    vec3 sky;
+    vec3 sun;
+    float density; // of directions drawn here [1/sr]
+};
+
+// Reflected to the viewer.
+struct SkyLight {
+    vec3 diffuse;
+    vec3 specular;
+    vec3 direct; // of the sun
+};
+
+const SkyLight NO_SKY_LIGHT = SkyLight(vec3(0.0), vec3(0.0), vec3(0.0));
+
+bool skyHasPicture() {
+    return sceneInfo.sky_turn >= 0.0;
+}
+
+float skySum(uint i) {
+    return uintBitsToFloat(skyTexels.words[i]);
+}
+
+// The first of `count` parts whose sums begin at `first` that ends beyond u.
+uint skyPart(uint first, uint count, float u) {
+    uint low = 0, high = count - 1;
+    while (low < high) {
+        uint middle = (low + high) / 2;
+        if (skySum(first + middle + 1) > u) high = middle;
+        else low = middle + 1;
+    }
+    return low;
+}
+
+SkyShine skyTexel(uvec2 at, float polar) {
+    uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
+    uint row = SKY_ROWS + size.y + 1 + at.y * (size.x + 1);
+    uint texel = SKY_ROWS + size.y + 1 + size.y * (size.x + 1) + 2 * (at.y * size.x + at.x);
+    uint first = skyTexels.words[texel], second = skyTexels.words[texel + 1];
+    vec3 radiance = vec3(unpackHalf2x16(first), unpackHalf2x16(second & 0xffffu).x), around = radiance;
+    if (second >> 16 != 0) around = vec3(skySum(SKY_AROUND), skySum(SKY_AROUND + 1), skySum(SKY_AROUND + 2));
+    float share = (skySum(SKY_ROWS + at.y + 1) - skySum(SKY_ROWS + at.y)) * (skySum(row + at.x + 1) - skySum(row + at.x));
+    float density = share * float(size.x) * float(size.y) / (2.0 * SKY_PI * SKY_PI * max(sin(polar), 1e-7));
+    return SkyShine(sceneInfo.sky * around, sceneInfo.sky * (radiance - around), density);
+}
+
+// What a ray along d that leaves the scene meets.
+SkyShine skyShine(vec3 d) {
+    uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
+    vec2 place = skyPlace(d);
+    return skyTexel(min(uvec2(vec2(fract(place.x), place.y) * vec2(size)), size - 1u), place.y * SKY_PI);
+}
+
+// A direction, as dense as the picture's luminance.
+SkyShine drawSky(vec4 u, out vec3 d) {
+    uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
+    uint y = skyPart(SKY_ROWS, size.y, u.x);
+    uint x = skyPart(SKY_ROWS + size.y + 1 + y * (size.x + 1), size.x, u.y);
+    vec2 place = (vec2(x, y) + u.zw) / vec2(size);
+    float polar = place.y * SKY_PI, azimuth = (place.x - 0.5 - sceneInfo.sky_turn) * 2.0 * SKY_PI;
+    d = vec3(sin(azimuth) * sin(polar), cos(polar), -cos(azimuth) * sin(polar));
+    return skyTexel(uvec2(x, y), polar);
+}
+
+// How much a ray along d counts that a lobe has drawn with that density, where the sky is drawn too.
+float lobeShare(SkyShine shine, float density) {
+    return density / max(density + shine.density, 1e-30);
+}
+
+// Light of one direction drawn from the sky at p; `drawn`: how many directions the diffuse and the specular lobe draw here, on average.
+// Nobody has drawn any at a path's end, where the sun alone counts, as lights do.
+SkyLight skyLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 drawn, bool only_sun, vec4 u) {
+    vec3 d;
+    SkyShine shine = drawSky(u, d);
+    float cosine = dot(s.normal, d);
+    if (cosine <= 0.0 || dot(face, d) <= 0.0 || shine.density <= 0.0 || only_sun && shine.sun == vec3(0.0)) return NO_SKY_LIGHT;
+    if (blocked(Ray(offsetPoint(p, face), d, 1e30))) return NO_SKY_LIGHT;
+    vec2 densities = shine.density + drawn * vec2(diffuseDensity(s, d), specularDensity(s, view, d));
+    vec3 diffuse = diffuseBrdf(s) * cosine / densities.x, specular = specularBrdf(s, view, d) * cosine / densities.y;
+    vec3 sky = only_sun ? vec3(0.0) : shine.sky;
+    return SkyLight(diffuse * sky, specular * sky, (diffuse + specular) * shine.sun);
+}
+
+#endif

@@ -1,0 +1,91 @@
+//! A clear sky by the CIE's standard general sky (ISO 15469:2004, CIE S 011), for scenes without a file.
+
+use super::{Environment, Level, SkyPicture, direction};
+use glam::Vec3;
+
+/// Gradation and indicatrix of sky type 12, "CIE standard clear sky, low luminance turbidity".
+const A: f32 = -1.0;
+const B: f32 = -0.32;
+const C: f32 = 10.0;
+const D: f32 = -3.0;
+const E: f32 = 0.45;
+
+/// Half of the angle that the sun's disc has, degrees.
+const SUN_RADIUS: f32 = 0.265;
+
+/// Samples a side of a texel that the sun's edge may cross.
+const SUN_SAMPLES: u32 = 16;
+
+/// A clear sky of the given zenith radiance, over ground, with a sun in direction `sun` whose irradiance is `irradiance`.
+pub(in crate::scene) fn clear_sky(width: u32, sun: Vec3, irradiance: Vec3, zenith: Vec3, ground: Vec3) -> Environment {
+    let height = width / 2;
+    let sun = sun.normalize();
+    let place = |at: f32, of: u32| at / of as f32;
+    let sky = |d: Vec3| {
+        if d.y < 0.0 {
+            return ground;
+        }
+        // Paler where the air mass is larger.
+        let pale = (1.0 - d.y).powi(3);
+        let colour = zenith.lerp(Vec3::splat(zenith.dot(Vec3::new(0.2126, 0.7152, 0.0722))), 0.7 * pale);
+        colour * relative_luminance(d, sun)
+    };
+    let texel = |i: u32| {
+        let (x, y) = ((i % width) as f32, (i / width) as f32);
+        sky(direction(place(x + 0.5, width), place(y + 0.5, height))).to_array()
+    };
+    let mut level = Level { width, height, texels: (0..width * height).map(texel).collect() };
+    add_sun(&mut level, sun, irradiance);
+    Environment::of(SkyPicture::new(level))
+}
+
+/// Luminance in direction `d` over that of the zenith: gradation from zenith to horizon, times the indicatrix around the
+/// sun.
+fn relative_luminance(d: Vec3, sun: Vec3) -> f32 {
+    let gradation = |cosine: f32| 1.0 + A * (B / cosine.max(0.01)).exp();
+    let indicatrix =
+        |angle: f32| 1.0 + C * ((D * angle).exp() - (D * std::f32::consts::FRAC_PI_2).exp()) + E * angle.cos().powi(2);
+    let to_sun = d.dot(sun).clamp(-1.0, 1.0).acos();
+    indicatrix(to_sun) * gradation(d.y) / (indicatrix(sun.y.clamp(-1.0, 1.0).acos()) * gradation(1.0))
+}
+
+/// Adds the sun's disc: each texel by how much of it the disc covers, scaled so that the whole has this irradiance.
+fn add_sun(level: &mut Level, sun: Vec3, irradiance: Vec3) {
+    let cosine = SUN_RADIUS.to_radians().cos();
+    let near = (SUN_RADIUS + 360.0 / level.width as f32).to_radians().cos();
+    let mut covered: Vec<(usize, f64)> = Vec::new();
+    for i in 0..level.width * level.height {
+        let (x, y) = (i % level.width, i / level.width);
+        let at = |x: f32, y: f32| direction(x / level.width as f32, y / level.height as f32);
+        if at(x as f32 + 0.5, y as f32 + 0.5).dot(sun) < near {
+            continue;
+        }
+        let part = |n: u32| (n as f32 + 0.5) / SUN_SAMPLES as f32;
+        let samples = (0..SUN_SAMPLES * SUN_SAMPLES).map(|n| (part(n % SUN_SAMPLES), part(n / SUN_SAMPLES)));
+        let inside = samples.filter(|(dx, dy)| at(x as f32 + dx, y as f32 + dy).dot(sun) > cosine).count();
+        if inside > 0 {
+            covered.push((i as usize, inside as f64 / f64::from(SUN_SAMPLES * SUN_SAMPLES)));
+        }
+    }
+    let size: f64 = covered.iter().map(|(i, share)| share * level.solid_angle(*i as u32 / level.width)).sum();
+    for (i, share) in covered {
+        let radiance = irradiance.to_array().map(|e| (f64::from(e) * share / size) as f32);
+        level.texels[i].iter_mut().zip(radiance).for_each(|(t, r)| *t += r);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sky_is_brighter_around_the_sun_and_its_disc_brings_what_was_asked() {
+        let sun = Vec3::new(0.5, 0.5, 0.5).normalize();
+        assert!((relative_luminance(Vec3::Y, sun) - 1.0).abs() < 1e-6);
+        assert!(relative_luminance(sun, sun) > 3.0 * relative_luminance(Vec3::new(-0.5, 0.5, -0.5).normalize(), sun));
+        let sky = clear_sky(512, sun, Vec3::splat(80.0), Vec3::splat(3.0), Vec3::splat(1.0));
+        let found = sky.picture.sun.as_ref().unwrap();
+        assert!((found.irradiance.x / 80.0 - 1.0).abs() < 0.01, "{}", found.irradiance);
+        assert!(found.direction.dot(sun) > 0.1f32.to_radians().cos());
+    }
+}

@@ -1,0 +1,78 @@
+//! Pictures of the sky from files, which are not trusted: sizes and memory are limited, what is no radiance becomes 0.
+
+use super::{Environment, Level, SkyPicture};
+use image::{ImageFormat, ImageReader, Limits};
+use std::io::Cursor;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Largest width and height of a file.
+const MAX_FILE_SIDE: u32 = 16384;
+/// Largest memory of a decoded file.
+const MAX_FILE_BYTES: u64 = 512 << 20;
+/// Larger pictures are reduced to this.
+const MAX_SIZE: (u32, u32) = (4096, 2048);
+/// Largest radiance: far above what any sky has, and products of it are finite.
+const MAX_RADIANCE: f32 = 1e12;
+
+/// Reads an HDR or EXR file. What is not as its author meant it goes to the warnings, which name the file.
+///
+/// # Errors
+/// The text for the user: no such file, no such picture, too large.
+pub(crate) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Environment, String> {
+    let level = decode(path).map_err(|problem| format!("environment '{}': {problem}", path.display()))?;
+    let mut warn = |what: String| warnings.push(format!("environment {}: {what}", path.display()));
+    let level = checked(level, &mut warn);
+    let picture = Arc::new(SkyPicture::new(level));
+    Ok(Environment { file: Some(path.into()), picture, rotation: 0.0 })
+}
+
+fn decode(path: &Path) -> Result<Level, String> {
+    let length = std::fs::metadata(path).map_err(|e| format!("cannot read it: {e}"))?.len();
+    if length > MAX_FILE_BYTES {
+        return Err(format!("the file has {} MB, and {} is the most", length >> 20, MAX_FILE_BYTES >> 20));
+    }
+    let bytes = std::fs::read(path).map_err(|e| format!("cannot read it: {e}"))?;
+    let format = image::guess_format(&bytes).ok();
+    let format = format
+        .filter(|f| matches!(f, ImageFormat::Hdr | ImageFormat::OpenExr))
+        .ok_or("not a Radiance HDR or OpenEXR picture")?;
+    let mut reader = ImageReader::with_format(Cursor::new(bytes.as_slice()), format);
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_FILE_SIDE);
+    limits.max_image_height = Some(MAX_FILE_SIDE);
+    limits.max_alloc = Some(MAX_FILE_BYTES);
+    reader.limits(limits);
+    let image = reader.decode().map_err(|e| format!("the picture is damaged or too large ({e})"))?.into_rgb32f();
+    let (width, height) = image.dimensions();
+    if width == 0 || height == 0 {
+        return Err("the picture is empty".into());
+    }
+    Ok(Level { width, height, texels: image.pixels().map(|p| p.0).collect() })
+}
+
+/// The picture without impossible numbers and not larger than is of use.
+fn checked(mut level: Level, warn: &mut dyn FnMut(String)) -> Level {
+    let (width, height) = (level.width, level.height);
+    if width != 2 * height {
+        warn(format!("{width}x{height} is not twice as wide as high; it is stretched over all directions"));
+    }
+    let mut wrong = 0;
+    for value in level.texels.iter_mut().flatten() {
+        if !(*value >= 0.0 && *value <= MAX_RADIANCE) {
+            wrong += 1;
+            *value = if *value > MAX_RADIANCE && value.is_finite() { MAX_RADIANCE } else { 0.0 };
+        }
+    }
+    if wrong > 0 {
+        warn(format!(
+            "{wrong} values are negative, not finite or above {MAX_RADIANCE:e}; they are set to 0 or to that"
+        ));
+    }
+    let to = (width.min(MAX_SIZE.0), height.min(MAX_SIZE.1));
+    if to == (width, height) {
+        return level;
+    }
+    warn(format!("{width}x{height} reduced to {}x{}", to.0, to.1));
+    level.reduced(to.0, to.1)
+}

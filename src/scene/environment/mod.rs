@@ -1,0 +1,133 @@
+//! The sky as a picture of all directions.
+
+mod clear_sky;
+mod file;
+mod level;
+mod sun;
+
+use super::{Light, LightKind, Scene, SceneError};
+use glam::{Quat, Vec3};
+use std::f32::consts::{PI, TAU};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+pub(super) use clear_sky::clear_sky;
+pub(crate) use file::read;
+pub(crate) use level::Level;
+use sun::Sun;
+
+/// Name of the light that stands for the sun of a sky's picture.
+pub const SUN: &str = "sun of the sky";
+
+/// A picture of the sky, and how it is turned.
+#[derive(Clone, Debug)]
+pub struct Environment {
+    /// The file, if it is of one.
+    pub file: Option<PathBuf>,
+    /// The picture.
+    pub picture: Arc<SkyPicture>,
+    /// Degrees about y: at 90 what the picture has in its middle lies towards -x.
+    pub rotation: f32,
+}
+
+/// Radiance of all directions, equirectangular, y up: its middle looks to -z, +x is to the right of it, the first row is
+/// around +y.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SkyPicture {
+    pub(crate) level: Level,
+    pub(crate) sun: Option<Sun>,
+}
+
+impl PartialEq for Environment {
+    fn eq(&self, other: &Environment) -> bool {
+        let same_picture = Arc::ptr_eq(&self.picture, &other.picture) || self.picture == other.picture;
+        (&self.file, self.rotation) == (&other.file, other.rotation) && same_picture
+    }
+}
+
+impl SkyPicture {
+    /// A picture of linear RGB, row by row.
+    pub(crate) fn new(level: Level) -> SkyPicture {
+        SkyPicture { sun: sun::find(&level), level }
+    }
+
+    /// Width and height in texels.
+    pub fn size(&self) -> (u32, u32) {
+        (self.level.width, self.level.height)
+    }
+
+    /// Texels, row by row.
+    pub fn texels(&self) -> &[[f32; 3]] {
+        &self.level.texels
+    }
+}
+
+impl Environment {
+    /// A picture that is of no file.
+    pub(crate) fn of(picture: SkyPicture) -> Environment {
+        Environment { file: None, picture: Arc::new(picture), rotation: 0.0 }
+    }
+
+    /// The file's name, for people.
+    pub fn name(&self) -> String {
+        self.file.as_ref().map_or("the scene's own".into(), |path| path.display().to_string())
+    }
+
+    /// The picture's sun as a light, where radiance is the picture's times `factor`.
+    pub fn sun(&self, factor: Vec3, rotation: f32) -> Option<Light> {
+        let sun = self.picture.sun.as_ref()?;
+        Some(Light {
+            name: SUN.into(),
+            kind: LightKind::Directional,
+            color: sun.irradiance * factor,
+            position: Vec3::ZERO,
+            direction: -(Quat::from_rotation_y(rotation.to_radians()) * sun.direction).normalize(),
+            shadow: true,
+        })
+    }
+}
+
+impl Scene {
+    /// The scene under another picture of the sky; an empty path leaves it as it is.
+    ///
+    /// # Errors
+    /// A picture that cannot be read.
+    pub fn under(mut self, file: &Path) -> Result<Scene, SceneError> {
+        if !file.as_os_str().is_empty() {
+            let read = file::read(file, &mut self.warnings).map_err(|message| SceneError::Environment { message })?;
+            (self.environment, self.sky) = (Some(read), Vec3::ONE);
+        }
+        Ok(self)
+    }
+
+    /// All that methods with lights are lit by: the scene's lights, then the sun of its sky.
+    pub fn all_lights(&self) -> Vec<Light> {
+        let sun = self.environment.as_ref().and_then(|e| e.sun(self.sky, e.rotation));
+        self.lights.iter().cloned().chain(sun).collect()
+    }
+}
+
+/// The direction of a place in the picture, both 0 to 1.
+fn direction(u: f32, v: f32) -> Vec3 {
+    let (azimuth, polar) = ((u - 0.5) * TAU, v * PI);
+    Vec3::new(azimuth.sin() * polar.sin(), polar.cos(), -azimuth.cos() * polar.sin())
+}
+
+/// What is wrong with the numbers of an environment.
+///
+/// # Errors
+/// The text for the user.
+pub(crate) fn check(rotation: f32, intensity: f32) -> Result<(), String> {
+    if !rotation.is_finite() || rotation.abs() > 36_000.0 {
+        return Err("the environment's rotation must be a number of degrees, at most 36000".into());
+    }
+    if !(intensity.is_finite() && intensity >= 0.0) {
+        return Err("the environment's intensity must be finite and 0 or more".into());
+    }
+    Ok(())
+}
+
+/// Relative luminance (ITU-R BT.709).
+pub(crate) fn luminance(c: [f32; 3]) -> f64 {
+    0.2126 * f64::from(c[0]) + 0.7152 * f64::from(c[1]) + 0.0722 * f64::from(c[2])
+}

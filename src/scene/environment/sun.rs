@@ -1,0 +1,122 @@
+//! The sun in a picture of the sky. Rays would meet its disc by chance, and what it lights would have no sharp shadows;
+//! so methods get it as a directional light, and a picture without it.
+
+use super::{Level, direction, luminance};
+use glam::{DVec3, Vec3};
+
+/// A peak is of texels brighter than this times the mean over all directions,
+const TIMES_MEAN: f64 = 50.0;
+/// that lie within so many degrees of the brightest,
+const WITHIN: f64 = 5.0;
+/// and together bring at least this share of all light.
+const SHARE: f64 = 0.02;
+/// What is around it is the mean of what lies outside, to so many degrees.
+const AROUND: f64 = 7.5;
+
+/// A compact peak of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sun {
+    /// To its middle, unit length, in the picture's own frame.
+    pub direction: Vec3,
+    /// Of a surface that faces it, by what it is brighter than its surroundings.
+    pub irradiance: Vec3,
+    /// Radiance around it.
+    pub surroundings: Vec3,
+    /// Which texels are its own, in order.
+    pub texels: Vec<u32>,
+}
+
+impl Sun {
+    /// The picture without it.
+    pub fn removed(&self, level: &Level) -> Level {
+        let mut without = level.clone();
+        for texel in &self.texels {
+            without.texels[*texel as usize] = self.surroundings.to_array();
+        }
+        without
+    }
+}
+
+/// The sun of a picture, if it has one.
+pub(super) fn find(level: &Level) -> Option<Sun> {
+    let width = level.width as usize;
+    let sizes: Vec<f64> = (0..level.height).map(|row| level.solid_angle(row)).collect();
+    let bright: Vec<f64> = level.texels.iter().map(|t| luminance(*t)).collect();
+    let all: f64 = bright.iter().enumerate().map(|(i, l)| l * sizes[i / width]).sum();
+    let limit = TIMES_MEAN * all / (4.0 * std::f64::consts::PI);
+    let (brightest, most) = bright.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
+    if *most <= limit {
+        return None;
+    }
+    let to = |i: usize| {
+        let place = |at: usize, of: u32| (at as f32 + 0.5) / of as f32;
+        direction(place(i % width, level.width), place(i / width, level.height)).as_dvec3()
+    };
+    let axis = to(brightest);
+    let cosine = |degrees: f64| degrees.to_radians().cos();
+    let (inner, outer) = (cosine(WITHIN), cosine(AROUND));
+    let (mut texels, mut around, mut size_around) = (Vec::new(), DVec3::ZERO, 0.0);
+    for (i, l) in bright.iter().enumerate() {
+        let size = sizes[i / width];
+        let near = to(i).dot(axis);
+        if near >= inner && *l > limit {
+            texels.push(i as u32);
+        } else if near < inner && near >= outer {
+            around += DVec3::from_array(level.texels[i].map(f64::from)) * size;
+            size_around += size;
+        }
+    }
+    let surroundings = if size_around > 0.0 { around / size_around } else { DVec3::ZERO };
+    let (mut irradiance, mut middle) = (DVec3::ZERO, DVec3::ZERO);
+    for i in texels.iter().map(|i| *i as usize) {
+        let above =
+            (DVec3::from_array(level.texels[i].map(f64::from)) - surroundings).max(DVec3::ZERO) * sizes[i / width];
+        irradiance += above;
+        middle += luminance(above.as_vec3().to_array()) * to(i);
+    }
+    let own = luminance(irradiance.as_vec3().to_array());
+    // What is as bright all around is no disc but a part of something large.
+    let compact = luminance(surroundings.as_vec3().to_array()) < limit;
+    let sun = Sun {
+        direction: middle.try_normalize()?.as_vec3(),
+        irradiance: irradiance.as_vec3(),
+        surroundings: surroundings.as_vec3(),
+        texels,
+    };
+    (compact && own > SHARE * all && irradiance.is_finite()).then_some(sun)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(radiance: impl Fn(Vec3) -> f32) -> Level {
+        let (width, height) = (512, 256);
+        let texel = |i: u32| {
+            let place = |at: u32, of: u32| (at as f32 + 0.5) / of as f32;
+            [radiance(direction(place(i % width, width), place(i / width, height))); 3]
+        };
+        Level { width, height, texels: (0..width * height).map(texel).collect() }
+    }
+
+    fn disc(to: Vec3, degrees: f32, radiance: f32) -> impl Fn(Vec3) -> f32 {
+        move |d| if d.dot(to) > degrees.to_radians().cos() { radiance } else { 1.0 }
+    }
+
+    #[test]
+    fn a_small_bright_disc_is_a_sun_and_others_are_not() {
+        let to = Vec3::new(0.3, 0.6, 0.5).normalize();
+        let level = picture(disc(to, 1.0, 20_000.0));
+        let sun = find(&level).unwrap();
+        let expected = 19_999.0 * std::f32::consts::TAU * (1.0 - 1f32.to_radians().cos());
+        assert!(sun.direction.dot(to) > 0.25f32.to_radians().cos(), "{}", sun.direction);
+        assert!((sun.irradiance.x / expected - 1.0).abs() < 0.1, "{} {expected}", sun.irradiance);
+        assert!((sun.surroundings.x - 1.0).abs() < 1e-4, "{}", sun.surroundings);
+        assert!(sun.removed(&level).texels.iter().all(|t| (t[0] - 1.0).abs() < 1e-4));
+        // Too weak, too little light, and too large.
+        for level in [picture(disc(to, 1.0, 30.0)), picture(disc(to, 0.5, 100.0)), picture(disc(to, 20.0, 1e5))] {
+            assert!(find(&level).is_none());
+        }
+        assert!(find(&picture(|_| 0.0)).is_none());
+    }
+}
