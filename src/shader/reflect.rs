@@ -102,7 +102,7 @@ pub struct Interface {
 }
 
 /// Most resources of one stage; stages get neighbouring ranges of binding numbers.
-pub const MAX_BINDINGS: usize = 32;
+pub const MAX_BINDINGS: usize = 48;
 
 /// Reads the interface of a module.
 ///
