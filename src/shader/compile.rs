@@ -64,7 +64,7 @@ pub struct ShaderCompiler {
 }
 
 /// Changes whenever compiled modules of an older program must not be used.
-const CACHE_VERSION: &str = "conelab spirv 1";
+const CACHE_VERSION: &str = "conelab spirv 2";
 /// Shader files larger than this are refused.
 const MAX_BYTES: u64 = 2 << 20;
 
