@@ -233,7 +233,7 @@ fn wrong_arguments_are_told_and_leave_nothing() {
     assert_snapshot!(error_of(&["--size", "64x-1"]), @"error: --size 64x-1: expected WIDTHxHEIGHT, for example 1280x720");
     assert_snapshot!(error_of(&["--size", "100000x64"]), @"error: a picture of 100000x64 cannot be made: each side is 1 to 16384 pixels");
     assert_snapshot!(error_of(&["--frames", "0"]), @"error: --frames must be 1 to 1000000");
-    assert_snapshot!(error_of(&["--scene", "cornel"]), @"error: no scene 'cornel': did you mean 'cornell'? Built-in scenes: atrium, cornell, furnace, white-sky, thin-walls, triangles, moving-box, blade, small-quad, emitters, huge-ground, far-away, pocket, plain, blinds, door-ajar, corridor, street, gloss, foliage, vases; otherwise give a .ron, .obj, .gltf or .glb file");
+    assert_snapshot!(error_of(&["--scene", "cornel"]), @"error: no scene 'cornel': did you mean 'cornell'? Built-in scenes: atrium, cornell, furnace, white-sky, thin-walls, triangles, moving-box, blade, small-quad, emitters, ceiling-panel, neon-tube, lampshade, huge-ground, far-away, pocket, plain, blinds, door-ajar, corridor, street, gloss, foliage, vases; otherwise give a .ron, .obj, .gltf or .glb file");
     assert_snapshot!(error_of(&["--scene", "missing/model.gltf"]), @"error: cannot read missing/model.gltf: No such file or directory (os error 2). Check the path and its permissions");
     assert_snapshot!(error_of(&["--camera", "side", "--scene", "cornell"]), @"error: scene 'cornell' has no camera 'side' (known: default)");
     assert_snapshot!(error_of(&["--scene", "cornell", "--camera", "(eye: (0, 0, 1), target: (0, 0, 0))"]), @"error: --camera: 1:35: Unexpected missing field named `fov_y` in `PlacedCamera`; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)");
