@@ -496,6 +496,11 @@ fn walls_of_built_in_rooms_have_no_cracks() {
     for (name, walls) in [
         ("small-quad", "room"),
         ("emitters", "room"),
+        ("ceiling-panel", "room"),
+        ("neon-tube", "room"),
+        ("neon-tube", "tube"),
+        ("lampshade", "room"),
+        ("lampshade", "bulbs"),
         ("huge-ground", "shell"),
         ("far-away", "shell"),
         ("pocket", "room"),

@@ -3,6 +3,7 @@
 mod atrium;
 mod classroom;
 mod cornell;
+mod fittings;
 mod foliage;
 mod furnace;
 mod gloss;
@@ -40,6 +41,9 @@ const ALL: &[(&str, &str, Build)] = &[
     ("blade", "a thin blade that turns before a lit wall", moving::blade),
     ("small-quad", "a box of 2 m, lit by a quad of 47 x 38 cm close below its ceiling", lamps::small_quad),
     ("emitters", "a dim room with 108 emitters of 1 to 4 cm", lamps::emitters),
+    ("ceiling-panel", "an office lit by three panels in its ceiling: wide soft shadows", fittings::ceiling_panel),
+    ("neon-tube", "a workshop lit by a tube of 2.6 cm under a reflector and a red one", fittings::neon_tube),
+    ("lampshade", "a living room's corner lit by two bulbs of 6 cm in open shades", fittings::lampshade),
     (
         "huge-ground",
         "a class room of 12 m on a ground of 220 m: the volume's extent is not the room's",

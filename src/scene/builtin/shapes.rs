@@ -112,6 +112,29 @@ impl MeshBuilder {
         });
     }
 
+    /// Closed cylinder that stands on the origin around y: so many sides, and rows between its two flat ends. The seam's
+    /// corners are the same to the bit.
+    pub fn cylinder(&mut self, material: u32, radius: f32, height: f32, [sides, rows]: [u32; 2]) {
+        let out = |u: f32| {
+            let side = (u * sides as f32).round() as u32 % sides;
+            let (s, c) = (side as f32 / sides as f32 * -std::f32::consts::TAU).sin_cos();
+            Vec3::new(c, 0.0, s)
+        };
+        self.grid(material, sides, rows, |u, v| {
+            (out(u) * radius + Vec3::Y * (v * height), out(u), Vec2::new(u, 1.0 - v))
+        });
+        for (y, normal) in [(0.0, Vec3::NEG_Y), (height, Vec3::Y)] {
+            let middle = self.vertex(Vec3::Y * y, normal, Vec2::splat(0.5));
+            for i in 0..sides {
+                let [a, b] = [i, i + 1].map(|i| {
+                    let out = out(i as f32 / sides as f32);
+                    self.vertex(out * radius + Vec3::Y * y, normal, 0.5 + 0.5 * Vec2::new(out.x, out.z))
+                });
+                self.triangle(material, if y > 0.0 { [middle, a, b] } else { [middle, b, a] });
+            }
+        }
+    }
+
     /// Ring around `axis`: a circle of radius `tube` swept along an ellipse spanned by `major` and `minor`.
     pub fn ring(&mut self, material: u32, centre: Vec3, major: Vec3, minor: Vec3, tube: f32, segments: [u32; 2]) {
         let axis = major.cross(minor).normalize_or(Vec3::Y);
