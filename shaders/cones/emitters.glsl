@@ -15,9 +15,9 @@
 const int CANDIDATES = 8;
 
 // So far before a place a ray ends: planes are not exacter than this. And so far before it an emitter that is met is the lamp itself,
-// which a voxel or two may show larger than it is [voxels].
+// which voxels may show larger than it is [voxels].
 const float EMITTER_MARGIN = 0.25;
-const float LAMP = 2.0;
+const float LAMP = 0.5;
 
 // Share of the light that a ray has met. emitted: the part of it that emitters emit.
 float shareOfRay(RayUse use, vec3 light, float emitted, float distance) {
