@@ -525,6 +525,23 @@ fn walls_of_built_in_rooms_have_no_cracks() {
     }
 }
 
+/// What closed lamps hold, counted from their faces' fronts, is their volume: they glow outward.
+#[test]
+fn lamps_glow_outward() {
+    for (name, lamp, volume) in [
+        ("neon-tube", "tube", std::f32::consts::PI * 0.013 * 0.013 * 1.2),
+        ("neon-tube", "red tube", std::f32::consts::PI * 0.013 * 0.013 * 1.2),
+        ("lampshade", "bulbs", 2.0 * std::f32::consts::PI * 4.0 / 3.0 * 0.03 * 0.03 * 0.03),
+    ] {
+        let scene = open(name).unwrap();
+        let mesh = scene.meshes.iter().find(|m| m.name == lamp).unwrap();
+        let corner = |i: u32| Vec3::from(mesh.vertices[i as usize].position) - Vec3::from(mesh.vertices[0].position);
+        let held = |t: &[u32; 3]| corner(t[0]).dot(corner(t[1]).cross(corner(t[2]))) / 6.0;
+        let held: f32 = mesh.indices.as_chunks::<3>().0.iter().map(held).sum();
+        assert!((0.93..1.0).contains(&(held / volume)), "{name}: {lamp} holds {held} of {volume}");
+    }
+}
+
 #[test]
 fn rooms_look_inward_and_solids_outward() {
     for (name, inward) in [("furnace", true), ("white-sky", false)] {
