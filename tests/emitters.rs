@@ -126,21 +126,21 @@ fn a_small_lamp_lights_its_room() {
     let home = own_home();
     let lab = lab(home.path());
     for camera in ["default", "outside"] {
-        let mut look = experiment("small-quad", (64, 48), &[("voxel_dim", "96"), ("gather_frames", "4")]);
+        let mut look = experiment("small-quad", (48, 36), &[("voxel_dim", "64"), ("gather_frames", "4")]);
         look.camera = CameraChoice::Named(camera.into());
         let keep_on = &mut |_| ControlFlow::Continue(());
-        let truth = gather(&lab, &look, &scene("small-quad"), 64, Goal::Samples(256), keep_on).unwrap();
+        let truth = gather(&lab, &look, &scene("small-quad"), 64, Goal::Samples(128), keep_on).unwrap();
         let wanted = ["radiance", "diffuseIndirect"].map(String::from).to_vec();
         let (mut session, _) = lab.prepare(&look, scene("small-quad"), |_| Ok(wanted)).unwrap();
-        for _ in 0..24 {
+        for _ in 0..16 {
             session.frame(0.0).unwrap();
         }
         session.finish().unwrap();
         let energy = mean(&floats(&mut session, "radiance", 0)) / truth.parts["total"].mean.mean();
         // The floor before the boxes: the lowest rows of the picture.
         let (found, rgb) = (floats(&mut session, "diffuseIndirect", 0), &truth.parts["diffuse"].mean.rgb);
-        let row = |y: usize| y * 64 + 8..y * 64 + 56;
-        let rows: Vec<usize> = if camera == "default" { row(46).chain(row(47)).collect() } else { row(40).collect() };
+        let row = |y: usize| y * 48 + 6..y * 48 + 42;
+        let rows: Vec<usize> = if camera == "default" { row(34).chain(row(35)).collect() } else { row(30).collect() };
         let floor = [
             rows.iter().map(|i| f64::from(found[*i][1])).sum::<f64>(),
             rows.iter().map(|i| f64::from(rgb[*i][1])).sum::<f64>(),

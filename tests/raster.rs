@@ -71,10 +71,10 @@ fn threads_see_the_surfaces_that_the_rasteriser_sees() {
             let differ = a.iter().zip(&b).filter(|(a, b)| (a[0] - b[0]).abs() > 1e-3 * a[0].max(b[0])).count();
             // Of masks the gradients of textures decide, which the rasteriser takes from pairs of pixels.
             // Elsewhere a rasteriser's own 1/256 of a pixel, to which it moves vertices: most at a horizon, a row of the picture.
-            // NVIDIA's (H200): 14 of the atrium's, up to 80 of the leaves'.
+            // NVIDIA's (H100, H200): 14 of the atrium's, up to 80 of the leaves', and one along a wall most of a row, lost and found.
             let (share, most) = match (name, common::on_software()) {
                 ("foliage", software) => (0.02, if software { 40 } else { 80 }),
-                ("huge-ground", false) => (0.02, 20),
+                ("huge-ground", false) => (0.02, 2 * SIZE.0 as usize),
                 (_, software) => (0.005, if software { 12 } else { 20 }),
             };
             assert!(differ as f64 <= share * a.len() as f64, "{name}, camera {i}: {differ} of {} pixels", a.len());

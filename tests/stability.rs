@@ -492,7 +492,9 @@ fn shipped_suites() {
     succeeds(&mut stability(home.path(), &file, "out", &more));
     let table = table(&home.path().join("out/stability.csv"));
     let nothing = table.iter().find(|r| r["variant"] == "nothing").unwrap();
-    assert_eq!(nothing["diffuse energy ratio"], "0", "a volume without the scene has no light to give");
+    // The lamps' own light, which nothing hides there.
+    let left = number(nothing, "diffuse energy ratio");
+    assert!(left < 0.2, "a volume without the scene has no light to give but that of lamps: {left}");
     assert_eq!(nothing["direct relMSE"], table.iter().find(|r| r["variant"] == "half").unwrap()["direct relMSE"]);
     for row in table.iter().filter(|r| r["case"] == "thin walls") {
         let recall: f64 = row["voxel recall"].parse().unwrap();
