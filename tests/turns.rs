@@ -59,7 +59,8 @@ fn turns_add_up_to_all_rays_and_settle_to_the_bit() {
     let mut turns = session(&lab, &cornell, &[]);
     let first = gathered(&lab, &mut turns, 1);
     let after = gathered(&lab, &mut turns, TURNS - 1);
-    let few = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1"), ("pixel_cones", "4")]), 1);
+    let few = [("gather_frames", "1"), ("pixel_cones", "4"), ("emitter_rays", "1")];
+    let few = gathered(&lab, &mut session(&lab, &cornell, &few), 1);
     let all = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1")]), 1);
     // In the first frame an eighth has all rays and the others a few, later every pixel has all.
     assert!(first.iter().zip(&few).zip(&all).all(|((f, few), all)| f == few || f == all));
