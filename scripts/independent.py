@@ -10,7 +10,12 @@ written from the papers.
         --bounces $k --spp 2048; done           # each says the folder it keeps its samples in
     python3 scripts/independent.py cornell.gltf --size 128x96 --spp 2048 --against FOLDER1 FOLDER2 FOLDER3
 
-The sky is not part of glTF: --sky 0.5,0.68,0.95 gives its radiance.
+The sky is not part of glTF: --sky 0.5,0.68,0.95 gives its radiance, --sky FILE.sky.exr the picture that the exporter
+writes beside the scene, or another. With --sun L what is brighter in it is a sun: light, of which `conelab reference`
+counts what a surface reflects with that surface's direct light, and not with what the next ray brings.
+
+Places on emitting triangles and directions of a picture are drawn, and weighed against the rays that meet them; with
+--by-chance rays alone find them.
 """
 
 import argparse
@@ -24,6 +29,7 @@ mi.set_variant("llvm_ad_rgb")
 import drjit as dr  # noqa: E402  (wants the variant)
 from independent_compare import by_bounce, report  # noqa: E402
 from independent_gltf import Gltf, placed  # noqa: E402
+from independent_sky import Sky  # noqa: E402
 from independent_world import World, epsilon  # noqa: E402
 
 PATHS_AT_ONCE = 1 << 20
@@ -58,6 +64,7 @@ class Surface:
         self.roughness = dr.clip(world.numbers(material, 7) * rough_metal.y, 0.03, 1)
         metal = world.numbers(material, 8) * rough_metal.z
         self.albedo, self.f0 = base * (1 - metal), dr.lerp(mi.Color3f(0.04), base, metal)
+        self.by_area = dr.gather(mi.Float, world.emitter_density, triangle)
         self.emission = world.numbers(material, 4, mi.Color3f) * mi.Color3f(world.texture(material, 1, uv).xyz)
         self.frame = mi.Frame3f(self.n)
         wi = self.frame.to_local(view)
@@ -88,10 +95,52 @@ class Surface:
         m, _ = self.lobe.sample(self.wi, u)
         matte = mi.warp.square_to_cosine_hemisphere(u)
         l = dr.select(choice < self.chance, mi.reflect(self.wi, m), matte)
+        density = self.density(l)
+        return self.frame.to_world(l), dr.select((density > 0) & (l.z > 0), density, dr.inf)
+
+    def density(self, l):
+        """Of a direction in the surface's frame among those of `sample`."""
         h = dr.normalize(self.wi + l)
         shiny = self.lobe.pdf(self.wi, h) / (4 * dr.dot(self.wi, h))
-        density = self.chance * shiny + (1 - self.chance) * dr.maximum(l.z, 0) * dr.inv_pi
-        return self.frame.to_world(l), dr.select((density > 0) & (l.z > 0), density, dr.inf)
+        return self.chance * shiny + (1 - self.chance) * dr.maximum(l.z, 0) * dr.inv_pi
+
+    def weighed(self, l, density):
+        """Both BRDFs times the cosine, for light found by a draw of that density that shares it with the rays (balance
+        heuristic, Veach and Guibas 1995)."""
+        matte, shiny = self.eval(l)
+        both = density + dr.maximum(self.density(self.frame.to_local(l)), 0)
+        return matte / both, shiny / both
+
+    def emitters(self, world, random, active):
+        """Diffuse and specular light of one place on the emitting triangles."""
+        if world.emitter_choice is None:
+            return mi.Color3f(0), mi.Color3f(0)
+        triangle, place, by_area = world.draw_emitter(random)
+        emitter = Surface(world, triangle, place, mi.Vector3f(0, 0, 1))
+        d = emitter.p - self.start()  # or the emitter would hide itself where it is seen at a low angle
+        far = dr.norm(d)
+        l = d / dr.maximum(far, 1e-20)
+        cosine = dr.abs(dr.dot(emitter.face, l))
+        matte, shiny = self.weighed(l, by_area * far * far / dr.maximum(cosine, 1e-6))
+        asked = active & (cosine > 1e-6) & dr.any(matte + shiny > 0)
+        if world.masks:
+            asked &= ~world.cut_out(triangle, place)
+        shadowed, _, _ = world.trace(self.start(), l, far - 2 * epsilon(emitter.p), asked)
+        lit = asked & ~shadowed
+        return dr.select(lit, matte * emitter.emission, 0), dr.select(lit, shiny * emitter.emission, 0)
+
+    def picture(self, world, random, active):
+        """Diffuse and specular light of one direction of the picture; that of its sun, which no ray shares."""
+        if world.sky.choice is None:
+            return mi.Color3f(0), mi.Color3f(0), mi.Color3f(0)
+        l, radiance, density, sun = world.sky.draw(random)
+        matte, shiny = self.weighed(l, density)
+        alone = self.eval(l)
+        asked = active & dr.any(alone[0] + alone[1] > 0)
+        shadowed, _, _ = world.trace(self.start(), l, mi.Float(dr.inf), asked)
+        lit = asked & ~shadowed
+        of_sun = dr.select(lit & sun, (alone[0] + alone[1]) * radiance / density, 0)
+        return dr.select(lit & ~sun, matte * radiance, 0), dr.select(lit & ~sun, shiny * radiance, 0), of_sun
 
     def direct(self, world, active):
         """Light of every light of KHR_lights_punctual, with a ray to each."""
@@ -143,9 +192,33 @@ def paths(world, camera, size, bounces, seed, samples):
     random, o, d = camera_rays(camera, size, seed, samples)
     active, triangle, b = world.trace(o, d, mi.Float(dr.inf), mi.Bool(True))
     met, s = mi.Bool(active), Surface(world, triangle, b, -d)
-    out = {"seen": dr.select(active, s.emission, world.sky), "direct": dr.select(active, s.direct(world, active), 0)}
+    out = {"seen": dr.select(active, s.emission, world.sky.eval(d))}
+    out["direct"] = dr.select(active, s.direct(world, active), 0)
+    out |= {f"{lobe} {bounce}": mi.Color3f(0) for lobe in ("diffuse", "specular") for bounce in range(1, bounces + 1)}
     diffuse, specular = mi.Color3f(1), mi.Color3f(1)  # weight of the path, by the first lobe
+
+    def shine(bounce, light):
+        """Light that leaves the surface at the end of this many rays."""
+        if bounce == 0:
+            out["direct"] += light
+            return
+        out[f"diffuse {bounce}"] += diffuse * light
+        out[f"specular {bounce}"] += specular * light
+
+    def reflect(bounce, matte, shiny):
+        """Light that a ray of this number could have brought to where it starts, reflected there by either lobe."""
+        if bounce == 1:
+            out["diffuse 1"] += matte
+            out["specular 1"] += shiny
+        else:
+            shine(bounce, matte + shiny)
+
     for bounce in range(1, bounces + 1):
+        reflect(bounce, *s.emitters(world, random, active))
+        matte, shiny, sun = s.picture(world, random, active)
+        reflect(bounce, matte, shiny)
+        shine(bounce - 1, sun)
+        o = s.p
         d, density = s.sample(random.next_float32(), mi.Point2f(random.next_float32(), random.next_float32()))
         matte, shiny = s.eval(d)
         if bounce == 1:
@@ -158,16 +231,18 @@ def paths(world, camera, size, bounces, seed, samples):
         active &= alive
         found, triangle, b = world.trace(s.start(), d, mi.Float(dr.inf), active)
         # One kernel a bounce, compiled once.
-        dr.eval(found, triangle, b, active, diffuse, specular, d, around, random.state, out)
+        dr.eval(found, triangle, b, active, diffuse, specular, o, d, density, around, random.state, out)
         if bounce == 1:
             out["occlusion"] = dr.select(met, dr.select(active & ~found, mi.Color3f(around), 0), 1)
         s = Surface(world, triangle, b, -d)
-        light = dr.select(found, s.emission + s.direct(world, found), world.sky)
-        light = dr.select(active, light, 0)
-        for lobe, weight in (("diffuse", diffuse), ("specular", specular)):
-            out[f"{lobe} {bounce}"] = dr.select(active, weight * light, 0)
+        drawn = s.by_area * dr.squared_norm(s.p - o) / dr.maximum(dr.abs(dr.dot(s.face, d)), 1e-6)
+        emitted = s.emission * (density / (density + drawn))
+        beyond = world.sky.eval(d, False) * (density / (density + world.sky.density(d)))
+        light = dr.select(found, emitted + s.direct(world, found), beyond)
+        shine(bounce, dr.select(active, light, 0))
         active &= found
         dr.eval(s.__dict__, active, out)
+    shine(bounces, s.picture(world, random, active)[2])
     return {k: fold(v, samples) for k, v in out.items()}
 
 
@@ -202,13 +277,15 @@ def main():
     parser.add_argument("--size", type=lambda s: tuple(map(int, s.split("x"))), default=(128, 96), metavar="WxH")
     parser.add_argument("--spp", type=int, default=256)
     parser.add_argument("--bounces", type=int, default=3)
-    parser.add_argument("--sky", type=lambda s: [float(c) for c in s.split(",")], default=[0, 0, 0], metavar="R,G,B")
+    parser.add_argument("--sky", default="0,0,0", metavar="R,G,B|FILE", help="one radiance, or a picture (EXR, HDR)")
+    parser.add_argument("--sun", type=float, default=math.inf, metavar="L", help="luminance above which is the sun")
+    parser.add_argument("--by-chance", action="store_true", help="rays alone find emission and the sky")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--against", nargs="*", default=[], metavar="FOLDER", help="references of 1, 2, ... bounces")
     args = parser.parse_args()
     gltf = Gltf(args.scene)
     camera = placed([float(n) for n in args.camera.split(",")]) if "," in args.camera else gltf.cameras[args.camera]
-    found = render(World(gltf, args.sky), camera, args)
+    found = render(World(gltf, Sky(args.sky, args.sun, args.by_chance), args.by_chance), camera, args)
     width, height = args.size
     print(f"Mitsuba {mi.__version__}, {args.scene}, camera {args.camera}, {width}x{height}, {args.spp} samples a pixel")
     report(found, by_bounce(args.against))

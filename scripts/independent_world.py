@@ -6,12 +6,13 @@ import numpy as np
 mi.set_variant("llvm_ad_rgb")
 import drjit as dr  # noqa: E402  (wants the variant)
 from independent_gltf import srgb_to_linear  # noqa: E402
+from independent_sky import LUMINANCE  # noqa: E402
 
 
 class World:
     """The scene on the device."""
 
-    def __init__(self, gltf, sky):
+    def __init__(self, gltf, sky, by_chance=False):
         soup = gltf.soup
         corners = len(soup["position"])
         mesh = mi.Mesh("scene", corners, corners // 3)
@@ -23,7 +24,7 @@ class World:
         store = lambda a, kind=mi.Float: kind(np.ascontiguousarray(a).ravel())
         self.data = {k: store(soup[k].astype(np.float32)) for k in ("position", "normal", "tangent", "uv")}
         self.material_of = store(soup["material"].astype(np.uint32), mi.UInt32)
-        self.sky = mi.Color3f(sky)
+        self.sky = sky
         self.lights = gltf.lights
         self.texels, self.places = [np.ones((1, 4))], {}
         constants = np.array([self.constant(m) for m in gltf.json["materials"]], np.float32)
@@ -31,6 +32,13 @@ class World:
         self.constants = store(constants)
         self.images = store(np.array([self.textures(gltf, m) for m in gltf.json["materials"]], np.int32), mi.Int32)
         self.atlas = store(np.concatenate(self.texels).astype(np.float32))
+        # Triangles are drawn by their area times the luminance of their emission, were its texture white.
+        a, b, c = (soup["position"][i::3] for i in range(3))
+        area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+        bright = (constants[:, 4:7].astype(float) @ LUMINANCE)[soup["material"]] * (not by_chance)
+        power = bright * area
+        self.emitter_choice = mi.DiscreteDistribution(store(power.astype(np.float32))) if power.any() else None
+        self.emitter_density = store((bright / max(power.sum(), 1e-30)).astype(np.float32))
 
     @staticmethod
     def constant(m):
@@ -85,13 +93,16 @@ class World:
         at = lambda i: dr.gather(kind, self.data[key], 3 * triangle + i)
         return at(0) * (1 - b.x - b.y) + at(1) * b.x + at(2) * b.y
 
-    def cut_out(self, hit):
-        triangle = dr.select(hit.is_valid(), hit.prim_index, 0)
+    def draw_emitter(self, random):
+        """(triangle, weights of its second and third corner, density by area) of a place on the emitting triangles."""
+        triangle = self.emitter_choice.sample(random.next_float32())
+        weights = mi.warp.square_to_uniform_triangle(mi.Point2f(random.next_float32(), random.next_float32()))
+        return triangle, weights, dr.gather(mi.Float, self.emitter_density, triangle)
+
+    def cut_out(self, triangle, b):
         material = dr.gather(mi.UInt32, self.material_of, triangle)
-        alpha = (
-            self.numbers(material, 3) * self.texture(material, 0, self.mix("uv", mi.Point2f, triangle, hit.prim_uv)).w
-        )
-        return hit.is_valid() & (alpha < self.numbers(material, 9))
+        alpha = self.numbers(material, 3) * self.texture(material, 0, self.mix("uv", mi.Point2f, triangle, b)).w
+        return alpha < self.numbers(material, 9)
 
     @dr.syntax
     def trace(self, origin, direction, end, active):
@@ -102,10 +113,12 @@ class World:
             ray = mi.Ray3f(o, direction)
             ray.maxt = left
             hit = self.scene.ray_intersect_preliminary(ray, coherent=False, active=walking)
-            again = walking & self.cut_out(hit) if dr.hint(self.masks, mode="scalar") else mi.Bool(False)
-            found = walking & hit.is_valid() & ~again
+            found = walking & hit.is_valid()
+            of = dr.select(found, hit.prim_index, 0)
+            again = found & self.cut_out(of, hit.prim_uv) if dr.hint(self.masks, mode="scalar") else mi.Bool(False)
+            found &= ~again
             valid |= found
-            triangle = dr.select(found, hit.prim_index, triangle)
+            triangle = dr.select(found, of, triangle)
             weights = dr.select(found, hit.prim_uv, weights)
             step = hit.t + epsilon(o + direction * hit.t)
             o = dr.select(again, o + direction * step, o)

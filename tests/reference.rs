@@ -46,7 +46,7 @@ fn bits(reference: &Reference) -> Vec<u32> {
     reference.parts.values().flat_map(|p| p.mean.rgb.iter().flatten().map(|v| v.to_bits())).collect()
 }
 
-/// Mean radiance by what it is: a part, or "bounce N", what turn N of the paths adds.
+/// Mean radiance by what it is: a part, or "bounce N", what turn N of the paths adds; "specular 1" of turn 1 alone.
 type Means = &'static [(&'static str, f64, f64)];
 
 /// What `python3 scripts/independent.py cornell.gltf --size 64x48 --spp 8192` says of what `conelab scene cornell
@@ -65,6 +65,36 @@ const CORNELL: Means = &[
 /// the lanterns make them too noisy for a short test.
 const PLANT: Means = &[("direct", 0.860165, 0.0009), ("occlusion", 0.139886, 0.0042), ("bounce 1", 0.078823, 0.0060)];
 
+/// The same of `small-quad`, `--size 48x36 --spp 8192`: lit by a lamp of 47 x 38 cm alone, places on which both draw.
+const SMALL_QUAD: Means = &[
+    ("occlusion", 0.202151, 0.0043),
+    ("bounce 1", 0.125489, 0.0070),
+    ("bounce 2", 0.059388, 0.0170),
+    ("bounce 3", 0.031495, 0.0370),
+];
+
+/// The same of `emitters`, `--size 48x36 --spp 16384`: 108 lamps of 1 to 4 cm, some on strings and some before walls.
+const EMITTERS: Means = &[("bounce 1", 0.054446, 0.0280), ("bounce 2", 0.034319, 0.0330)];
+
+/// The same of `sky-window`, `--size 32x24 --spp 16384 --sky sky-window.sky.exr --sun 1000`: a sky and its sun through a
+/// window.
+const SKY_WINDOW: Means = &[
+    ("direct", 0.124361, 0.0150),
+    ("occlusion", 0.062643, 0.0060),
+    ("bounce 1", 0.156597, 0.0130),
+    ("bounce 2", 0.097393, 0.0150),
+];
+
+/// The same of `tests/common/spot/scene.ron`, `--size 32x24 --spp 16384 --sky tests/common/spot/sky.hdr`: a ball on a
+/// floor that shines, under a picture with one bright spot.
+const SPOT: Means = &[
+    ("occlusion", 0.901797, 0.0010),
+    ("bounce 1", 0.197410, 0.0024),
+    ("specular 1", 0.011787, 0.0024),
+    ("bounce 2", 0.017093, 0.0120),
+    ("bounce 3", 0.004486, 0.0190),
+];
+
 /// Compares references of 1, 2, ... bounces with what was recorded.
 #[track_caller]
 fn assert_means(experiment: &Experiment, samples: u64, expected: Means) {
@@ -79,7 +109,7 @@ fn assert_means(experiment: &Experiment, samples: u64, expected: Means) {
     for (what, recorded, error) in expected {
         let found = match what.strip_prefix("bounce ").and_then(|k| k.parse::<usize>().ok()) {
             Some(k) => indirect(k) - indirect(k - 1),
-            None => mean(&traced[0], what),
+            None => mean(&traced[0], what.strip_suffix(" 1").unwrap_or(what)),
         };
         let ratio = found / recorded;
         println!("{}, {what}: {found:.6}, recorded {recorded:.6}, ratio {ratio:.4} +- {error:.4}", experiment.scene);
@@ -101,6 +131,27 @@ fn textures_and_masks_have_the_light_that_an_independent_renderer_finds() {
     let camera = PlacedCamera::new((5.5, 3.5, 1.0), (4.9, 0.3, 2.2), 35.0);
     plant.camera = CameraChoice::Placed(PlacedCamera { near: Some(0.01), far: Some(100.0), ..camera });
     assert_means(&plant, 512, PLANT);
+}
+
+#[test]
+fn a_lamp_lights_a_room_as_an_independent_renderer_finds() {
+    assert_means(&experiment("small-quad", (32, 24), &[("pixel", "box")]), 256, SMALL_QUAD);
+}
+
+#[test]
+fn many_small_lamps_light_a_room_as_an_independent_renderer_finds() {
+    assert_means(&experiment("emitters", (32, 24), &[("pixel", "box")]), 256, EMITTERS);
+}
+
+#[test]
+fn a_sky_lights_a_room_through_its_window_as_an_independent_renderer_finds() {
+    assert_means(&experiment("sky-window", (32, 24), &[("pixel", "box")]), 256, SKY_WINDOW);
+}
+
+#[test]
+fn a_bright_spot_of_the_sky_lights_a_ball_and_a_floor_as_an_independent_renderer_finds() {
+    let scene = root().join("tests/common/spot/scene.ron").to_string_lossy().into_owned();
+    assert_means(&experiment(&scene, (32, 24), &[("pixel", "box")]), 128, SPOT);
 }
 
 #[test]

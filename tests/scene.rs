@@ -678,6 +678,20 @@ fn atrium_survives_obj_and_glb() {
 }
 
 #[test]
+fn a_picture_of_the_sky_is_written_beside_a_gltf_file() {
+    let dir = folder();
+    let scene = open("sky-window").unwrap();
+    scene.export(&dir.path().join("w.gltf")).unwrap();
+    let plain = open(dir.path().join("w.gltf")).unwrap();
+    assert!(plain.environment.is_none());
+    let again = plain.under(&dir.path().join("w.sky.exr")).unwrap();
+    let [before, after] = [&scene, &again].map(|s| s.environment.as_ref().unwrap().picture.texels());
+    assert!(before == after && again.sky == scene.sky);
+    open("cornell").unwrap().export(&dir.path().join("c.gltf")).unwrap();
+    assert!(!dir.path().join("c.sky.exr").exists());
+}
+
+#[test]
 fn glb_and_gltf_keep_lights_cameras_and_motion() {
     let dir = folder();
     let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/scenes");

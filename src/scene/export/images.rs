@@ -1,10 +1,14 @@
-//! Textures as PNG.
+//! Textures as PNG, pictures of the sky as EXR.
 
+use std::io::Cursor;
 use std::path::Path;
 
+use glam::Vec3;
+use image::codecs::openexr::OpenExrEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
+use crate::scene::environment::Environment;
 use crate::scene::texture::first_level_rgba;
 use crate::scene::{SceneError, Texture, TextureFormat};
 
@@ -17,6 +21,18 @@ pub(super) fn rgba_png(texture: &Texture, target: &Path) -> Result<Vec<u8>, Scen
 pub(super) fn grey_png(texture: &Texture, channel: usize, target: &Path) -> Result<Vec<u8>, SceneError> {
     let grey: Vec<u8> = texels(texture, target)?.iter().skip(channel).step_by(4).copied().collect();
     encode(&grey, texture, ExtendedColorType::L8, target)
+}
+
+/// Radiance of all directions where it is the picture's times `factor`.
+pub(super) fn sky_exr(sky: &Environment, factor: Vec3, target: &Path) -> Result<Vec<u8>, SceneError> {
+    let (width, height) = sky.picture.size();
+    let radiance = |texel: &[f32; 3]| (Vec3::from_array(*texel) * factor).to_array();
+    let texels: Vec<[f32; 3]> = sky.picture.texels().iter().map(radiance).collect();
+    let mut exr = Cursor::new(Vec::new());
+    OpenExrEncoder::new(&mut exr)
+        .write_image(bytemuck::cast_slice(&texels), width, height, ExtendedColorType::Rgb32F)
+        .map_err(|error| SceneError::Write { path: target.into(), message: error.to_string() })?;
+    Ok(exr.into_inner())
 }
 
 fn texels(texture: &Texture, target: &Path) -> Result<Vec<u8>, SceneError> {

@@ -15,12 +15,17 @@ impl Scene {
     /// Writes an .obj (with .mtl and PNG textures beside it), .glb, or .gltf (with .bin).
     ///
     /// OBJ holds the pose at time 0 and no lights or cameras. glTF holds everything but the sky and whether a
-    /// light casts shadows. Each file appears whole or not at all.
+    /// light casts shadows; a picture of the sky is written beside it, .sky.exr, as bright as it is here and not turned.
+    /// Each file appears whole or not at all.
     pub fn export(&self, path: &Path) -> Result<(), SceneError> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match extension.as_str() {
             "obj" => obj::write(self, path),
-            "glb" | "gltf" => gltf::write(self, path, extension == "glb"),
+            "glb" | "gltf" => {
+                gltf::write(self, path, extension == "glb")?;
+                let sky = path.with_extension("sky.exr");
+                self.environment.as_ref().map_or(Ok(()), |e| write_file(&sky, &images::sky_exr(e, self.sky, &sky)?))
+            }
             _ => Err(SceneError::ExportFormat { path: path.into() }),
         }
     }
