@@ -146,7 +146,8 @@ fn a_small_lamp_lights_its_room() {
             rows.iter().map(|i| f64::from(rgb[*i][1])).sum::<f64>(),
         ];
         println!("from {camera}: energy {energy:.3}, of the floor {:.3}", floor[0] / floor[1]);
-        assert!((0.9..1.1).contains(&energy), "from {camera}: energy {energy}");
+        // Of 64 voxels an edge; 160 have all of it (docs/results.md).
+        assert!((0.85..1.1).contains(&energy), "from {camera}: energy {energy}");
         assert!((0.8..1.2).contains(&(floor[0] / floor[1])), "from {camera}: the floor has {floor:?}");
         assert_clean(&lab);
     }
