@@ -100,7 +100,7 @@ impl Emitters {
     /// Where a triangle's parts are in the buffer, for rays that hit it: the number of the first and one, and from bit 24 on the
     /// parts of an edge; 0 of one that emits nothing.
     pub(super) fn number(&self, draw: u32, first_index: u32) -> u32 {
-        self.numbers.get(&(draw, first_index)).map_or(0, |(number, parts)| number + 1 | parts << 24)
+        self.numbers.get(&(draw, first_index)).map_or(0, |(number, parts)| (number + 1) | (parts << 24))
     }
 
     /// Whether any of them moves.
@@ -199,7 +199,7 @@ where
         corners[0] + (corners[1] - corners[0]) * b + (corners[2] - corners[0]) * c
     };
     let i = within / 2;
-    if within % 2 == 0 {
+    if within.is_multiple_of(2) {
         [at(i, row), at(i + 1, row), at(i, row + 1)]
     } else {
         [at(i + 1, row + 1), at(i, row + 1), at(i + 1, row)]
