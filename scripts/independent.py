@@ -4,7 +4,7 @@
 Embree through Mitsuba, directions are drawn by Mitsuba's own warps and visible-normal distribution, and the BRDF is
 written from the papers.
 
-    pip install mitsuba numpy openexr    # tried: 3.9.1 with LLVM 19, DRJIT_LIBLLVM_PATH=/path/to/libLLVM.so.19.1
+    pip install mitsuba numpy openexr    # tried: 3.9.1 with LLVM 19 and 22, DRJIT_LIBLLVM_PATH=/path/to/libLLVM.so.19.1
     conelab scene cornell --export cornell.gltf
     for k in 1 2 3; do conelab reference configs/default.ron --scene cornell --size 128x96 --set pixel=box \\
         --bounces $k --spp 2048; done           # each says the folder it keeps its samples in
