@@ -25,6 +25,8 @@ const TEXELS: u32 = 128;
 /// A triangle that emits, by parts of one radiance.
 #[derive(Clone, Debug)]
 struct Emitter {
+    /// Draw and first index.
+    key: (u32, u32),
     instance: u32,
     /// Model space.
     corners: [Vec3; 3],
@@ -89,10 +91,21 @@ impl Emitters {
                 if count as usize > MOST_EMITTERS {
                     return Emitters::default();
                 }
-                found.numbers.insert((number, first), (count - parts * parts, parts));
                 let outside = outside.get((first - soup.first_index[mesh as usize]) as usize / 3).copied().flatten();
-                found.list.push(Emitter { instance: draw.instance, corners, outside, parts, radiance });
+                let key = (number, first);
+                found.list.push(Emitter { key, instance: draw.instance, corners, outside, parts, radiance });
             }
+        }
+        // Places are drawn by number, and numbers are of what triangles hold alone: no file's order shows.
+        let content = |e: &Emitter| {
+            let bits = |v: &Vec3| v.to_array().map(f32::to_bits);
+            (e.instance, e.corners.each_ref().map(bits), e.radiance.iter().map(bits).collect::<Vec<_>>())
+        };
+        found.list.sort_by_cached_key(content);
+        let mut next = 0;
+        for emitter in &found.list {
+            found.numbers.insert(emitter.key, (next, emitter.parts));
+            next += emitter.parts * emitter.parts;
         }
         found
     }

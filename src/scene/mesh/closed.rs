@@ -1,20 +1,11 @@
 //! Which parts of a mesh are closed, so that nobody outside sees the insides of their triangles.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use glam::Vec3;
 
 use crate::scene::Mesh;
-
-/// A connected part of a mesh.
-#[derive(Clone, Copy, Debug)]
-struct Part {
-    low: Vec3,
-    high: Vec3,
-    /// Six times the volume that its triangles enclose, positive where their fronts are outside.
-    volume: f64,
-    closed: bool,
-}
 
 /// A side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,8 +17,60 @@ pub enum Side {
 
 impl Mesh {
     /// For each triangle of the mesh, the side of it that is outside, if it is of a closed part whose diagonal is at most so long
-    /// (model space). Vertices in one place are one.
+    /// (model space). Vertices in one place are one; neighbours may turn their corners either way.
     pub fn outsides(&self, longest: f32) -> Vec<Option<Side>> {
+        let triangles = self.indices.as_chunks::<3>().0;
+        let neighbours = self.neighbours();
+        let mut outsides = vec![None; triangles.len()];
+        let mut seen = vec![false; triangles.len()];
+        for start in 0..triangles.len() {
+            if seen[start] {
+                continue;
+            }
+            // A connected part, each triangle with whether it turns as the first does.
+            let mut part = vec![(start, true)];
+            let mut turns: HashMap<usize, bool> = HashMap::from([(start, true)]);
+            let (mut closed, mut at) = (true, 0);
+            while let Some((triangle, turn)) = part.get(at).copied() {
+                at += 1;
+                seen[triangle] = true;
+                for neighbour in &neighbours[triangle] {
+                    let Some((other, alike)) = neighbour else {
+                        closed = false;
+                        continue;
+                    };
+                    let wanted = turn == *alike;
+                    match turns.entry(*other) {
+                        Entry::Occupied(known) => closed &= *known.get() == wanted,
+                        Entry::Vacant(entry) => {
+                            entry.insert(wanted);
+                            part.push((*other, wanted));
+                        }
+                    }
+                }
+            }
+            let corners = |t: usize| {
+                triangles[t].map(|i| self.vertices.get(i as usize).map_or(Vec3::ZERO, |v| v.position.into()))
+            };
+            let mut bounds = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+            let mut volume = 0.0; // six times that, positive where the first one's front is outside
+            for (triangle, turn) in &part {
+                let [a, b, c] = corners(*triangle);
+                bounds = (bounds.0.min(a).min(b).min(c), bounds.1.max(a).max(b).max(c));
+                let own = a.as_dvec3().dot(b.as_dvec3().cross(c.as_dvec3()));
+                volume += if *turn { own } else { -own };
+            }
+            if closed && volume != 0.0 && (bounds.1 - bounds.0).length() <= longest {
+                for (triangle, turn) in part {
+                    outsides[triangle] = Some(if turn == (volume > 0.0) { Side::Front } else { Side::Back });
+                }
+            }
+        }
+        outsides
+    }
+
+    /// Across each edge of each triangle: the one that shares it, if exactly one does, and whether both turn their corners alike.
+    fn neighbours(&self) -> Vec<[Option<(usize, bool)>; 3]> {
         let mut places: HashMap<[u32; 3], usize> = HashMap::new();
         let welded: Vec<usize> = self
             .vertices
@@ -37,47 +80,26 @@ impl Mesh {
                 *places.entry(v.position.map(|x| (x + 0.0).to_bits())).or_insert(next)
             })
             .collect();
-        let triangles = self.indices.as_chunks::<3>().0;
-        let corners = |t: &[u32; 3]| t.map(|i| welded.get(i as usize).copied().unwrap_or(0));
-        let mut roots: Vec<usize> = (0..places.len().max(1)).collect();
-        // How often an edge is there, and as many times less as it runs the other way.
-        let mut edges: HashMap<(usize, usize), (u32, i32)> = HashMap::new();
-        for [a, b, c] in triangles.iter().map(corners) {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                let edge = edges.entry((from.min(to), from.max(to))).or_default();
-                *edge = (edge.0 + 1, edge.1 + if from < to { 1 } else { -1 });
-                let (x, y) = (root(&mut roots, from), root(&mut roots, to));
-                roots[x.max(y)] = x.min(y);
-            }
-        }
-        let empty = Part { low: Vec3::INFINITY, high: Vec3::NEG_INFINITY, volume: 0.0, closed: true };
-        let mut parts: HashMap<usize, Part> = HashMap::new();
-        for triangle in triangles {
-            let part = parts.entry(root(&mut roots, corners(triangle)[0])).or_insert(empty);
-            let [a, b, c] = triangle.map(|i| self.vertices.get(i as usize).map_or(Vec3::ZERO, |v| v.position.into()));
-            (part.low, part.high) = (part.low.min(a).min(b).min(c), part.high.max(a).max(b).max(c));
-            part.volume += a.as_dvec3().dot(b.as_dvec3().cross(c.as_dvec3()));
-        }
-        for ((from, _), _) in edges.iter().filter(|(_, count)| **count != (2, 0)) {
-            if let Some(part) = parts.get_mut(&root(&mut roots, *from)) {
-                part.closed = false;
-            }
-        }
-        let outside = |part: &Part| {
-            let small = part.closed && part.volume != 0.0 && (part.high - part.low).length() <= longest;
-            small.then_some(if part.volume > 0.0 { Side::Front } else { Side::Back })
+        let edges_of = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| welded.get(i as usize).copied().unwrap_or(0));
+            [(a, b), (b, c), (c, a)]
         };
-        triangles.iter().map(|t| outside(parts.get(&root(&mut roots, corners(t)[0])).unwrap_or(&empty))).collect()
+        let triangles = self.indices.as_chunks::<3>().0;
+        // By edge: who has it, and whether from the lesser end.
+        let mut edges: HashMap<(usize, usize), Vec<(usize, bool)>> = HashMap::new();
+        for (number, triangle) in triangles.iter().enumerate() {
+            for (from, to) in edges_of(triangle) {
+                edges.entry((from.min(to), from.max(to))).or_default().push((number, from < to));
+            }
+        }
+        let across =
+            |number: usize, (from, to): (usize, usize)| match edges.get(&(from.min(to), from.max(to)))?.as_slice() {
+                [(one, a), (two, b)] if one != two => Some((if *one == number { *two } else { *one }, a != b)),
+                _ => None,
+            };
+        let of = |(number, triangle)| edges_of(triangle).map(|edge| across(number, edge));
+        triangles.iter().enumerate().map(of).collect()
     }
-}
-
-fn root(roots: &mut [usize], of: usize) -> usize {
-    let mut at = of;
-    while roots[at] != at {
-        roots[at] = roots[roots[at]];
-        at = roots[at];
-    }
-    at
 }
 
 #[cfg(test)]
@@ -95,6 +117,10 @@ mod tests {
         let mut turned = ball.clone();
         turned.indices.as_chunks_mut::<3>().0.iter_mut().for_each(|t| t.swap(0, 1));
         assert!(turned.outsides(10.0).iter().all(|s| *s == Some(Side::Back)));
+        let mut mixed = ball.clone();
+        mixed.indices.as_chunks_mut::<3>().0.iter_mut().step_by(3).for_each(|t| t.swap(0, 1));
+        let turned = (0..).zip(mixed.outsides(10.0)).map(|(i, s)| (i % 3 == 0, s == Some(Side::Back)));
+        assert!(turned.into_iter().all(|(turned, back)| turned == back), "neighbours turn either way");
         let mut opened = ball.clone();
         opened.indices.truncate(opened.indices.len() - 3);
         assert!(opened.outsides(10.0).iter().all(Option::is_none));
