@@ -258,7 +258,7 @@ fn small_lamps_shine_as_bright_as_they_are() {
                 let mut frame = frame(&lab, &experiment(voxelizer), &scene, &["diffuseIndirect"]);
                 let found = mean(&floats(&mut frame, "diffuseIndirect", 0));
                 println!("{name} of {cells} cells, {voxelizer}: {:.3} of the light", found / truth);
-                assert!((0.8..1.25).contains(&(found / truth)), "{name} of {cells} cells: {found}, not {truth}");
+                assert!((0.9..1.1).contains(&(found / truth)), "{name} of {cells} cells: {found}, not {truth}");
             }
         }
     }
