@@ -152,3 +152,21 @@ fn a_small_lamp_lights_its_room() {
         assert_clean(&lab);
     }
 }
+
+#[test]
+fn no_order_of_a_files_triangles_shows_in_a_hundred_lamps() {
+    let lab = lab(root());
+    let own = scene("emitters");
+    let look = experiment("emitters", (48, 27), &[("voxel_dim", "32"), ("gather_frames", "1")]);
+    let picture = |scene: Arc<Scene>| {
+        let (mut session, _) = lab.prepare(&look, scene, |_| Ok(vec!["radiance".into()])).unwrap();
+        for _ in 0..2 {
+            session.frame(0.0).unwrap();
+        }
+        session.finish().unwrap();
+        assert_clean(&lab);
+        session.texels("radiance", 0, 0).unwrap().bytes
+    };
+    let expected = picture(own.clone());
+    assert!(picture(Arc::new(own.shuffled(4))) == expected, "triangles in another order give another picture");
+}
