@@ -39,6 +39,7 @@ use crate::lab::{Lab, LabError};
 use crate::vulkan::{GpuOptions, list_devices};
 use clap::{Args, Parser, Subcommand};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// A research workbench for voxel cone tracing.
 #[derive(Debug, Parser)]
@@ -102,11 +103,26 @@ struct DeviceArgs {
     /// Turn on the Vulkan validation layer; any message is an error.
     #[arg(long, env = "CONELAB_VALIDATION")]
     validate: bool,
+    /// Seconds that a frame may take before the device counts as hung (ten times as long on a software device); 20 in the
+    /// window, without end elsewhere.
+    #[arg(long, env = "CONELAB_HANG_AFTER", value_name = "SECONDS", value_parser = seconds)]
+    hang_after: Option<Duration>,
+}
+
+/// A span of time from seconds, at least a millisecond.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let span = text.parse().ok().and_then(|s: f64| Duration::try_from_secs_f64(s).ok());
+    span.filter(|s| s.as_millis() > 0).ok_or_else(|| "must be a number of seconds above 0".into())
 }
 
 impl DeviceArgs {
     fn options(&self) -> GpuOptions {
-        GpuOptions { device: self.device.clone(), validation: self.validate, cache: None }
+        GpuOptions {
+            device: self.device.clone(),
+            validation: self.validate,
+            patience: self.hang_after,
+            ..GpuOptions::default()
+        }
     }
 }
 

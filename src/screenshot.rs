@@ -4,7 +4,7 @@
 use crate::lab::LabError;
 use crate::stats::{Spread, spread};
 use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels};
-use crate::workbench::{Options, PICTURES, Workbench};
+use crate::workbench::{NewPixels, Options, PICTURES, Workbench};
 use crossbeam_channel::{Receiver, unbounded};
 use egui::accesskit::{Node, NodeId};
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, TextureId, Vec2};
@@ -23,6 +23,8 @@ pub struct Script {
     pub clicks: Vec<String>,
     /// Frames of the interface to measure at the end.
     pub measure: usize,
+    /// How the interface keeps pace with the engine, to measure behind that.
+    pub pace: Option<Pace>,
     /// A file to save over and over.
     pub edit: Option<Edit>,
     /// How long to wait for the picture to settle after each step.
@@ -42,6 +44,34 @@ pub struct Edit {
     pub times: usize,
 }
 
+/// Pictures that the engine makes one after the other, painted as they come.
+#[derive(Clone, Copy)]
+pub struct Pace {
+    /// How many.
+    pub pictures: usize,
+    /// Time from one frame of the interface to the next; whenever there is something new when absent.
+    pub every: Option<Duration>,
+}
+
+/// How the interface kept pace.
+pub struct Kept {
+    /// Pictures that the engine finished.
+    pub pictures: u64,
+    /// Pictures that were painted: of several between two frames only the last is.
+    pub painted: usize,
+    /// From one picture's end to the next, in the engine; ms.
+    pub engine_ms: Spread,
+    /// From one frame of the interface that shows a new picture to the next; of all frames, where those have a pace of their
+    /// own; ms.
+    pub paint_ms: Spread,
+    /// From a picture's end to the submission of the frame that shows it, ms.
+    pub delay_ms: Spread,
+    /// CPU time of a frame of the interface, ms.
+    pub cpu_ms: Spread,
+    /// Main memory that the process held after a tenth of the pictures, and after all; where the system says.
+    pub memory: Option<(u64, u64)>,
+}
+
 /// The screenshot and what was measured on the way.
 pub struct Shot {
     /// From the file's renaming until the picture made with it is painted, ms.
@@ -56,6 +86,8 @@ pub struct Shot {
     pub gpu_ms: Spread,
     /// GPU time of copying new pictures for it, ms.
     pub copy_ms: Spread,
+    /// How the interface kept pace.
+    pub pace: Option<Kept>,
 }
 
 struct Host {
@@ -79,7 +111,8 @@ pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, 
     let gpu = Gpu::open(gpu)?;
     let painter = Painter::offscreen(&gpu, PICTURES)?;
     let textures = (0..PICTURES).map(|i| painter.picture(i)).collect();
-    let workbench = Workbench::new(options, Arc::new(move || wake.send(()).unwrap_or_default()))?;
+    let mut workbench = Workbench::new(options, Arc::new(move || wake.send(()).unwrap_or_default()))?;
+    workbench.paints_on(gpu.info.id);
     let context = egui::Context::default();
     context.enable_accesskit();
     let start = Instant::now();
@@ -115,9 +148,62 @@ impl Host {
             copies.push(self.painter.gpu_ms.0);
             gpu.push(self.painter.gpu_ms.1);
         }
+        let pace = self.script.pace.map(|pace| self.pace(pace)).transpose()?;
         let (size, bytes) = self.painter.read()?;
         let edit_ms = self.script.edit.clone().map(|edit| self.edits(&edit)).transpose()?.map(spread);
-        Ok(Shot { edit_ms, size, bytes, cpu_ms: spread(cpu), gpu_ms: spread(gpu), copy_ms: spread(copies) })
+        Ok(Shot { edit_ms, size, bytes, cpu_ms: spread(cpu), gpu_ms: spread(gpu), copy_ms: spread(copies), pace })
+    }
+
+    /// Paints while the engine makes pictures.
+    fn pace(&mut self, pace: Pace) -> Result<Kept, LabError> {
+        let stamp = |host: &Host| host.workbench.last_picture();
+        let Some((first, _)) = stamp(self) else {
+            return Err(LabError::Request("there is no picture to keep pace with".into()));
+        };
+        let (mut engine, mut paints, mut delays, mut cpu) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut seen, mut painted, mut early) = (stamp(self), Instant::now(), None);
+        let (mut until, mut next) = (painted + self.script.patience, painted);
+        while seen.is_some_and(|(frame, _)| frame - first < pace.pictures as u64) {
+            match pace.every {
+                Some(every) => {
+                    next += every;
+                    std::thread::sleep(next.saturating_duration_since(Instant::now()));
+                }
+                None => drop(self.woken.recv_timeout(Duration::from_millis(100))),
+            }
+            // One frame answers all that has been said meanwhile.
+            while self.woken.try_recv().is_ok() {}
+            let ms = self.frame(Vec::new())?;
+            let now = Instant::now();
+            let (new, last) = (stamp(self), seen);
+            let came = new.zip(last).filter(|(new, last)| new.0 > last.0);
+            if let Some(((frame, end), (frame_before, end_before))) = came {
+                engine.push((end - end_before).as_secs_f64() * 1e3 / (frame - frame_before) as f64);
+                delays.push(end.elapsed().as_secs_f64() * 1e3);
+                until = now + self.script.patience;
+                seen = new;
+            }
+            if came.is_some() || pace.every.is_some() {
+                paints.push((now - painted).as_secs_f64() * 1e3);
+                cpu.push(ms);
+                painted = now;
+            }
+            if early.is_none() && seen.is_some_and(|(frame, _)| frame - first >= pace.pictures as u64 / 10) {
+                early = resident_bytes();
+            }
+            if now > until {
+                return Err(LabError::Request("the engine makes no more pictures: is it kept rendering?".into()));
+            }
+        }
+        Ok(Kept {
+            pictures: seen.map_or(0, |(frame, _)| frame - first),
+            painted: delays.len(),
+            engine_ms: spread(engine),
+            paint_ms: spread(paints),
+            delay_ms: spread(delays),
+            cpu_ms: spread(cpu),
+            memory: early.zip(resident_bytes()),
+        })
     }
 
     /// Saves a file again and again and waits for each picture; the file ends as it was.
@@ -204,11 +290,7 @@ impl Host {
             self.nodes = update.nodes.into_iter().collect();
         }
         let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
-        let pixels: Vec<Pixels<'_>> = workbench
-            .pixels()
-            .iter()
-            .map(|(picture, size, bytes)| Pixels { picture: *picture, size: *size, bytes: bytes.as_slice() })
-            .collect();
+        let pixels: Vec<Pixels<'_>> = workbench.pixels().iter().filter_map(NewPixels::source).collect();
         let size = self.script.size;
         if self.painter.paint(size, output.pixels_per_point, output.textures_delta, &primitives, &pixels)? {
             drop(pixels);
@@ -217,4 +299,11 @@ impl Host {
         // Waiting for the GPU is not what the interface costs.
         Ok(begun.elapsed().as_secs_f64() * 1e3 - self.painter.waited_ms)
     }
+}
+
+/// Main memory that the process holds, where the system says (Linux).
+fn resident_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmRSS:"))?;
+    line.split_whitespace().next()?.parse::<u64>().ok().map(|kib| kib * 1024)
 }

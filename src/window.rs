@@ -2,7 +2,7 @@
 
 use crate::lab::LabError;
 use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels, Surface, VulkanError};
-use crate::workbench::{Options, PICTURES, Workbench};
+use crate::workbench::{NewPixels, Options, PICTURES, Workbench};
 use egui::{TextureId, ViewportId};
 use raw_window_handle::HasDisplayHandle;
 use std::sync::Arc;
@@ -113,11 +113,7 @@ impl App {
         open.state.handle_platform_output(&open.window, output.platform_output);
         let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
         let size = open.window.inner_size();
-        let pixels: Vec<Pixels<'_>> = workbench
-            .pixels()
-            .iter()
-            .map(|(picture, size, bytes)| Pixels { picture: *picture, size: *size, bytes: bytes.as_slice() })
-            .collect();
+        let pixels: Vec<Pixels<'_>> = workbench.pixels().iter().filter_map(NewPixels::source).collect();
         let deltas = output.textures_delta;
         let painted =
             open.painter.paint((size.width, size.height), output.pixels_per_point, deltas, &primitives, &pixels)?;
@@ -158,6 +154,9 @@ impl ApplicationHandler<Wake> for App {
         }
         let made = self.create(event_loop).map(|open| {
             open.window.request_redraw();
+            if let Some(workbench) = &mut self.workbench {
+                workbench.paints_on(open.gpu.info.id);
+            }
             self.open = Some(open);
         });
         self.check(made, event_loop);

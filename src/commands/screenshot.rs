@@ -4,7 +4,7 @@ use super::DeviceArgs;
 use super::adapt::parse_size;
 use crate::graph::run::Redo;
 use crate::lab::{LabError, Workspace};
-use crate::screenshot::{Edit, Script, take};
+use crate::screenshot::{Edit, Pace, Script, take};
 use crate::workbench::Options;
 use clap::Args;
 use std::io::Cursor;
@@ -34,6 +34,14 @@ pub struct ScreenshotArgs {
     /// Measure so many frames of the interface and print what they cost.
     #[arg(long, default_value_t = 0)]
     measure: usize,
+    /// Measure how the interface keeps pace with the engine over so many of its pictures; the engine must be kept rendering
+    /// (`--click "keep rendering"` in the tab Time).
+    #[arg(long, value_name = "PICTURES", default_value_t = 0)]
+    pace: usize,
+    /// Milliseconds between the interface's frames while its pace is measured, as a screen has it; as soon as there is a new
+    /// picture when absent.
+    #[arg(long, value_name = "MS", requires = "pace")]
+    every: Option<f64>,
     /// Measure how long a saved edit of this file takes until its picture is painted; the file ends as it was.
     #[arg(long, value_name = "FILE", requires_all = ["from", "to"])]
     edit: Option<PathBuf>,
@@ -75,6 +83,10 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         scale: args.scale,
         clicks: args.click.clone(),
         measure: args.measure,
+        pace: (args.pace > 0).then(|| Pace {
+            pictures: args.pace,
+            every: args.every.map(|ms| Duration::from_secs_f64(ms.clamp(0.1, 1e4) / 1e3)),
+        }),
         edit: args.edit.clone().map(|file| Edit {
             file,
             from: args.from.clone().unwrap_or_default(),
@@ -95,7 +107,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         .map_err(|e| LabError::Request(format!("cannot make the picture: {e}")))?;
     crate::files::write_whole(&args.output, file.get_ref())
         .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", args.output.display())))?;
-    if args.measure > 0 || shot.edit_ms.is_some() {
+    if args.measure > 0 || shot.pace.is_some() || shot.edit_ms.is_some() {
         let row = |name: &str, s: &crate::stats::Spread| {
             say!("{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);
         };
@@ -105,10 +117,24 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
             row("interface, GPU", &shot.gpu_ms);
             row("copying pictures, GPU", &shot.copy_ms);
         }
+        if let Some(pace) = &shot.pace {
+            row("from picture to picture", &pace.engine_ms);
+            row("from paint to paint", &pace.paint_ms);
+            row("from picture to its paint", &pace.delay_ms);
+            row("interface, CPU", &pace.cpu_ms);
+            say!("{} pictures, {} painted", pace.pictures, pace.painted);
+            if let Some((before, after)) = pace.memory {
+                say!("{:.1} MiB after a tenth of them, {:.1} MiB after all", mib(before), mib(after));
+            }
+        }
         if let Some(edit) = &shot.edit_ms {
             row("save to pixels", edit);
         }
     }
     say!("wrote {}", super::shown(&args.output).display());
     Ok(())
+}
+
+fn mib(bytes: u64) -> f64 {
+    bytes as f64 / f64::from(1 << 20)
 }

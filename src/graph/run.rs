@@ -75,8 +75,12 @@ pub struct Program {
     pub(super) frame: u64,
     /// Frames that this program has run; the one before it may have run others.
     ran: u64,
-    /// The texture that every frame copies to the CPU.
+    /// The texture that frames are asked for.
     shown: Option<usize>,
+    /// Whether every frame copies it to the CPU.
+    pub(super) reads_back: bool,
+    /// Where the next frame copies it to on the device.
+    handed: Option<Arc<Buffer>>,
     /// Steps where a pass begins.
     starts: Vec<usize>,
     /// What frames do.
@@ -104,15 +108,16 @@ struct Slot {
     cpu_ms: f64,
     /// Whether each of [`Program::starts`] has a timestamp.
     stamped: Vec<bool>,
-    /// Where the shown texture is copied to.
-    readback: Option<Buffer>,
+    /// Where the shown texture is copied to on the CPU, and whether its last frame did.
+    readback: (Option<Buffer>, bool),
+    /// Where its last frame copied it to for another device.
+    handed: Option<Arc<Buffer>>,
 }
 
 /// All that decides which commands a frame has, but its parity.
 #[derive(PartialEq)]
 struct Recorded {
     frame: Frame,
-    shown: Option<usize>,
     /// The first two frames begin with other layouts than all after them.
     first: Option<u64>,
 }
@@ -138,6 +143,8 @@ pub struct FrameTimes {
     pub cpu_ms: f64,
     /// Texels of the texture chosen by [`Program::show`], mip 0 and layer 0, tightly packed.
     pub picture: Option<Vec<u8>>,
+    /// The same in a buffer of the device that another device may take ([`Program::hand_over`]).
+    pub handed: Option<Arc<Buffer>>,
 }
 
 /// Frames recorded ahead of the GPU.
@@ -178,6 +185,8 @@ impl Program {
             resting,
             change,
             shown: None,
+            reads_back: true,
+            handed: None,
             steps: Vec::new(),
             starts: (0..plan.steps.len())
                 .filter(|i| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass)
@@ -204,7 +213,8 @@ impl Program {
                 recorded: [None, None],
                 cpu_ms: 0.0,
                 stamped: Vec::new(),
-                readback: None,
+                readback: (None, false),
+                handed: None,
             });
         }
         for (i, key) in made.keys.iter().enumerate() {
@@ -435,9 +445,10 @@ impl Program {
         let parity = usize::try_from(self.frame % 2).unwrap_or(0);
         let mut slots = std::mem::take(&mut self.slots);
         let readback = self.readback(&mut slots[slot]);
+        slots[slot].handed = self.handed.take();
         let start = Instant::now();
         let frame = self.work(updates, parity == 1);
-        let result = readback.and_then(|readback| self.submit(&mut slots[slot], frame, updates, parity, readback));
+        let result = readback.and_then(|()| self.submit(&mut slots[slot], frame, updates, parity));
         slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
         self.slots = slots;
         if result.is_err() {
@@ -454,26 +465,21 @@ impl Program {
 
     /// Sends what changed, and the commands of a frame behind it: those of the last one that did the same, if there is one.
     /// Recording takes most of the time of a CPU's frame.
-    fn submit(
-        &self,
-        slot: &mut Slot,
-        frame: Frame,
-        updates: &[(Arc<Buffer>, Vec<u8>)],
-        parity: usize,
-        readback: Option<Buffer>,
-    ) -> Result<()> {
-        slot.readback = readback;
+    fn submit(&self, slot: &mut Slot, frame: Frame, updates: &[(Arc<Buffer>, Vec<u8>)], parity: usize) -> Result<()> {
         slot.stamped = self.runs(&frame.awake);
-        let Slot { commands, recorded, stamped, readback, .. } = slot;
+        let Slot { commands, recorded, stamped, readback, handed, .. } = slot;
         let recorded = &mut recorded[parity];
-        let wanted = Recorded { frame, shown: self.shown, first: Some(self.ran).filter(|ran| *ran < 2) };
+        let wanted = Recorded { frame, first: Some(self.ran).filter(|ran| *ran < 2) };
         let recording = match recorded.take() {
             Some((last, recording)) if last == wanted => recording,
             _ => Recording::new(commands, |commands| {
-                self.record(commands, parity, (&wanted.frame, stamped), readback.as_ref());
+                self.record(commands, parity, &wanted.frame, stamped);
             })?,
         };
-        commands.submit_again(&recording, |commands| send(commands, updates))?;
+        let to_host = readback.0.as_ref().filter(|_| readback.1);
+        let copies = to_host.is_some() || handed.is_some();
+        let copy = |commands: &mut Commands<'_>| self.copy_shown(commands, parity, to_host, handed.as_deref());
+        commands.submit_again(&recording, |commands| send(commands, updates), copies.then_some(copy))?;
         *recorded = Some((wanted, recording));
         Ok(())
     }
@@ -515,6 +521,22 @@ impl Program {
         self.starts.iter().zip(ends).map(|(start, end)| awake[*start..end].contains(&true)).collect()
     }
 
+    /// Whether frames copy the shown texture to the CPU, from the next one on; they do at first.
+    pub fn read_back(&mut self, reads_back: bool) {
+        self.reads_back = reads_back;
+    }
+
+    /// Where the next frame copies the shown texture to, for another device; what is too small for it is left alone.
+    pub fn hand_over(&mut self, to: Option<Arc<Buffer>>) {
+        let bytes = self.shown_bytes();
+        self.handed = to.filter(|b| bytes > 0 && b.size >= bytes);
+    }
+
+    /// Bytes of the shown texture; 0 without one.
+    pub fn shown_bytes(&self) -> u64 {
+        self.shown.map_or(0, |t| self.plan.textures[t].mip_bytes(0))
+    }
+
     /// Copies this texture to the CPU with every frame from now on.
     pub fn show(&mut self, texture: Option<usize>) {
         self.shown = texture.filter(|t| {
@@ -523,16 +545,15 @@ impl Program {
         });
     }
 
-    /// A host buffer for the shown texture: the one there is, if it fits.
-    fn readback(&self, slot: &mut Slot) -> Result<Option<Buffer>> {
-        let Some(shown) = self.shown else { return Ok(None) };
-        let size = self.plan.textures[shown].mip_bytes(0);
-        if let Some(buffer) = slot.readback.take().filter(|b| b.size == size.max(16).next_multiple_of(4)) {
-            return Ok(Some(buffer));
+    /// Gives a slot a host buffer for the shown texture, unless it has one that fits.
+    fn readback(&self, slot: &mut Slot) -> Result<()> {
+        let size = self.shown_bytes();
+        slot.readback.1 = self.reads_back && size > 0;
+        if slot.readback.1 && slot.readback.0.as_ref().is_none_or(|b| b.size != size.max(16).next_multiple_of(4)) {
+            let usage = vk::BufferUsageFlags::TRANSFER_DST;
+            slot.readback.0 = Some(Buffer::new(&self.gpu, "shown", size, usage, MemoryLocation::GpuToCpu)?);
         }
-        slot.recorded = [None, None];
-        let usage = vk::BufferUsageFlags::TRANSFER_DST;
-        Buffer::new(&self.gpu, "shown", size, usage, MemoryLocation::GpuToCpu).map(Some)
+        Ok(())
     }
 
     /// Remembers the layouts that a frame of this parity leaves behind.
@@ -568,7 +589,8 @@ impl Program {
     }
 
     fn finish(&mut self, slot: usize) -> Result<Option<FrameTimes>> {
-        let Slot { commands, cpu_ms, stamped, readback, .. } = &mut self.slots[slot];
+        let shown = usize::try_from(self.shown_bytes()).unwrap_or(0);
+        let Slot { commands, cpu_ms, stamped, readback, handed, .. } = &mut self.slots[slot];
         let Some(ticks) = commands.wait()? else { return Ok(None) };
         let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
         let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass).zip(stamped.iter());
@@ -580,20 +602,16 @@ impl Program {
             passes: timed.map(|(pass, ran)| (pass, if *ran { spans.next().unwrap_or(0.0) } else { 0.0 })).collect(),
             gpu_ms: ticks.first().zip(ticks.last()).map_or(0.0, |(a, b)| ms(*a, *b)),
             cpu_ms: *cpu_ms,
-            picture: readback.as_ref().map(|b| {
-                let bytes = self.shown.map_or(0, |t| self.plan.textures[t].mip_bytes(0));
-                b.bytes()[..usize::try_from(bytes).unwrap_or(0).min(b.bytes().len())].to_vec()
-            }),
+            picture: readback
+                .0
+                .as_ref()
+                .filter(|_| readback.1)
+                .map(|b| b.bytes()[..shown.min(b.bytes().len())].to_vec()),
+            handed: handed.take(),
         }))
     }
 
-    fn record(
-        &self,
-        commands: &mut Commands<'_>,
-        parity: usize,
-        (frame, stamped): (&Frame, &[bool]),
-        readback: Option<&Buffer>,
-    ) {
+    fn record(&self, commands: &mut Commands<'_>, parity: usize, frame: &Frame, stamped: &[bool]) {
         let mut labelled = false;
         for (i, step) in self.plan.steps.iter().enumerate() {
             if self.starts.binary_search(&i).is_ok_and(|start| stamped[start]) {
@@ -619,15 +637,28 @@ impl Program {
             commands.end_label();
         }
         commands.timestamp();
-        if let (Some(texture), Some(to)) = (self.shown, readback) {
-            let copy = usize::from(self.plan.textures[texture].history && parity == 1);
-            if let Some(image) = &self.images[texture][copy] {
-                let layout = match self.schedule.ends[parity][texture][copy][0] {
-                    vk::ImageLayout::UNDEFINED => self.resting[texture][copy][0],
-                    layout => layout,
-                };
-                copy_out(commands, image, layout, (0, 0), None, to);
-            }
+    }
+
+    /// Copies the shown texture behind a frame of that parity: to the CPU, for another device.
+    fn copy_shown(
+        &self,
+        commands: &mut Commands<'_>,
+        parity: usize,
+        to_host: Option<&Buffer>,
+        handed: Option<&Buffer>,
+    ) {
+        let Some(texture) = self.shown else { return };
+        let copy = usize::from(self.plan.textures[texture].history && parity == 1);
+        let Some(image) = &self.images[texture][copy] else { return };
+        let layout = match self.schedule.ends[parity][texture][copy][0] {
+            vk::ImageLayout::UNDEFINED => self.resting[texture][copy][0],
+            layout => layout,
+        };
+        for to in to_host.into_iter().chain(handed) {
+            copy_out(commands, image, layout, (0, 0), None, to);
+        }
+        if let Some(buffer) = handed {
+            commands.hand_over(buffer);
         }
     }
 
@@ -820,6 +851,14 @@ impl Program {
         let target = Buffer::new(&self.gpu, "readback", size, usage, MemoryLocation::GpuToCpu)?;
         Commands::once(&self.gpu, |commands| copy_out(commands, &image, layout, (mip, layer), part, &target))?;
         Ok(target.bytes()[..usize::try_from(size).unwrap_or(0)].to_vec())
+    }
+
+    /// Texels of the shown texture as the last frame left them; none without one.
+    ///
+    /// # Errors
+    /// The device was lost, out of memory.
+    pub fn shown_texels(&mut self) -> Result<Option<Vec<u8>>> {
+        self.shown.map(|texture| self.read_texture(texture, 0, 0, None)).transpose()
     }
 
     /// Copies a buffer to the CPU.

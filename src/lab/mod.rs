@@ -569,6 +569,7 @@ impl Session {
 /// A device with every feature, for checks that need none of their own.
 pub fn any_device() -> DeviceInfo {
     let all = Features {
+        shares_memory: true,
         conservative_rasterization: true,
         geometry: true,
         tessellation: true,

@@ -19,6 +19,8 @@ pub struct FrameSlot {
     gpu: Arc<Gpu>,
     pool: vk::CommandPool,
     buffer: vk::CommandBuffer,
+    /// The commands behind a recording ([`FrameSlot::submit_again`]).
+    last: (vk::CommandPool, vk::CommandBuffer),
     fence: vk::Fence,
     queries: vk::QueryPool,
     query_count: u32,
@@ -36,6 +38,7 @@ impl FrameSlot {
             gpu: gpu.clone(),
             pool: vk::CommandPool::null(),
             buffer: vk::CommandBuffer::null(),
+            last: (vk::CommandPool::null(), vk::CommandBuffer::null()),
             fence: vk::Fence::null(),
             queries: vk::QueryPool::null(),
             query_count: if gpu.info.timestamp_ns > 0.0 { timestamps } else { 0 },
@@ -61,7 +64,8 @@ impl FrameSlot {
     /// Waits for the frame that was submitted from this slot, if any, and returns its timestamps in ticks.
     ///
     /// # Errors
-    /// The device was lost.
+    /// The device was lost; the frame took longer than [`super::GpuOptions::patience`] allows: from then on nothing of the
+    /// device is destroyed, because its work may go on.
     pub fn wait(&mut self) -> Result<Option<Vec<u64>>> {
         if !self.pending {
             return Ok(None);
@@ -69,7 +73,7 @@ impl FrameSlot {
         let d = &self.gpu.device;
         // SAFETY: the fence was submitted with this slot's commands, and the queries up to `written` are in them.
         unsafe {
-            d.wait_for_fences(&[self.fence], true, u64::MAX).map_err(VulkanError::at("wait for a frame"))?;
+            self.gpu.wait_for(self.fence)?;
             d.reset_fences(&[self.fence]).map_err(VulkanError::at("reset a fence"))?;
             self.pending = false;
             let mut ticks = vec![0u64; self.written as usize];
@@ -108,15 +112,26 @@ impl FrameSlot {
         self.send(&[self.buffer], semaphores)
     }
 
-    /// Submits what `first` records, and behind it commands that were recorded before for this slot.
+    /// Submits what `first` records, behind it commands that were recorded before for this slot, and then what `last`
+    /// records.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn submit_again(&mut self, recording: &Recording, first: impl FnOnce(&mut Commands<'_>)) -> Result<()> {
+    pub fn submit_again(
+        &mut self,
+        recording: &Recording,
+        first: impl FnOnce(&mut Commands<'_>),
+        last: Option<impl FnOnce(&mut Commands<'_>)>,
+    ) -> Result<()> {
         self.wait()?;
         self.record(self.pool, self.buffer, false, first)?;
         self.written = recording.written;
-        self.send(&[self.buffer, recording.buffer], None)
+        let Some(last) = last else { return self.send(&[self.buffer, recording.buffer], None) };
+        if self.last.0 == vk::CommandPool::null() {
+            self.last = command_buffer(&self.gpu)?;
+        }
+        self.record(self.last.0, self.last.1, false, last)?;
+        self.send(&[self.buffer, recording.buffer, self.last.1], None)
     }
 
     /// Records a buffer anew, the only one of its pool; the number of its timestamps.
@@ -194,6 +209,9 @@ impl Recording {
 
 impl Drop for Recording {
     fn drop(&mut self) {
+        if self.gpu.is_hung() {
+            return;
+        }
         // SAFETY: who holds a recording drops it when the slot's last frame has finished.
         unsafe { self.gpu.device.destroy_command_pool(self.pool, None) };
     }
@@ -223,10 +241,14 @@ impl Drop for FrameSlot {
         // SAFETY: what was submitted is waited for before it is destroyed.
         unsafe {
             if self.pending {
-                let _ = d.wait_for_fences(&[self.fence], true, u64::MAX);
+                let _ = self.gpu.wait_for(self.fence);
+            }
+            if self.gpu.is_hung() {
+                return;
             }
             d.destroy_query_pool(self.queries, None);
             d.destroy_fence(self.fence, None);
+            d.destroy_command_pool(self.last.0, None);
             d.destroy_command_pool(self.pool, None);
         }
     }
@@ -279,6 +301,32 @@ impl Commands<'_> {
     ) {
         let images: Vec<_> = images.iter().map(|(image, barrier)| barrier.image(image.handle)).collect();
         let info = vk::DependencyInfo::default().memory_barriers(memory.as_slice()).image_memory_barriers(&images);
+        unsafe { self.gpu.device.cmd_pipeline_barrier2(self.handle, &info) };
+    }
+
+    /// The queue family that the commands are for.
+    pub(super) fn family(&self) -> u32 {
+        self.gpu.family
+    }
+
+    /// Passes a whole buffer from one queue family to another: (stage, access) before and after.
+    pub(super) fn pass_on(
+        &mut self,
+        buffer: &Buffer,
+        families: (u32, u32),
+        before: (vk::PipelineStageFlags2, vk::AccessFlags2),
+        after: (vk::PipelineStageFlags2, vk::AccessFlags2),
+    ) {
+        let barrier = [vk::BufferMemoryBarrier2::default()
+            .buffer(buffer.handle)
+            .size(vk::WHOLE_SIZE)
+            .src_queue_family_index(families.0)
+            .dst_queue_family_index(families.1)
+            .src_stage_mask(before.0)
+            .src_access_mask(before.1)
+            .dst_stage_mask(after.0)
+            .dst_access_mask(after.1)];
+        let info = vk::DependencyInfo::default().buffer_memory_barriers(&barrier);
         unsafe { self.gpu.device.cmd_pipeline_barrier2(self.handle, &info) };
     }
 

@@ -1,12 +1,14 @@
 //! Instance, device, queue, allocator and pipeline cache.
 
 use super::debug::{Messages, Names, messenger_info};
-use super::{Result, VulkanError};
+use super::{DeviceId, Result, VulkanError};
 use ash::{Entry, ext, khr, vk};
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::ffi::{CStr, CString};
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 /// How to open a device.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +19,28 @@ pub struct GpuOptions {
     pub validation: bool,
     /// Folder for the pipeline cache; none when absent.
     pub cache: Option<PathBuf>,
+    /// How long a frame may take before the device counts as hung; a software device has ten times as long. Without end
+    /// when absent.
+    pub patience: Option<Duration>,
+    /// Faults to come, for tests.
+    pub faults: Option<Arc<Faults>>,
+}
+
+/// Faults that a test puts into the next wait for a device: what programs see of a driver's reset and of a shader that never
+/// ends, on devices that have neither.
+#[derive(Debug, Default)]
+pub struct Faults(AtomicU8);
+
+impl Faults {
+    /// The next wait says that the device was lost.
+    pub fn lose(&self) {
+        self.0.store(1, Ordering::Relaxed);
+    }
+
+    /// The next wait is for a fence that nothing signals.
+    pub fn hang(&self) {
+        self.0.store(2, Ordering::Relaxed);
+    }
 }
 
 /// Optional abilities, asked for only by the switches that need them.
@@ -50,6 +74,8 @@ pub struct Features {
     pub full_index: bool,
     /// 64-bit integers in shaders, and atomics on those in buffers.
     pub int64_atomics: bool,
+    /// Buffers can be shared with another device of the same physical one.
+    pub shares_memory: bool,
 }
 
 /// What a device is.
@@ -71,6 +97,8 @@ pub struct DeviceInfo {
     pub heap: u64,
     /// Optional abilities.
     pub features: Features,
+    /// Which physical device and driver it is.
+    pub id: DeviceId,
     cache_key: String,
 }
 
@@ -98,6 +126,7 @@ impl DeviceInfo {
             limits,
             heap: u64::MAX,
             features,
+            id: DeviceId::default(),
             cache_key: String::new(),
         }
     }
@@ -114,6 +143,9 @@ pub struct Gpu {
     /// What the device is.
     pub info: DeviceInfo,
     cache_file: Option<PathBuf>,
+    patience: Option<Duration>,
+    hung: AtomicBool,
+    faults: Option<Arc<Faults>>,
     messenger: Option<(ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     messages: Box<Messages>,
     pub(super) physical: vk::PhysicalDevice,
@@ -172,7 +204,8 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
     // SAFETY: `physical` comes from this instance; the chained structures live through the calls.
     unsafe {
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
-        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+        let mut ids = vk::PhysicalDeviceIDProperties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver).push_next(&mut ids);
         instance.get_physical_device_properties2(physical, &mut properties);
         let core = properties.properties;
         let mut have12 = vk::PhysicalDeviceVulkan12Features::default();
@@ -235,7 +268,9 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 independent_blend: have.independent_blend == vk::TRUE,
                 full_index: have.full_draw_index_uint32 == vk::TRUE,
                 int64_atomics: have.shader_int64 == vk::TRUE && have12.shader_buffer_int64_atomics == vk::TRUE,
+                shares_memory: super::share::is_supported(instance, physical, &extensions),
             },
+            id: DeviceId { device: ids.device_uuid, driver: ids.driver_uuid },
             cache_key: format!(
                 "{:04x}-{:04x}-{:08x}-{}",
                 core.vendor_id,
@@ -354,6 +389,7 @@ impl Gpu {
         let physical = choose(&instance, options.device.as_deref())?;
         let info = describe(&instance, physical);
         let family = queue_family(&instance, physical).unwrap_or(0);
+        let is_software = info.kind == "cpu" && options.faults.is_none();
         let device = create_device(&instance, physical, family, &info.features, display.is_some())?;
         // SAFETY: the family and index were used to create the device.
         let queue = unsafe { device.get_device_queue(family, 0) };
@@ -383,12 +419,50 @@ impl Gpu {
             names,
             info,
             cache_file,
+            patience: options.patience.map(|p| if is_software { p * 10 } else { p }),
+            hung: AtomicBool::new(false),
+            faults: options.faults.clone(),
             messenger,
             messages,
             physical,
             instance,
             entry,
         }))
+    }
+
+    /// Waits for a fence as long as the device's patience allows; once that ends, the device counts as hung for good.
+    pub(super) fn wait_for(&self, fence: vk::Fence) -> Result<()> {
+        let at = || VulkanError::at("wait for a frame");
+        let hung = || VulkanError::Hung(self.patience.unwrap_or_default().as_secs_f64());
+        if self.is_hung() {
+            return Err(hung());
+        }
+        let mut fence = fence;
+        match self.faults.as_ref().map_or(0, |f| f.0.swap(0, Ordering::Relaxed)) {
+            0 => {}
+            1 => return Err(at()(vk::Result::ERROR_DEVICE_LOST)),
+            // SAFETY: a plain creation; a hung device leaves what it has.
+            _ => fence = unsafe { self.device.create_fence(&vk::FenceCreateInfo::default(), None) }.map_err(at())?,
+        }
+        let limit = self.patience.map_or(u64::MAX, |p| u64::try_from(p.as_nanos()).unwrap_or(u64::MAX));
+        // SAFETY: the fence is this device's.
+        match unsafe { self.device.wait_for_fences(&[fence], true, limit) } {
+            Err(vk::Result::TIMEOUT) => {
+                self.hung.store(true, Ordering::Relaxed);
+                Err(hung())
+            }
+            waited => waited.map_err(at()),
+        }
+    }
+
+    /// How long a frame may take; without end when absent.
+    pub fn patience(&self) -> Option<Duration> {
+        self.patience
+    }
+
+    /// Whether a frame did not end in time. Nothing that belongs to such a device is destroyed: its work may go on.
+    pub fn is_hung(&self) -> bool {
+        self.hung.load(Ordering::Relaxed)
     }
 
     /// Validation messages so far; empty without validation.
@@ -453,6 +527,7 @@ fn create_device(
         .then(|| ext::conservative_rasterization::NAME.as_ptr())
         .into_iter()
         .chain(present.then(|| khr::swapchain::NAME.as_ptr()))
+        .chain(have.shares_memory.then(|| khr::external_memory_fd::NAME.as_ptr()))
         .collect();
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
@@ -466,6 +541,14 @@ fn create_device(
 
 impl Drop for Gpu {
     fn drop(&mut self) {
+        if self.is_hung() {
+            // The work of the device may use all of it until the process ends.
+            if let Ok(mut allocator) = self.allocator.lock() {
+                std::mem::forget(allocator.take());
+            }
+            std::mem::forget(self.entry.clone());
+            return;
+        }
         self.save_pipeline_cache();
         // SAFETY: every object made from the device holds an `Arc` of this, so all are gone; the allocator frees its
         // memory before the device goes.

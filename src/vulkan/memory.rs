@@ -6,32 +6,38 @@ use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use std::sync::Arc;
 
 /// Where a resource lies.
-enum Memory {
+pub(super) enum Memory {
     /// Nowhere yet.
     None,
     /// In memory of its own.
     Own(Allocation),
     /// In memory that others lie in too.
     Shared(#[expect(dead_code, reason = "kept as long as the resource is")] Arc<SharedMemory>),
+    /// In memory of its own that another device has too, or that is another device's: bytes and memory type.
+    #[cfg_attr(not(unix), expect(dead_code, reason = "shared by file descriptors alone"))]
+    Handed { memory: vk::DeviceMemory, bytes: u64, kind: u32 },
 }
 
 /// Memory of several resources.
-struct SharedMemory {
+pub(super) struct SharedMemory {
     gpu: Arc<Gpu>,
     allocation: Option<Allocation>,
 }
 
 impl Drop for SharedMemory {
     fn drop(&mut self) {
+        if self.gpu.is_hung() {
+            return;
+        }
         free(&self.gpu, self.allocation.take());
     }
 }
 
 /// A buffer and its memory.
 pub struct Buffer {
-    gpu: Arc<Gpu>,
+    pub(super) gpu: Arc<Gpu>,
     pub(super) handle: vk::Buffer,
-    memory: Memory,
+    pub(super) memory: Memory,
     /// Bytes.
     pub size: u64,
 }
@@ -183,7 +189,7 @@ impl Memory {
     fn own(&mut self) -> Option<Allocation> {
         match std::mem::replace(self, Memory::None) {
             Memory::Own(allocation) => Some(allocation),
-            Memory::None | Memory::Shared(_) => None,
+            Memory::None | Memory::Shared(_) | Memory::Handed { .. } => None,
         }
     }
 }
@@ -218,8 +224,13 @@ impl Buffer {
     /// # Errors
     /// Out of memory.
     pub fn bare(gpu: &Arc<Gpu>, name: &str, size: u64, usage: vk::BufferUsageFlags) -> Result<Buffer> {
+        Buffer::with(gpu, name, size, vk::BufferCreateInfo::default().usage(usage))
+    }
+
+    /// A buffer of that size without memory, made as `info` says.
+    pub(super) fn with(gpu: &Arc<Gpu>, name: &str, size: u64, info: vk::BufferCreateInfo<'_>) -> Result<Buffer> {
         let size = size.max(16).next_multiple_of(4);
-        let info = vk::BufferCreateInfo::default().size(size).usage(usage);
+        let info = info.size(size);
         // SAFETY: a plain creation; the handle is destroyed in `drop`.
         let handle = unsafe { gpu.device.create_buffer(&info, None) }
             .map_err(|_| VulkanError::OutOfMemory { what: format!("'{name}'"), mib: size as f64 / 1048576.0 })?;
@@ -247,7 +258,7 @@ impl Buffer {
     pub fn bytes(&self) -> &[u8] {
         match &self.memory {
             Memory::Own(allocation) => allocation.mapped_slice().unwrap_or(&[]),
-            Memory::None | Memory::Shared(_) => &[],
+            Memory::None | Memory::Shared(_) | Memory::Handed { .. } => &[],
         }
     }
 
@@ -255,15 +266,28 @@ impl Buffer {
     pub fn bytes_mut(&mut self) -> &mut [u8] {
         match &mut self.memory {
             Memory::Own(allocation) => allocation.mapped_slice_mut().unwrap_or(&mut []),
-            Memory::None | Memory::Shared(_) => &mut [],
+            Memory::None | Memory::Shared(_) | Memory::Handed { .. } => &mut [],
         }
+    }
+}
+
+impl std::fmt::Debug for Buffer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "buffer of {} bytes", self.size)
     }
 }
 
 impl Drop for Buffer {
     fn drop(&mut self) {
+        if self.gpu.is_hung() {
+            return;
+        }
         // SAFETY: owners drop buffers only after the frames that use them have finished.
         unsafe { self.gpu.device.destroy_buffer(self.handle, None) };
+        if let Memory::Handed { memory, .. } = self.memory {
+            // SAFETY: the only buffer in it is gone; another device's hold on the same bytes is its own.
+            unsafe { self.gpu.device.free_memory(memory, None) };
+        }
         free(&self.gpu, self.memory.own());
     }
 }
@@ -354,6 +378,9 @@ impl Image {
 
 impl Drop for Image {
     fn drop(&mut self) {
+        if self.gpu.is_hung() {
+            return;
+        }
         // SAFETY: as for buffers.
         unsafe { self.gpu.device.destroy_image(self.handle, None) };
         free(&self.gpu, self.memory.own());
@@ -404,6 +431,9 @@ impl View {
 
 impl Drop for View {
     fn drop(&mut self) {
+        if self.image.gpu.is_hung() {
+            return;
+        }
         // SAFETY: as for buffers.
         unsafe { self.image.gpu.device.destroy_image_view(self.handle, None) };
     }

@@ -11,19 +11,21 @@ mod memory;
 mod painter;
 mod pipeline;
 mod sampler;
+mod share;
 mod surface;
 
 pub use ash::vk;
 pub use command::{Commands, FrameSlot, Recording};
 pub use format::Format;
-pub use gpu::{DeviceInfo, Features, Gpu, GpuOptions, list_devices};
+pub use gpu::{DeviceInfo, Faults, Features, Gpu, GpuOptions, list_devices};
 pub use memory::{Bare, Buffer, Image, ImageDesc, Upload, View, ViewDesc, lay_together};
-pub use painter::{Painter, Pixels};
+pub use painter::{Painter, PixelSource, Pixels};
 pub use pipeline::{
     Attachments, BindingDesc, Blend, DescriptorPool, DescriptorSet, DescriptorWrite, DrawState, Pipeline, PipelineDesc,
     SpecValue, Stage, StageDesc,
 };
 pub use sampler::{Sampler, SamplerDesc};
+pub use share::DeviceId;
 pub use surface::{Surface, WindowHandles};
 
 /// What went wrong in the Vulkan layer, and what a user can do about it.
@@ -70,6 +72,9 @@ pub enum VulkanError {
     /// The device was lost (a driver's reset, often a shader that runs too long).
     #[error("the GPU was lost during {0}: a shader ran too long, or the driver failed")]
     Lost(String),
+    /// A frame did not end in the time that is allowed for it ([`GpuOptions::patience`]).
+    #[error("the GPU has not finished a frame within {0:.0} s: a shader hangs, or asks for too much")]
+    Hung(f64),
     /// The device cannot show pictures in this window.
     #[error("{0} cannot present to this window. Name another device with --window-device (see `conelab devices`)")]
     CannotPresent(String),

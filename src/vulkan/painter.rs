@@ -6,7 +6,7 @@ use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_ash_renderer::allocator::DefaultAllocator;
 use egui_ash_renderer::{DynamicRendering, Options, RenderMode, Renderer, vulkan};
 use gpu_allocator::MemoryLocation;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 use std::time::Instant;
 
 /// Where the painter's pixels go.
@@ -23,6 +23,8 @@ struct Slot {
     acquired: vk::Semaphore,
     /// Where each picture's new pixels wait to be copied; kept, because making host memory takes milliseconds.
     staging: Vec<Option<Buffer>>,
+    /// What its last frame reads of another device: held until that frame has finished.
+    reads: Vec<(Arc<Buffer>, Arc<Buffer>)>,
 }
 
 /// A picture of 8-bit RGBA pixels that the program changes often.
@@ -39,7 +41,16 @@ pub struct Pixels<'a> {
     /// Width and height.
     pub size: [u32; 2],
     /// RGBA, 8 bits each, tightly packed.
-    pub bytes: &'a [u8],
+    pub source: PixelSource<'a>,
+}
+
+/// Where new pixels are.
+#[derive(Clone, Copy)]
+pub enum PixelSource<'a> {
+    /// In main memory.
+    Bytes(&'a [u8]),
+    /// In a buffer of another device with the same [`super::DeviceId`], made by [`Buffer::shareable`] and handed over.
+    Shared(&'a Arc<Buffer>),
 }
 
 /// Paints user interfaces.
@@ -53,6 +64,8 @@ pub struct Painter {
     pool: vk::DescriptorPool,
     layout: vk::DescriptorSetLayout,
     upload_pool: vk::CommandPool,
+    /// Buffers of another device, and the same bytes here.
+    taken: Vec<(Weak<Buffer>, Arc<Buffer>)>,
     target: Target,
     format: vk::Format,
     gpu: Arc<Gpu>,
@@ -113,6 +126,7 @@ impl Painter {
             pool: vk::DescriptorPool::null(),
             layout,
             upload_pool: vk::CommandPool::null(),
+            taken: Vec::new(),
             target,
             format,
             gpu: gpu.clone(),
@@ -135,7 +149,7 @@ impl Painter {
             for _ in 0..SLOTS {
                 let commands = FrameSlot::new(gpu, 3)?;
                 let acquired = d.create_semaphore(&Default::default(), None).map_err(at())?;
-                painter.slots.push(Slot { commands, acquired, staging: Vec::new() });
+                painter.slots.push(Slot { commands, acquired, staging: Vec::new(), reads: Vec::new() });
             }
         }
         painter.make_renderer(pictures)?;
@@ -194,6 +208,7 @@ impl Painter {
         let slot = self.frame % SLOTS;
         let begun = Instant::now();
         let ticks = self.slots[slot].commands.wait()?;
+        self.slots[slot].reads.clear();
         self.waited_ms = begun.elapsed().as_secs_f64() * 1e3;
         if let Some(ticks) = ticks
             && let [a, b, c] = ticks[..]
@@ -212,17 +227,26 @@ impl Painter {
         self.stage(pixels)?;
         let Painter { slots, renderer, pictures, gpu, .. } = self;
         let Some(renderer) = renderer else { return Ok(false) };
-        let Slot { commands, acquired, staging } = &mut slots[slot];
+        let Slot { commands, acquired, staging, reads } = &mut slots[slot];
         let mut result = Ok(());
         let to_present = swap.is_some();
         let semaphores = swap.map(|drawn| (*acquired, drawn));
         commands.submit_between(semaphores, |commands| {
             commands.timestamp();
             for p in pixels {
-                if let (Some(Picture { image: Some((image, _)), .. }), Some(Some(staging))) =
-                    (pictures.get(p.picture), staging.get(p.picture))
-                {
-                    commands.refill(image, staging);
+                let Some(Picture { image: Some((image, _)), .. }) = pictures.get(p.picture) else { continue };
+                match p.source {
+                    PixelSource::Bytes(_) => {
+                        if let Some(Some(staging)) = staging.get(p.picture) {
+                            commands.refill(image, staging);
+                        }
+                    }
+                    PixelSource::Shared(theirs) => {
+                        if let Some((_, ours)) = reads.iter().find(|(from, _)| Arc::ptr_eq(from, theirs)) {
+                            commands.take_over(ours);
+                            commands.refill(image, ours);
+                        }
+                    }
                 }
             }
             commands.timestamp();
@@ -305,17 +329,36 @@ impl Painter {
     }
 
     fn stage(&mut self, pixels: &[Pixels<'_>]) -> Result<()> {
-        let Slot { staging, .. } = &mut self.slots[self.frame % SLOTS];
+        // Pictures change their size: what their old buffers were is let go.
+        let held = |b: &Arc<Buffer>| Arc::strong_count(b) > 1;
+        self.taken.retain(|(theirs, ours)| theirs.strong_count() > 0 || held(ours));
+        let Slot { staging, reads, .. } = &mut self.slots[self.frame % SLOTS];
         staging.resize_with(self.pictures.len(), || None);
         for p in pixels.iter().filter(|p| p.picture < self.pictures.len()) {
-            let size = (p.bytes.len() as u64).max(16).next_multiple_of(4);
+            let bytes = match p.source {
+                PixelSource::Bytes(bytes) => bytes,
+                PixelSource::Shared(theirs) => {
+                    let known = self.taken.iter().find(|(from, _)| std::ptr::eq(from.as_ptr(), Arc::as_ptr(theirs)));
+                    let ours = match known {
+                        Some((_, ours)) => ours.clone(),
+                        None => {
+                            let ours = Arc::new(Buffer::taken(&self.gpu, "picture of the engine", theirs)?);
+                            self.taken.push((Arc::downgrade(theirs), ours.clone()));
+                            ours
+                        }
+                    };
+                    reads.push((theirs.clone(), ours));
+                    continue;
+                }
+            };
+            let size = (bytes.len() as u64).max(16).next_multiple_of(4);
             let place = &mut staging[p.picture];
             if place.as_ref().is_none_or(|b| b.size != size) {
                 let usage = vk::BufferUsageFlags::TRANSFER_SRC;
                 *place = Some(Buffer::new(&self.gpu, "picture upload", size, usage, MemoryLocation::CpuToGpu)?);
             }
             if let Some(buffer) = place {
-                buffer.bytes_mut()[..p.bytes.len()].copy_from_slice(p.bytes);
+                buffer.bytes_mut()[..bytes.len()].copy_from_slice(bytes);
             }
         }
         Ok(())

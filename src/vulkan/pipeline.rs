@@ -376,6 +376,9 @@ fn graphics(
 
 impl Drop for Pipeline {
     fn drop(&mut self) {
+        if self.gpu.is_hung() {
+            return;
+        }
         // SAFETY: owners drop pipelines only after the frames that use them have finished; null handles are ignored.
         unsafe {
             self.gpu.device.destroy_pipeline(self.handle, None);
@@ -483,6 +486,9 @@ impl DescriptorPool {
 
 impl Drop for DescriptorPool {
     fn drop(&mut self) {
+        if self.gpu.is_hung() {
+            return;
+        }
         // SAFETY: owners drop pools only after the frames that use their sets have finished.
         unsafe { self.gpu.device.destroy_descriptor_pool(self.handle, None) };
     }

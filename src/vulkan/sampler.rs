@@ -54,6 +54,9 @@ impl Sampler {
 
 impl Drop for Sampler {
     fn drop(&mut self) {
+        if self.gpu.is_hung() {
+            return;
+        }
         // SAFETY: owners drop samplers only after the frames that use them have finished.
         unsafe { self.gpu.device.destroy_sampler(self.handle, None) };
     }

@@ -1,6 +1,7 @@
 //! Builds sessions in the background, on a thread of its own: read, compile, check, plan, make pipelines. Nothing waits
 //! for it.
 
+use super::guard::guarded;
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::scene::Scene;
@@ -64,7 +65,7 @@ pub fn run(jobs: &Receiver<Job>, done: &Sender<Done>) {
     for job in jobs {
         let start = Instant::now();
         let (side, key, preview) = (job.side, job.key.clone(), job.preview);
-        let result = build(job);
+        let result = guarded(|| build(job)).unwrap_or_else(|why| Err(LabError::Request(why)));
         if done.send(Done { side, key, preview, start, result }).is_err() {
             return;
         }

@@ -1,6 +1,7 @@
 //! A and B compared, on a thread.
 
 use super::compare::{self, Mode, Shown};
+use super::guard::guarded;
 use super::{ComparisonOf, Side, Workbench};
 use std::sync::Arc;
 
@@ -11,7 +12,7 @@ impl Workbench {
         if !matches!(mode, Mode::Difference | Mode::Perceived) || self.comparing {
             return;
         }
-        let shown = |s: &Side| s.picture.as_ref().map(|p| Shown { size: p.size, bytes: p.bytes.clone() });
+        let shown = |s: &Side| s.picture.as_ref().and_then(|p| Some(Shown { size: p.size, bytes: p.bytes.clone()? }));
         let (Some(a), Some(b)) = (shown(&self.sides[0]), shown(&self.sides[1])) else { return };
         let of = (mode, self.view.gain, a.bytes.clone(), b.bytes.clone());
         let same =
@@ -23,8 +24,11 @@ impl Workbench {
         self.comparing = true;
         let (out, wake, gain) = (self.compared.0.clone(), self.wake.clone(), self.view.gain);
         std::thread::spawn(move || {
-            let map = if mode == Mode::Difference { compare::difference(&a, &b, gain) } else { compare::flip(&a, &b) };
-            let _ = out.send((mode, map));
+            let map = || match mode {
+                Mode::Difference => compare::difference(&a, &b, gain),
+                _ => compare::flip(&a, &b),
+            };
+            let _ = out.send((mode, guarded(map).ok().flatten()));
             wake();
         });
     }

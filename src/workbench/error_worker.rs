@@ -1,6 +1,7 @@
 //! The error worker: the error of what is shown against its cached reference, on a thread of its own: the picture is
 //! rendered afresh, as a sweep would, so that neither the picture's frames nor their times wait for it.
 
+use super::guard::guarded;
 use super::report::Report;
 use super::request::LightState;
 use crate::capture::scene_hash;
@@ -108,7 +109,7 @@ pub(super) fn run(requests: &Receiver<ErrorRequest>, send: &dyn Fn(Report)) {
         }
         for latest in newest.into_iter().flatten() {
             let (side, request, query) = (latest.side, latest.request, latest.query.clone());
-            let result = loaded.evaluate(latest).map_err(|e| e.to_string());
+            let result = guarded(|| loaded.evaluate(latest).map_err(|e| e.to_string())).flatten();
             send(Report::Error(ErrorResult { side, request, query, result }));
         }
     }

@@ -2,6 +2,7 @@
 
 use super::{NewPixels, Workbench, events};
 use serde_json::json;
+use std::time::Instant;
 
 impl Workbench {
     /// Pixels that the host has not shown yet.
@@ -14,9 +15,14 @@ impl Workbench {
         self.shown_revision
     }
 
+    /// Number of A's last picture, and when it was finished.
+    pub fn last_picture(&self) -> Option<(u64, Instant)> {
+        self.sides[0].picture.as_ref().map(|p| (p.frame, p.finished))
+    }
+
     /// The host has shown them.
     pub fn painted(&mut self) {
-        if let Some(picture) = self.sides[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.0 == 0)) {
+        if let Some(picture) = self.sides[0].picture.as_ref().filter(|_| self.pixels.iter().any(|p| p.picture == 0)) {
             self.shown_revision = picture.revision;
         }
         if !self.pixels.is_empty() {
@@ -24,8 +30,9 @@ impl Workbench {
                 self.pixels.clear();
                 return;
             }
-            let list: Vec<usize> = self.pixels.iter().map(|p| p.0).collect();
-            let prints: Vec<String> = self.pixels.iter().map(|p| events::fingerprint(&p.2)).collect();
+            let list: Vec<usize> = self.pixels.iter().map(|p| p.picture).collect();
+            let print = |p: &NewPixels| p.bytes.as_ref().map(|b| events::fingerprint(b));
+            let prints: Vec<Option<String>> = self.pixels.iter().map(print).collect();
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let request = self.sides[0].picture.as_ref().map_or(0, |p| p.request);
             self.event(

@@ -12,6 +12,7 @@ pub mod engine;
 pub mod error_worker;
 pub mod events;
 mod gallery;
+mod guard;
 mod help;
 mod history;
 mod host;
@@ -37,7 +38,7 @@ use crate::graph::run::Redo;
 use crate::graph::source::Diagnostic;
 use crate::lab::{LabError, Workspace};
 use crate::scene::Scene;
-use crate::vulkan::GpuOptions;
+use crate::vulkan::{Buffer, DeviceId, GpuOptions, PixelSource, Pixels};
 use compare::{Map, Mode};
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{TextureId, Ui, Vec2};
@@ -57,8 +58,26 @@ const COMPARISON: usize = 2;
 /// The picture of the inspector.
 const INSPECTOR: usize = 3;
 
-/// New pixels of a picture: its number, size and RGBA bytes.
-pub type NewPixels = (usize, [u32; 2], Arc<Vec<u8>>);
+/// New pixels of a picture: RGBA, 8 bits each, in main memory, on the engine's device, or both.
+pub struct NewPixels {
+    /// The picture's number.
+    pub picture: usize,
+    /// Width and height.
+    pub size: [u32; 2],
+    /// In main memory.
+    pub bytes: Option<Arc<Vec<u8>>>,
+    /// In memory that the window's device can take.
+    pub shared: Option<Arc<Buffer>>,
+}
+
+impl NewPixels {
+    /// As the painter takes them.
+    pub fn source(&self) -> Option<Pixels<'_>> {
+        let bytes = || self.bytes.as_ref().map(|b| PixelSource::Bytes(b));
+        let source = self.shared.as_ref().map(PixelSource::Shared).or_else(bytes)?;
+        Some(Pixels { picture: self.picture, size: self.size, source })
+    }
+}
 
 /// The pictures of a comparison: mode, gain, pixels of A, pixels of B.
 type ComparisonOf = (Mode, u32, Arc<Vec<u8>>, Arc<Vec<u8>>);
@@ -228,6 +247,11 @@ impl Workbench {
         })
     }
 
+    /// The device that paints: where the engine's can share memory with it, pictures stay there.
+    pub fn paints_on(&mut self, device: DeviceId) {
+        self.desired.window = Some(device);
+    }
+
     fn event(&mut self, name: &str, fields: serde_json::Value) {
         if let Some(events) = &mut self.events {
             events.write(name, fields);
@@ -327,6 +351,9 @@ impl Workbench {
             self.comparison_of = None;
         }
         self.compare();
+        // Comparisons are made, and events say what pictures hold, in main memory.
+        let maps = matches!(self.view.mode, Mode::Difference | Mode::Perceived) && self.desired.sides[1].is_some();
+        self.desired.bytes = maps || self.events.is_some();
         self.send_request();
         self.request_errors(ui);
     }
@@ -453,6 +480,7 @@ fn differs(a: &RenderRequest, b: &RenderRequest) -> bool {
         || (a.revision, a.scene_revision) != (b.revision, b.scene_revision)
         || a.inspect != b.inspect
         || a.table != b.table
+        || (a.window, a.bytes) != (b.window, b.bytes)
 }
 
 fn ron_files(folder: &Path) -> Vec<PathBuf> {

@@ -1,8 +1,9 @@
 //! Messages from other threads: the engine, the watch over files, comparisons, the inspector.
 
 use super::compare::MODES;
+use super::engine::Engine;
 use super::report::{PictureReport, Report};
-use super::{COMPARISON, INSPECTOR, Workbench, events, save};
+use super::{COMPARISON, NewPixels, Workbench, events, save};
 use crate::experiment::{CameraChoice, Experiment};
 use crate::graph::hot_reload::Change;
 use crate::lab::{Viewpoint, viewpoint_of};
@@ -10,6 +11,9 @@ use crate::scene::Scene;
 use serde_json::json;
 use std::sync::Arc;
 use std::time::Duration;
+
+/// How often a working engine is looked at.
+const LOOK: Duration = Duration::from_secs(1);
 
 impl Workbench {
     /// Takes in the messages of other threads. Returns how soon to poll again, if a message is about to come.
@@ -20,26 +24,44 @@ impl Workbench {
         while let Ok((mode, map)) = self.compared.1.try_recv() {
             self.comparing = false;
             if let Some(map) = map {
-                self.pixels.retain(|p| p.0 != COMPARISON);
-                self.pixels.push((COMPARISON, map.size, map.bytes.clone()));
+                self.show(NewPixels {
+                    picture: COMPARISON,
+                    size: map.size,
+                    bytes: Some(map.bytes.clone()),
+                    shared: None,
+                });
                 let (mean, max, differing) = (map.mean, map.max, map.differing);
                 let name = MODES.iter().find(|m| m.0 == mode).map_or("", |m| m.1);
                 self.event("compared", json!({ "mode": name, "mean": mean, "max": max, "differing": differing }));
                 self.comparison = Some((mode, map));
             }
         }
+        if let Some(why) = self.engine.failure() {
+            self.replace_engine(&why);
+        }
         if let Some(pixels) = self.inspector.take(&self.wake) {
-            self.pixels.retain(|p| p.0 != INSPECTOR);
-            self.pixels.push(pixels);
+            self.show(pixels);
         }
         self.poll_chart();
-        match self.watch.take() {
+        let wait = match self.watch.take() {
             Ok(changed) => {
                 self.files_changed(&changed);
                 None
             }
             Err(wait) => wait,
-        }
+        };
+        // An engine that stands still wakes nobody.
+        if self.engine.works() { Some(wait.map_or(LOOK, |w| w.min(LOOK))) } else { wait }
+    }
+
+    /// Leaves an engine that is no longer there to itself, and starts another.
+    fn replace_engine(&mut self, why: &str) {
+        let failed = self.sent.clone();
+        self.engine = Engine::replace(self.home.clone(), self.gpu.clone(), self.wake.clone(), failed);
+        (self.loading, self.device) = (None, None);
+        let text = format!("{why}. Another engine was started: change a shader or a value, or press Restart device");
+        self.event("engine replaced", json!({ "text": text }));
+        self.trouble = Some(text);
     }
 
     fn report(&mut self, report: Report) {
@@ -71,6 +93,17 @@ impl Workbench {
                 self.mended(side);
             }
             Report::Picture(picture) => self.picture_came(picture),
+            Report::Pixels { side, frame, bytes } => {
+                if let Some(picture) = self.sides[side].picture.as_mut().filter(|p| p.frame == frame) {
+                    // A window that did not keep up has none of this frame.
+                    if picture.shared.is_none() {
+                        let size = picture.size;
+                        self.pixels.retain(|p| p.picture != side);
+                        self.pixels.push(NewPixels { picture: side, size, bytes: Some(bytes.clone()), shared: None });
+                    }
+                    picture.bytes = Some(bytes);
+                }
+            }
             Report::Loading(what, part) => self.loading = Some((what, part)),
             Report::Loaded(scene) => self.loaded(scene),
             Report::LoadFailed(why) => {
@@ -94,10 +127,24 @@ impl Workbench {
                 self.status = text;
             }
             Report::Error(result) => self.error_came(result),
+            Report::DeviceFailed(text) => {
+                self.event("device failed", json!({ "text": text }));
+                self.device = None;
+                self.trouble = Some(text);
+            }
             Report::Trouble(text) => {
                 self.event("trouble", json!({ "text": text }));
                 self.trouble = Some(text);
             }
+        }
+    }
+
+    /// Has the host show these in place of those that wait for it.
+    fn show(&mut self, pixels: NewPixels) {
+        // A frame whose picture was left out shows what there was.
+        if pixels.bytes.is_some() || pixels.shared.is_some() {
+            self.pixels.retain(|p| p.picture != pixels.picture);
+            self.pixels.push(pixels);
         }
     }
 
@@ -115,15 +162,16 @@ impl Workbench {
         self.times.note(&picture);
         self.chart.note(&picture);
         let number = picture.side;
-        self.pixels.retain(|p| p.0 != number);
-        self.pixels.push((number, picture.size, picture.bytes.clone()));
+        let (bytes, shared) = (picture.bytes.clone(), picture.shared.clone());
+        self.show(NewPixels { picture: number, size: picture.size, bytes, shared });
         if self.events.is_some() {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let fields = json!({ "side": number, "preview": picture.preview, "frame": picture.frame,
                 "request": picture.request, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
                 "asleep": picture.asleep.len(),
                 "since_change_ms": since,
-                "fingerprint": events::fingerprint(&picture.bytes) });
+                "shared": picture.shared.is_some(),
+                "fingerprint": picture.bytes.as_ref().map(|b| events::fingerprint(b)) });
             self.event("picture", fields);
         }
         self.sides[number].picture = Some(picture);

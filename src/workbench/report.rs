@@ -8,10 +8,12 @@ use crate::graph::source::Diagnostic;
 use crate::graph::table::Table;
 use crate::lab::Texels;
 use crate::scene::Scene;
+use crate::vulkan::Buffer;
 use crate::workbench::error_worker::ErrorResult;
 use crate::workbench::request::InspectTarget;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// The device that the engine uses.
 #[derive(Clone, Debug)]
@@ -56,12 +58,16 @@ pub struct PictureReport {
     pub preview: bool,
     /// Counts the side's frames.
     pub frame: u64,
+    /// When it was finished, as the engine saw it.
+    pub finished: Instant,
     /// Time of the scene, s.
     pub time: f64,
     /// Width and height.
     pub size: [u32; 2],
-    /// RGBA, 8 bits each.
-    pub bytes: Arc<Vec<u8>>,
+    /// RGBA, 8 bits each, in main memory; where the window takes pictures from the device, only if it asked for them.
+    pub bytes: Option<Arc<Vec<u8>>>,
+    /// The same on the device.
+    pub shared: Option<Arc<Buffer>>,
     /// (pass number, ms) on the GPU.
     pub passes: Vec<(usize, f64)>,
     /// Numbers of the passes that slept.
@@ -109,6 +115,15 @@ pub enum Report {
     },
     /// A frame has finished.
     Picture(PictureReport),
+    /// The pixels of a side's frame, now in main memory too.
+    Pixels {
+        /// 0 is A, 1 is B.
+        side: usize,
+        /// Counts the side's frames.
+        frame: u64,
+        /// RGBA, 8 bits each.
+        bytes: Arc<Vec<u8>>,
+    },
     /// A scene is being loaded: what, and the share done.
     Loading(String, f32),
     /// A scene is there.
@@ -125,6 +140,8 @@ pub enum Report {
     Captured(Result<PathBuf, String>),
     /// The error of what is shown.
     Error(ErrorResult),
+    /// The device failed, and what can be done: the engine waits.
+    DeviceFailed(String),
     /// Something the user should know.
     Trouble(String),
 }

@@ -6,6 +6,7 @@ use crate::graph::run::Redo;
 use crate::graph::source::{At, Loc, Sources};
 use crate::lab::Session;
 use crate::scene::{Camera, Light, Scene};
+use crate::vulkan::DeviceId;
 use glam::Vec3;
 
 /// A graph with the parameters that are not at their defaults.
@@ -108,6 +109,10 @@ pub struct RenderRequest {
     pub inspect: Option<InspectTarget>,
     /// The table shown, by the number that the graph gives it, of side A.
     pub table: Option<usize>,
+    /// The device that paints the pictures; with one of the same kind they stay in its memory.
+    pub window: Option<DeviceId>,
+    /// Whether every picture is wanted in main memory; the last one before a rest comes there all the same.
+    pub bytes: bool,
     /// Counts requests.
     pub number: u64,
 }

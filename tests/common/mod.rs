@@ -44,8 +44,10 @@ pub fn conelab(home: &Path) -> Command {
 /// Standard output of a command that succeeds.
 #[track_caller]
 pub fn succeeds(command: &mut Command) -> String {
-    let (ok, out, err) = text(&command.output().unwrap());
-    assert!(ok, "{command:?}\n{out}{err}");
+    let output = command.output().unwrap();
+    let (ok, out, err) = text(&output);
+    // A program that was killed, or crashed, says nothing itself.
+    assert!(ok, "{command:?} ended with {}\n{out}{err}", output.status);
     out
 }
 
@@ -54,7 +56,7 @@ pub fn succeeds(command: &mut Command) -> String {
 pub fn fails(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let (_, out, err) = text(&output);
-    assert_eq!(output.status.code(), Some(1), "{command:?}\n{out}{err}");
+    assert_eq!(output.status.code(), Some(1), "{command:?} ended with {}\n{out}{err}", output.status);
     err
 }
 
@@ -66,7 +68,7 @@ fn text(output: &Output) -> (bool, String, String) {
 /// A software device with the validation layer.
 pub fn lab(home: &Path) -> Lab {
     let home = Workspace { root: home.to_path_buf(), cache: Some(cache()) };
-    let options = GpuOptions { device: Some(device()), validation: true, cache: None };
+    let options = GpuOptions { device: Some(device()), validation: true, ..GpuOptions::default() };
     Lab::open(home, options).unwrap()
 }
 

@@ -1,6 +1,7 @@
 //! Work on the shown picture in the background, while frames go on: its error, a capture.
 
 use super::super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
+use super::super::guard::guarded;
 use super::super::report::Report;
 use super::super::save;
 use super::Run;
@@ -39,8 +40,8 @@ impl Run<'_> {
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");
         std::thread::spawn(move || {
-            let result = save::take(&lab, &experiment, scene, &folder, resources);
-            out.send(Report::Captured(result.map_err(|e| e.to_string())));
+            let take = || save::take(&lab, &experiment, scene, &folder, resources).map_err(|e| e.to_string());
+            out.send(Report::Captured(guarded(take).flatten()));
         });
     }
 }

@@ -62,9 +62,19 @@ impl Run<'_> {
         session.set_time(self.clock.now);
         session.set_redo(self.desired.redo);
         side.frame += 1;
-        side.submitted.push_back(Submitted { request: side.answered, time: self.clock.now, frame: side.frame });
+        side.submitted.push_back(Submitted {
+            request: side.answered,
+            time: self.clock.now,
+            frame: side.frame,
+            size: session.size(),
+        });
         let captured = std::mem::take(&mut self.renderdoc).then(renderdoc::begin);
         let delta = if self.desired.clock.playing { self.desired.clock.step.unwrap_or(0.0) } else { 0.0 };
+        let shares = self.lab.gpu.info.features.shares_memory && self.desired.window == Some(self.lab.gpu.info.id);
+        let bytes = session.program.shown_bytes();
+        let shared = shares.then(|| side.ring.free(&self.lab.gpu, bytes)).flatten();
+        session.program.read_back(self.desired.bytes || !shares);
+        session.program.hand_over(shared);
         let mut finished: Vec<FrameTimes> = session.frame(delta)?.into_iter().collect();
         side.frames_left -= 1;
         if !rest {
@@ -87,23 +97,43 @@ impl Run<'_> {
         for times in finished {
             let Some(submitted) = side.submitted.pop_front() else { continue };
             side.last_ms = times.gpu_ms;
-            let Some(bytes) = times.picture else { continue };
-            let size = side.session.as_ref().map_or(self.desired.size, |s| s.size());
+            let (bytes, shared) = (times.picture.map(Arc::new), times.handed);
+            side.owes = bytes.is_none().then_some(submitted.frame);
             self.out.send(Report::Picture(PictureReport {
                 side: number,
                 request: submitted.request,
                 revision: side.key.as_ref().map_or(0, |k| k.revision),
                 preview: side.preview,
                 frame: submitted.frame,
+                finished: Instant::now(),
                 time: submitted.time,
-                size: [size.0, size.1],
-                bytes: Arc::new(bytes),
+                size: submitted.size.into(),
+                bytes,
+                shared,
                 passes: times.passes,
                 asleep: times.asleep,
                 gpu_ms: times.gpu_ms,
                 cpu_ms: times.cpu_ms,
             }));
         }
+    }
+
+    /// Whether a side rests whose last picture is not in main memory yet.
+    pub(super) fn owes_pixels(&self) -> bool {
+        self.sides.iter().any(|s| s.owes.is_some() && s.session.is_some())
+    }
+
+    /// Brings the last picture of sides that rest into main memory, where it is compared and read out.
+    pub(super) fn pay_pixels(&mut self) -> Result<(), LabError> {
+        for number in 0..2 {
+            let side = &mut self.sides[number];
+            let Some(session) = side.session.as_mut().filter(|_| side.frames_left == 0) else { continue };
+            let Some(frame) = side.owes.take() else { continue };
+            if let Some(bytes) = session.program.shown_texels()? {
+                self.out.send(Report::Pixels { side: number, frame, bytes: Arc::new(bytes) });
+            }
+        }
+        Ok(())
     }
 
     /// Reads what the inspector and the table show: at once when still, else some times a second.

@@ -1,22 +1,26 @@
 //! The engine: a thread with a device of its own, which renders what the window requests.
 //!
-//! The window has a second device. That costs a copy of each picture through main memory (8 MB at 1080p, about a
-//! millisecond each way) and buys that the window answers while a frame takes seconds, and that a shader which hangs
-//! or kills its device takes nothing else with it.
+//! The window has a second device. So it answers while a frame takes seconds, and a shader which hangs or kills its
+//! device takes nothing else with it. Pictures stay in the memory of the physical device where both are on the same one
+//! and it can share memory; else each goes through main memory (8 MB at 1080p, about a millisecond each way).
 
 mod background;
 mod frames;
+mod pictures;
+mod pulse;
 mod reconcile;
 mod scenes;
 
 use super::builder::{self, Done, Job, Key};
 use super::error_worker::{self, ErrorQuery, ErrorRequest};
+use super::guard::said;
 use super::report::{DeviceReport, Report};
 use super::request::{InspectTarget, RenderRequest};
 use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
 use crossbeam_channel::{Receiver, Sender, select, unbounded};
+use pulse::Pulse;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -49,18 +53,60 @@ pub struct Engine {
     /// Messages from the engine.
     pub reports: Receiver<Report>,
     thread: Option<std::thread::JoinHandle<Vec<String>>>,
+    pulse: Arc<Pulse>,
 }
 
 impl Engine {
     /// Starts the engine; `wake` is called after each report.
     pub fn start(home: Workspace, options: GpuOptions, wake: Arc<dyn Fn() + Send + Sync>) -> Engine {
-        let desired = Arc::new(Mutex::new(RenderRequest::default()));
+        Engine::begin(home, options, wake, None)
+    }
+
+    /// Starts an engine in the place of one that failed. It waits for a change of what is requested, or to be restarted: the
+    /// same again would fail again.
+    pub fn replace(
+        home: Workspace,
+        options: GpuOptions,
+        wake: Arc<dyn Fn() + Send + Sync>,
+        failed: RenderRequest,
+    ) -> Engine {
+        Engine::begin(home, options, wake, Some(failed))
+    }
+
+    fn begin(
+        home: Workspace,
+        options: GpuOptions,
+        wake: Arc<dyn Fn() + Send + Sync>,
+        failed: Option<RenderRequest>,
+    ) -> Engine {
+        let waits = failed.is_some();
+        let patience = Some(options.patience.unwrap_or(FRAME_PATIENCE));
+        let options = GpuOptions { patience, ..options };
+        let pulse = Arc::new(Pulse::new(options.patience));
+        let heart = pulse.clone();
+        let desired = Arc::new(Mutex::new(failed.unwrap_or_default()));
         let (orders, inbox) = unbounded();
         let (outbox, reports) = unbounded();
         let out = Out { reports: outbox, wake };
         let shared = desired.clone();
-        let thread = std::thread::spawn(move || run(home, options, &shared, &inbox, &out));
-        Engine { desired, orders, reports, thread: Some(thread) }
+        let thread = std::thread::spawn(move || run(home, options, &shared, &inbox, &out, &heart, waits));
+        Engine { desired, orders, reports, thread: Some(thread), pulse }
+    }
+
+    /// Why the engine is no longer there to render: its thread has ended, or stands still in the driver.
+    pub fn failure(&mut self) -> Option<String> {
+        if self.thread.as_ref().is_some_and(std::thread::JoinHandle::is_finished) {
+            let ended = self.thread.take().map(std::thread::JoinHandle::join);
+            let said = ended.and_then(Result::err).map_or(String::new(), |p| format!(": {}", said(p.as_ref())));
+            return Some(format!("the engine ended by a fault in the program{said}"));
+        }
+        let silent = self.pulse.silent()?;
+        Some(format!("the engine has not answered for {:.0} s: the driver stands still", silent.as_secs_f64()))
+    }
+
+    /// Whether something is expected of the engine, so that [`Engine::failure`] is worth asking.
+    pub fn works(&self) -> bool {
+        self.pulse.beats()
     }
 
     /// Works towards this from now on.
@@ -107,6 +153,7 @@ struct Submitted {
     request: u64,
     time: f64,
     frame: u64,
+    size: (u32, u32),
 }
 
 #[derive(Default)]
@@ -131,6 +178,10 @@ struct Side {
     lights: bool,
     checked: Option<Key>,
     inspected: Option<InspectTarget>,
+    /// Pictures for the window's device.
+    ring: pictures::Ring,
+    /// The last frame reported, if its pixels are not in main memory yet.
+    owes: Option<u64>,
 }
 
 struct Run<'a> {
@@ -166,22 +217,29 @@ fn run(
     desired: &Mutex<RenderRequest>,
     inbox: &Receiver<Order>,
     out: &Out,
+    pulse: &Pulse,
+    mut waits: bool,
 ) -> Vec<String> {
     let mut messages = Vec::new();
     loop {
-        match session(home.clone(), &options, desired, inbox, out, &mut messages) {
+        if std::mem::take(&mut waits) {
+            pulse.rest();
+            // What was requested must not be tried again unchanged: it may kill the device each time.
+            for order in inbox {
+                match order {
+                    Order::Quit => return messages,
+                    Order::Restart | Order::Reconcile => break,
+                    _ => {}
+                }
+            }
+        }
+        pulse.beat();
+        match session(home.clone(), &options, desired, inbox, (out, pulse), &mut messages) {
             Ok(End::Quit) => return messages,
             Ok(End::Restart) => {}
             Err(e) => {
-                out.send(Report::Trouble(format!("{e}. Change a shader or a value, or press Restart device")));
-                // What was requested must not be tried again unchanged: it may kill the device each time.
-                for order in inbox {
-                    match order {
-                        Order::Quit => return messages,
-                        Order::Restart | Order::Reconcile => break,
-                        _ => {}
-                    }
-                }
+                out.send(Report::DeviceFailed(format!("{e}. Change a shader or a value, or press Restart device")));
+                waits = true;
             }
         }
     }
@@ -199,11 +257,12 @@ fn session(
     options: &GpuOptions,
     desired: &Mutex<RenderRequest>,
     inbox: &Receiver<Order>,
-    out: &Out,
+    (out, pulse): (&Out, &Pulse),
     messages: &mut Vec<String>,
 ) -> Result<End, LabError> {
     let lab = Lab::open(home, options.clone())?;
     let gpu = lab.gpu.clone();
+    pulse.frames_take(gpu.patience());
     out.send(Report::Device(DeviceReport { name: gpu.info.name.clone(), driver: gpu.info.driver.clone() }));
     let (jobs, job_box) = unbounded();
     let (done_out, done) = unbounded();
@@ -235,11 +294,15 @@ fn session(
         let mut orders: Vec<Order> = Vec::new();
         let mut builds: Vec<Done> = Vec::new();
         let mut scenes = Vec::new();
+        let mut rests = false;
         if idle {
+            pulse.rest();
+            let wait = if run.owes_pixels() { crossbeam_channel::after(REST) } else { crossbeam_channel::never() };
             select! {
                 recv(inbox) -> order => orders.push(order.unwrap_or(Order::Quit)),
                 recv(done) -> d => builds.extend(d),
                 recv(loaded) -> l => scenes.extend(l),
+                recv(wait) -> _ => rests = true,
             }
         } else if awaits {
             select! {
@@ -248,6 +311,7 @@ fn session(
                 default(Duration::from_millis(10)) => {}
             }
         }
+        pulse.beat();
         orders.extend(inbox.try_iter());
         builds.extend(done.try_iter());
         scenes.extend(loaded.try_iter());
@@ -257,7 +321,10 @@ fn session(
         if orders.iter().any(|o| matches!(o, Order::Restart)) {
             break Ok(End::Restart);
         }
-        let step = run.handle(orders, builds, scenes, desired).and_then(|()| run.render());
+        let step = match rests {
+            true => run.pay_pixels(),
+            false => run.handle(orders, builds, scenes, desired).and_then(|()| run.render()),
+        };
         if let Err(e) = step {
             break Err(e);
         }
@@ -266,8 +333,9 @@ fn session(
         cancel.store(true, Ordering::Relaxed);
     }
     drop(run);
-    // Builds in work hold the device; what they send goes nowhere.
-    while !(builder.is_finished() && worker.is_finished()) {
+    // Builds in work hold the device; what they send goes nowhere. A device that hangs is left to them.
+    while !(builder.is_finished() && worker.is_finished() || gpu.is_hung()) {
+        pulse.beat();
         let _ = done.recv_timeout(Duration::from_millis(10));
     }
     messages.extend(gpu.messages());
@@ -363,8 +431,14 @@ impl Run<'_> {
     }
 }
 
+/// How long a frame may take before the device counts as hung, unless the options say otherwise.
+const FRAME_PATIENCE: Duration = Duration::from_secs(20);
+
 /// A frame as long as this is worth waiting for, ms.
 const LONG: f64 = 4.0;
+
+/// How long nothing is to be done before the last picture is brought into main memory.
+const REST: Duration = Duration::from_millis(60);
 
 /// How long frames wait for a build.
 const PATIENCE: Duration = Duration::from_millis(300);

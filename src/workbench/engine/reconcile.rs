@@ -157,7 +157,7 @@ impl Run<'_> {
 
     /// Says what is wrong; what ran runs on. Only a lost device is an error of the engine.
     fn fail(&mut self, number: usize, key: Key, error: LabError) -> Result<(), LabError> {
-        if let LabError::Vulkan(VulkanError::Lost(_)) = error {
+        if let LabError::Vulkan(VulkanError::Lost(_) | VulkanError::Hung(_)) = error {
             return Err(error);
         }
         let revision = key.revision;

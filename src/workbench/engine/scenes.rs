@@ -1,5 +1,6 @@
 //! The scene that is desired, loaded on a thread of its own.
 
+use super::super::guard::guarded;
 use super::super::report::Report;
 use super::Run;
 use crate::lab::LabError;
@@ -26,7 +27,7 @@ impl Run<'_> {
         out.send(Report::Loading(key.0.clone(), 0.0));
         std::thread::spawn(move || {
             let last = Mutex::new(Instant::now());
-            let scene = Scene::open(&key.0, &|what, part| {
+            let progress = |what: &str, part: f32| {
                 if cancel.load(Ordering::Relaxed) {
                     return ControlFlow::Break(());
                 }
@@ -38,8 +39,10 @@ impl Run<'_> {
                     out.send(Report::Loading(what.to_string(), part));
                 }
                 ControlFlow::Continue(())
-            });
-            let scene = scene.and_then(|scene| scene.under(Path::new(&key.1)));
+            };
+            let open = || Scene::open(&key.0, &progress).and_then(|scene| scene.under(Path::new(&key.1)));
+            let scene =
+                guarded(open).map_err(|message| SceneError::Model { path: key.0.clone().into(), message }).flatten();
             // A load that was replaced by another has nobody to report to.
             if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
                 let _ = loaded.send(scene.map(Arc::new));

@@ -77,7 +77,8 @@ impl Inspector {
         if done.fitted {
             (self.tone.low, self.tone.high) = (done.tone.low, done.tone.high);
         }
-        let pixels = (INSPECTOR, done.decoded.size, done.image.clone());
+        let (size, bytes) = (done.decoded.size, Some(done.image.clone()));
+        let pixels = super::NewPixels { picture: INSPECTOR, size, bytes, shared: None };
         self.shown = Some(done);
         Some(pixels)
     }

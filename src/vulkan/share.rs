@@ -1,0 +1,184 @@
+//! Buffers that two devices of one physical device share, so that a picture made on one is painted by the other without
+//! passing through main memory.
+//!
+//! No semaphore is shared: who reads is told of a picture when the fence of the frame that wrote it has been waited for
+//! (the host orders the two), and holds the buffer until its own frame has finished. So neither device ever waits on
+//! the other's queue, and a shader that hangs in one holds up nothing in the other.
+
+use super::memory::Memory;
+use super::{Buffer, Commands, Gpu, Result, VulkanError, vk};
+use ash::khr;
+use std::sync::Arc;
+
+/// Which physical device and driver a device belongs to; memory is shared between equal ones (Vulkan 1.3,
+/// `VkPhysicalDeviceIDProperties`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct DeviceId {
+    pub(super) device: [u8; 16],
+    pub(super) driver: [u8; 16],
+}
+
+/// A copy in, and a copy out.
+const USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
+    vk::BufferUsageFlags::TRANSFER_SRC.as_raw() | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
+);
+
+#[cfg(unix)]
+const HANDLE: vk::ExternalMemoryHandleTypeFlags = vk::ExternalMemoryHandleTypeFlags::OPAQUE_FD;
+
+/// Whether a device can give away buffers and take those of another.
+#[cfg(unix)]
+pub(super) fn is_supported(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    extensions: &[vk::ExtensionProperties],
+) -> bool {
+    use vk::ExternalMemoryFeatureFlags as Can;
+    if !extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(khr::external_memory_fd::NAME)) {
+        return false;
+    }
+    let info = vk::PhysicalDeviceExternalBufferInfo::default().usage(USAGE).handle_type(HANDLE);
+    let mut found = vk::ExternalBufferProperties::default();
+    // SAFETY: `physical` comes from this instance.
+    unsafe { instance.get_physical_device_external_buffer_properties(physical, &info, &mut found) };
+    found.external_memory_properties.external_memory_features.contains(Can::EXPORTABLE | Can::IMPORTABLE)
+}
+
+#[cfg(not(unix))]
+pub(super) fn is_supported(_: &ash::Instance, _: vk::PhysicalDevice, _: &[vk::ExtensionProperties]) -> bool {
+    false
+}
+
+/// A buffer's memory as another device takes it.
+#[cfg(unix)]
+struct Handed {
+    file: std::os::fd::OwnedFd,
+    bytes: u64,
+    kind: u32,
+}
+
+#[cfg(unix)]
+impl Buffer {
+    /// A buffer in the device's memory that another device may take too ([`Buffer::taken`]).
+    ///
+    /// # Errors
+    /// Out of memory.
+    pub fn shareable(gpu: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
+        let mut buffer = Buffer::external(gpu, name, size)?;
+        // SAFETY: the handle is this device's.
+        let needs = unsafe { gpu.device.get_buffer_memory_requirements(buffer.handle) };
+        // SAFETY: `physical` is this device's.
+        let kinds = unsafe { gpu.instance.get_physical_device_memory_properties(gpu.physical) };
+        let fits = |i: &u32| {
+            let local = vk::MemoryPropertyFlags::DEVICE_LOCAL;
+            needs.memory_type_bits & (1 << i) != 0 && kinds.memory_types[*i as usize].property_flags.contains(local)
+        };
+        let kind = (0..kinds.memory_type_count).find(fits).ok_or_else(|| out_of_memory(name, needs.size))?;
+        let mut dedicated = vk::MemoryDedicatedAllocateInfo::default().buffer(buffer.handle);
+        let mut export = vk::ExportMemoryAllocateInfo::default().handle_types(HANDLE);
+        let info = vk::MemoryAllocateInfo::default()
+            .allocation_size(needs.size)
+            .memory_type_index(kind)
+            .push_next(&mut dedicated)
+            .push_next(&mut export);
+        // SAFETY: a plain allocation; the buffer frees it.
+        let memory = unsafe { gpu.device.allocate_memory(&info, None) }.map_err(|_| out_of_memory(name, needs.size))?;
+        buffer.memory = Memory::Handed { memory, bytes: needs.size, kind };
+        // SAFETY: the memory was made for this buffer.
+        unsafe { gpu.device.bind_buffer_memory(buffer.handle, memory, 0) }
+            .map_err(VulkanError::at(format!("bind the memory of '{name}'")))?;
+        Ok(buffer)
+    }
+
+    /// The same bytes as those of another device's shareable buffer, on this device.
+    ///
+    /// # Errors
+    /// The devices are not of one physical device; out of memory.
+    pub fn taken(gpu: &Arc<Gpu>, name: &str, from: &Buffer) -> Result<Buffer> {
+        use std::os::fd::IntoRawFd;
+        let handed = from.hand()?;
+        let mut buffer = Buffer::external(gpu, name, from.size)?;
+        // SAFETY: the handle is this device's; asking is required before memory is bound.
+        let _ = unsafe { gpu.device.get_buffer_memory_requirements(buffer.handle) };
+        let file = handed.file.into_raw_fd();
+        let mut dedicated = vk::MemoryDedicatedAllocateInfo::default().buffer(buffer.handle);
+        let mut import = vk::ImportMemoryFdInfoKHR::default().handle_type(HANDLE).fd(file);
+        let info = vk::MemoryAllocateInfo::default()
+            .allocation_size(handed.bytes)
+            .memory_type_index(handed.kind)
+            .push_next(&mut dedicated)
+            .push_next(&mut import);
+        // SAFETY: size and kind are those that the memory was made with, on a device with the same kinds (callers
+        // compare `DeviceId`s). A successful import owns the descriptor.
+        let memory = match unsafe { gpu.device.allocate_memory(&info, None) } {
+            Ok(memory) => memory,
+            Err(_) => {
+                // SAFETY: the import failed, so the descriptor is still this function's own.
+                drop(unsafe { <std::os::fd::OwnedFd as std::os::fd::FromRawFd>::from_raw_fd(file) });
+                return Err(out_of_memory(name, handed.bytes));
+            }
+        };
+        buffer.memory = Memory::Handed { memory, bytes: handed.bytes, kind: handed.kind };
+        // SAFETY: the memory was made for a buffer of this size and usage.
+        unsafe { gpu.device.bind_buffer_memory(buffer.handle, memory, 0) }
+            .map_err(VulkanError::at(format!("bind the memory of '{name}'")))?;
+        Ok(buffer)
+    }
+
+    fn hand(&self) -> Result<Handed> {
+        use std::os::fd::{FromRawFd, OwnedFd};
+        let Memory::Handed { memory, bytes, kind } = self.memory else {
+            return Err(VulkanError::Window("a picture's memory cannot be shared".into()));
+        };
+        let loader = khr::external_memory_fd::Device::new(&self.gpu.instance, &self.gpu.device);
+        let info = vk::MemoryGetFdInfoKHR::default().memory(memory).handle_type(HANDLE);
+        // SAFETY: the memory was made to be exported as this; each call makes a descriptor of its own.
+        let file = unsafe { loader.get_memory_fd(&info) }.map_err(VulkanError::at("share a picture's memory"))?;
+        // SAFETY: the descriptor is new and nobody else's.
+        Ok(Handed { file: unsafe { OwnedFd::from_raw_fd(file) }, bytes, kind })
+    }
+
+    fn external(gpu: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
+        let mut external = vk::ExternalMemoryBufferCreateInfo::default().handle_types(HANDLE);
+        Buffer::with(gpu, name, size, vk::BufferCreateInfo::default().usage(USAGE).push_next(&mut external))
+    }
+}
+
+#[cfg(not(unix))]
+impl Buffer {
+    /// No buffer: this system's kind of sharing is not built.
+    ///
+    /// # Errors
+    /// Always; devices say so ([`super::Features::shares_memory`]).
+    pub fn shareable(_: &Arc<Gpu>, name: &str, size: u64) -> Result<Buffer> {
+        Err(out_of_memory(name, size))
+    }
+
+    /// No buffer, as [`Buffer::shareable`].
+    ///
+    /// # Errors
+    /// Always.
+    pub fn taken(_: &Arc<Gpu>, name: &str, from: &Buffer) -> Result<Buffer> {
+        Err(out_of_memory(name, from.size))
+    }
+}
+
+fn out_of_memory(name: &str, bytes: u64) -> VulkanError {
+    VulkanError::OutOfMemory { what: format!("'{name}'"), mib: bytes as f64 / f64::from(1 << 20) }
+}
+
+impl Commands<'_> {
+    /// Gives a shared buffer, written by copies, to the other device.
+    pub fn hand_over(&mut self, buffer: &Buffer) {
+        let copy = (vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_WRITE);
+        let none = (vk::PipelineStageFlags2::NONE, vk::AccessFlags2::NONE);
+        self.pass_on(buffer, (self.family(), vk::QUEUE_FAMILY_EXTERNAL), copy, none);
+    }
+
+    /// Takes a shared buffer that the other device has handed over, to copy from.
+    pub fn take_over(&mut self, buffer: &Buffer) {
+        let copy = (vk::PipelineStageFlags2::ALL_TRANSFER, vk::AccessFlags2::TRANSFER_READ);
+        let none = (vk::PipelineStageFlags2::NONE, vk::AccessFlags2::NONE);
+        self.pass_on(buffer, (vk::QUEUE_FAMILY_EXTERNAL, self.family()), none, copy);
+    }
+}
