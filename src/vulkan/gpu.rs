@@ -41,7 +41,15 @@ impl Faults {
     pub fn hang(&self) {
         self.0.store(2, Ordering::Relaxed);
     }
+
+    /// The next wait panics.
+    pub fn panic(&self) {
+        self.0.store(3, Ordering::Relaxed);
+    }
 }
+
+/// How long a wait for the fence of [`Faults::hang`] takes.
+const SHORT: Duration = Duration::from_millis(50);
 
 /// Optional abilities, asked for only by the switches that need them.
 #[derive(Clone, Copy, Debug, Default)]
@@ -389,7 +397,6 @@ impl Gpu {
         let physical = choose(&instance, options.device.as_deref())?;
         let info = describe(&instance, physical);
         let family = queue_family(&instance, physical).unwrap_or(0);
-        let is_software = info.kind == "cpu" && options.faults.is_none();
         let device = create_device(&instance, physical, family, &info.features, display.is_some())?;
         // SAFETY: the family and index were used to create the device.
         let queue = unsafe { device.get_device_queue(family, 0) };
@@ -409,6 +416,7 @@ impl Gpu {
         // SAFETY: the driver checks the blob's header; its content was checked against its checksum.
         let pipeline_cache = unsafe { device.create_pipeline_cache(&cache_info, None) }
             .map_err(VulkanError::at("create the pipeline cache"))?;
+        let patience = options.patience.map(|p| if info.kind == "cpu" { p * 10 } else { p });
         let names = debug_utils.then(|| Names { device: ext::debug_utils::Device::new(&instance, &device) });
         Ok(Arc::new(Gpu {
             device,
@@ -419,7 +427,7 @@ impl Gpu {
             names,
             info,
             cache_file,
-            patience: options.patience.map(|p| if is_software { p * 10 } else { p }),
+            patience,
             hung: AtomicBool::new(false),
             faults: options.faults.clone(),
             messenger,
@@ -437,14 +445,18 @@ impl Gpu {
         if self.is_hung() {
             return Err(hung());
         }
-        let mut fence = fence;
+        let (mut fence, mut patience) = (fence, self.patience);
         match self.faults.as_ref().map_or(0, |f| f.0.swap(0, Ordering::Relaxed)) {
             0 => {}
             1 => return Err(at()(vk::Result::ERROR_DEVICE_LOST)),
-            // SAFETY: a plain creation; a hung device leaves what it has.
-            _ => fence = unsafe { self.device.create_fence(&vk::FenceCreateInfo::default(), None) }.map_err(at())?,
+            2 => {
+                // SAFETY: a plain creation; a hung device leaves what it has.
+                fence = unsafe { self.device.create_fence(&vk::FenceCreateInfo::default(), None) }.map_err(at())?;
+                patience = Some(SHORT);
+            }
+            _ => panic!("a panic that was asked for by a test"),
         }
-        let limit = self.patience.map_or(u64::MAX, |p| u64::try_from(p.as_nanos()).unwrap_or(u64::MAX));
+        let limit = patience.map_or(u64::MAX, |p| u64::try_from(p.as_nanos()).unwrap_or(u64::MAX));
         // SAFETY: the fence is this device's.
         match unsafe { self.device.wait_for_fences(&[fence], true, limit) } {
             Err(vk::Result::TIMEOUT) => {

@@ -1,0 +1,130 @@
+//! The engine of the workbench when its device fails: the driver resets it, a shader hangs, the program has a fault. What was
+//! asked for last is not tried again by itself, and the next request is answered with a picture.
+
+mod common;
+
+use common::root;
+use conelab::lab::Workspace;
+use conelab::vulkan::{Faults, GpuOptions};
+use conelab::workbench::engine::Engine;
+use conelab::workbench::report::{PictureReport, Report};
+use conelab::workbench::request::{RenderRequest, SideRequest};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+const PATIENCE: Duration = Duration::from_secs(120);
+
+struct Driver {
+    engine: Engine,
+    faults: Arc<Faults>,
+    options: GpuOptions,
+    home: Workspace,
+    request: RenderRequest,
+}
+
+impl Driver {
+    fn start() -> Driver {
+        let faults = Arc::new(Faults::default());
+        let options = GpuOptions {
+            device: Some(common::device()),
+            validation: true,
+            faults: Some(faults.clone()),
+            ..GpuOptions::default()
+        };
+        let home = Workspace { root: root().to_path_buf(), cache: Some(common::cache()) };
+        let engine = Engine::start(home.clone(), options.clone(), Arc::new(|| {}));
+        let side = SideRequest { graph: "preview.ron".into(), params: Vec::new() };
+        let request = RenderRequest {
+            sides: [Some(side), None],
+            scene: "triangles".into(),
+            size: (64, 48),
+            bytes: true,
+            ..RenderRequest::default()
+        };
+        Driver { engine, faults, options, home, request }
+    }
+
+    /// Asks for another frame.
+    fn ask(&mut self) {
+        self.request.number += 1;
+        self.request.clock.jumps += 1;
+        self.engine.request(self.request.clone());
+    }
+
+    /// The first report that `pick` takes.
+    fn report<T>(&self, what: &str, mut pick: impl FnMut(Report) -> Option<T>) -> T {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            let left = until.saturating_duration_since(Instant::now());
+            let report = self.engine.reports.recv_timeout(left).unwrap_or_else(|e| panic!("{what}: {e}"));
+            if let Some(found) = pick(report) {
+                return found;
+            }
+        }
+    }
+
+    /// The graph's picture of the last request.
+    fn picture(&self) -> PictureReport {
+        let number = self.request.number;
+        self.report("a picture", |r| match r {
+            Report::Picture(p) if !p.preview && p.request >= number && p.bytes.is_some() => Some(p),
+            _ => None,
+        })
+    }
+
+    fn failure(&self) -> String {
+        self.report("a failure", |r| match r {
+            Report::DeviceFailed(why) => Some(why),
+            _ => None,
+        })
+    }
+}
+
+#[test]
+fn a_hundred_lost_devices_and_twenty_that_hang_are_replaced() {
+    let mut driver = Driver::start();
+    driver.ask();
+    let first = driver.picture();
+    for turn in 0..120 {
+        let hangs = turn % 6 == 5;
+        if hangs {
+            driver.faults.hang();
+        } else {
+            driver.faults.lose();
+        }
+        driver.ask();
+        let why = driver.failure();
+        let expected = if hangs { "has not finished a frame" } else { "the GPU was lost" };
+        assert!(why.contains(expected) && why.contains("Change a shader or a value"), "{why}");
+        driver.ask();
+        let again = driver.picture();
+        assert!(again.bytes == first.bytes, "another picture after failure {turn}");
+        assert!(driver.engine.failure().is_none());
+    }
+    assert_eq!(driver.engine.stop(PATIENCE), Vec::<String>::new());
+}
+
+#[test]
+fn an_engine_that_ends_by_a_fault_says_so_and_another_goes_on() {
+    let mut driver = Driver::start();
+    driver.ask();
+    let first = driver.picture();
+    driver.faults.panic();
+    driver.ask();
+    let until = Instant::now() + PATIENCE;
+    let why = loop {
+        assert!(Instant::now() < until, "the fault was not noticed");
+        match driver.engine.failure() {
+            Some(why) => break why,
+            None => std::thread::sleep(Duration::from_millis(5)),
+        }
+    };
+    assert!(why.contains("a fault in the program") && why.contains("asked for by a test"), "{why}");
+    let failed = driver.request.clone();
+    driver.engine = Engine::replace(driver.home.clone(), driver.options.clone(), Arc::new(|| {}), failed);
+    // It does not try the same again by itself.
+    assert!(driver.engine.reports.recv_timeout(Duration::from_millis(300)).is_err());
+    driver.ask();
+    assert!(driver.picture().bytes == first.bytes);
+    assert_eq!(driver.engine.stop(PATIENCE), Vec::<String>::new());
+}
