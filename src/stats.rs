@@ -1,6 +1,6 @@
 //! Measurements of a run, in the one JSON schema of the program (`docs/stats.md`).
 
-use crate::graph::param::Params;
+use crate::graph::param::{OFF, Params};
 use crate::graph::run::{FrameTimes, Redo};
 use crate::lab::Session;
 use crate::vulkan::DeviceInfo;
@@ -163,6 +163,7 @@ fn param_values(params: &Params) -> BTreeMap<String, serde_json::Value> {
         .iter()
         .zip(&params.values)
         .map(|(p, v)| (p.name.clone(), serde_json::to_value(v).unwrap_or(serde_json::Value::Null)))
+        .chain((!params.off.is_empty()).then(|| (OFF.to_string(), params.off.clone().into())))
         .collect()
 }
 

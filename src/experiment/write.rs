@@ -3,7 +3,7 @@
 use super::adapt::change_to;
 use super::spans::{self, Body, Edits};
 use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera};
-use crate::graph::param::{Params, Value};
+use crate::graph::param::Params;
 use crate::graph::source::{At, Diagnostic, Loc};
 use crate::lab::LabError;
 use crate::scene::Scene;
@@ -26,11 +26,11 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)
         .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
-    let differing = params.list.iter().zip(&params.values).zip(&defaults.values).filter(|((_, v), d)| v != d);
+    let unchanged: Vec<(String, String)> = defaults.texts().collect();
     let wanted = Wanted {
         scene: scene_text(&experiment.scene, path),
         environment: environment_in(experiment, path),
-        params: differing.map(|((p, v), _)| (p.name.clone(), value_text(v))).collect(),
+        params: params.texts().filter(|text| !unchanged.contains(text)).collect(),
         values: &params,
         experiment,
     };
@@ -75,11 +75,10 @@ pub fn resolved_text(
     let single = |name: &str| !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1;
     let lights = scene.lights.iter().filter(|l| single(&l.name));
     resolved.lights = lights.map(|l| (Loc { value: l.name.clone(), at: At::default() }, change_to(l))).collect();
-    let all = params.list.iter().zip(&params.values).map(|(p, v)| (p.name.clone(), value_text(v)));
     let wanted = Wanted {
         scene: scene_text(&experiment.scene, path),
         environment: environment_in(&resolved, path),
-        params: all.collect(),
+        params: params.texts().collect(),
         values: &params,
         experiment: &resolved,
     };
@@ -115,7 +114,7 @@ fn read_back(
     let first_message = |list: &[Diagnostic]| list.first().map_or(String::new(), |d| d.message.clone());
     let found = Experiment::from_text(path, text).map_err(|e| wrong(first_message(&e)))?;
     let values = match found.params_over(defaults) {
-        Ok(params) => params.values,
+        Ok(params) => (params.values, params.off),
         Err(LabError::Input(list)) => return Err(wrong(first_message(&list))),
         Err(e) => return Err(e),
     };
@@ -128,7 +127,7 @@ fn read_back(
         ("sky", found.sky == experiment.sky),
         ("environment", same_environment(&found, experiment)),
         ("lights", changes(&found) == changes(experiment)),
-        ("params", values == params.values),
+        ("params", values == (params.values.clone(), params.off.clone())),
     ];
     match checks.iter().find(|c| !c.1) {
         Some((field, _)) => Err(wrong(format!("`{field}` differs"))),
@@ -193,13 +192,6 @@ fn between(folder: &Path, file: &Path) -> PathBuf {
     let common = folder.components().zip(file.components()).take_while(|(a, b)| a == b).count();
     let up = folder.components().skip(common).map(|_| Component::ParentDir);
     up.chain(file.components().skip(common)).collect()
-}
-
-fn value_text(value: &Value) -> String {
-    match value {
-        Value::Choice(name) => quoted(name),
-        other => other.to_string(),
-    }
 }
 
 fn quoted(text: &str) -> String {

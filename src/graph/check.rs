@@ -212,6 +212,18 @@ impl Check<'_> {
         }
     }
 
+    /// Names in braces are parameters.
+    pub(super) fn caption(&mut self, caption: &Loc<String>) {
+        for part in caption.value.split('{').skip(1) {
+            let name = part.split('}').next().unwrap_or_default();
+            if !self.graph.params.list.iter().any(|p| p.name == name) && self.is_unknown(name) {
+                let found = self.graph.sources.error(caption.at, format!("no parameter is named '{name}'"));
+                let known: Vec<&str> = self.graph.params.list.iter().map(|p| p.name.as_str()).collect();
+                self.errors.push(found.nearest(name, known));
+            }
+        }
+    }
+
     pub(super) fn voxels(&mut self, voxels: &VoxelsDecl) {
         for name in [&voxels.occupied, &voxels.color, &voxels.normal] {
             let known = self.texture_name(name);

@@ -46,6 +46,8 @@ pub struct GraphFile {
     pub checks: Items<CheckDecl>,
     /// Settings that make no sense together.
     pub refuse: Items<RefuseDecl>,
+    /// What a picture is said to be made with: a line, where `{NAME}` is the value of a parameter.
+    pub caption: Option<Loc<String>>,
     /// The `Vec2` parameter that a click on the picture sets.
     pub pointer: Option<Loc<String>>,
     /// Buffers that may be read as tables.

@@ -6,7 +6,7 @@ use super::file::{
     BufferDecl, CheckDecl, CompareDecl, GraphFile, PassDecl, RawText, RefuseDecl, SceneNeeds, TextureDecl, ViewDecl,
     VoxelsDecl, ungrouped,
 };
-use super::param::{Param, Params};
+use super::param::{OFF, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
 use super::table::TableDecl;
 use super::value::{Named, ordered};
@@ -57,6 +57,8 @@ pub struct Graph {
     pub checks: Vec<CheckDecl>,
     /// Settings that make no sense together.
     pub refuse: Vec<RefuseDecl>,
+    /// What a picture is said to be made with; see [`Graph::caption`].
+    caption: Option<Loc<String>>,
     /// The `Vec2` parameter that a click on the picture sets: pixels from the picture's top left corner, negative
     /// where nothing is pointed at.
     pub pointer: Option<String>,
@@ -126,6 +128,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         scene: None,
         checks: Vec::new(),
         refuse: Vec::new(),
+        caption: None,
         pointer: None,
         tables: Vec::new(),
         compare: Vec::new(),
@@ -180,6 +183,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
             fit.extend(values.value.0.into_iter().map(|v| (name.clone(), v)));
         }
         pointer = file.pointer.or(pointer);
+        graph.caption = file.caption.or(graph.caption);
         tables.extend(file.tables.0);
         for (slot, name) in [(&mut graph.output, file.output), (&mut graph.hdr, file.hdr)] {
             if let Some(name) = name {
@@ -196,7 +200,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let mut list = check_params(&decls, &graph.sources, &mut errors, &mut broken);
     graph.params_at = list.iter().map(|p| declared_at(&decls, &p.name)).collect();
     set_defaults(&mut list, &defaults, &graph.sources, whole, &broken, &mut errors);
-    graph.params = Params { retired, ..Params::new(list) };
+    let passes = graph.passes.iter().map(|p| p.value.name.value.clone()).collect();
+    graph.params = Params { retired, passes, ..Params::new(list) };
     graph.values = ordered(values, &graph.params, &graph.sources, &mut errors, &mut broken);
     let mut check = Check { graph: &graph, folders, errors, broken, whole, variables: HashSet::new() };
     check.names();
@@ -227,6 +232,9 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     if let Some(name) = &pointer {
         check.pointer(name);
     }
+    if let Some(caption) = &graph.caption {
+        check.caption(caption);
+    }
     check.tables(&tables);
     if let Some(needs) = &graph.scene {
         check.expr(&needs.value.max_edge);
@@ -243,6 +251,17 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         return Err(errors);
     }
     Ok(graph)
+}
+
+impl Graph {
+    /// What a picture is said to be made with, with these values of the parameters.
+    pub fn caption(&self, params: &Params) -> Option<String> {
+        let mut text = self.caption.as_ref()?.value.clone();
+        for (param, value) in params.list.iter().zip(&params.values) {
+            text = text.replace(&format!("{{{}}}", param.name), &value.to_string());
+        }
+        Some(text)
+    }
 }
 
 /// Reads a file and what it includes; whether all of it could be read.
@@ -314,6 +333,12 @@ fn check_params(
         }
         if list.iter().any(|p| p.name == name.value) {
             errors.push(sources.error(name.at, format!("parameter '{}' is declared twice", name.value)));
+            continue;
+        }
+        if name.value == OFF {
+            errors.push(
+                sources.error(name.at, format!("'{OFF}' is what passes are left out by: no parameter has that name")),
+            );
             continue;
         }
         if BUILTIN_VARIABLES.contains(&name.value.as_str()) {

@@ -62,6 +62,16 @@ impl Value {
     }
 }
 
+impl Value {
+    /// As RON, as experiments write it.
+    pub fn to_ron(&self) -> String {
+        match self {
+            Value::Choice(name) => format!("{name:?}"),
+            other => other.to_string(),
+        }
+    }
+}
+
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -373,13 +383,20 @@ pub struct Params {
     pub values: Vec<Value>,
     /// What to write instead of a parameter, or of `parameter=option`, that is no more.
     pub retired: Vec<(String, String)>,
+    /// Names of the graph's passes.
+    pub passes: Vec<String>,
+    /// Passes that are left out: what none but them writes is zeros.
+    pub off: Vec<String>,
 }
+
+/// The name under which passes are left out, where parameters are set; no parameter has it.
+pub const OFF: &str = "off";
 
 impl Params {
     /// All at their defaults.
     pub fn new(list: Vec<Param>) -> Params {
         let values = list.iter().map(|p| p.default.clone()).collect();
-        Params { list, values, retired: Vec::new() }
+        Params { list, values, ..Params::default() }
     }
 
     /// The module files in use: name of the module, file of its option.
@@ -405,6 +422,10 @@ impl Params {
     /// # Errors
     /// Unknown name (with the nearest), wrong kind, out of range.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
+        if name == OFF {
+            self.off = self.passes_of(text)?;
+            return Ok(());
+        }
         let Some(i) = self.index(name) else {
             if let Some(instead) = self.instead(name) {
                 return Err(format!("no parameter '{name}' in this graph: {instead}"));
@@ -416,6 +437,25 @@ impl Params {
         let instead = self.instead(&format!("{name}={}", text.trim().trim_matches('"')));
         self.values[i] = self.list[i].parse(text).map_err(|e| instead.map_or(e.clone(), |i| format!("{e}: {i}")))?;
         Ok(())
+    }
+
+    /// The passes that a list in RON names, in the graph's order.
+    fn passes_of(&self, text: &str) -> Result<Vec<String>, String> {
+        let wrong =
+            |_| format!("'{OFF}': expected a list of passes, as [\"{}\"]", self.passes.first().map_or("", |p| p));
+        let named: Vec<String> = options().from_str(text.trim()).map_err(wrong)?;
+        let known = |name: &&String| !self.passes.contains(name);
+        if let Some(unknown) = named.iter().find(known) {
+            let hint = nearest(unknown, self.passes.iter().map(String::as_str));
+            return Err(format!("'{OFF}': no pass '{unknown}'{}", hint.map_or(String::new(), |h| format!(" ({h})"))));
+        }
+        Ok(self.passes.iter().filter(|p| named.contains(p)).cloned().collect())
+    }
+
+    /// All that is set, by name and as RON: the parameters, and the passes left out where there are some.
+    pub fn texts(&self) -> impl Iterator<Item = (String, String)> {
+        let off = (!self.off.is_empty()).then(|| (OFF.to_string(), format!("{:?}", self.off)));
+        self.list.iter().zip(&self.values).map(|(param, value)| (param.name.clone(), value.to_ron())).chain(off)
     }
 
     /// The value of a parameter.

@@ -242,9 +242,17 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     let mut dropped = Vec::new();
     let mut steps = Vec::new();
     let mut settles = BTreeMap::new();
+    // What passes write that are left out.
+    let mut missing: Vec<Res> = Vec::new();
     for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
         if let Some(when) = pass.value.conditions().find(|when| !planner.condition(when)) {
             dropped.push((number, format!("{} is false", when.value.text)));
+            continue;
+        }
+        if input.params.off.contains(&pass.value.name.value) {
+            let uses = planner.steps(number, &pass.value, link).into_iter().flat_map(|s| s.uses);
+            missing.extend(uses.filter(|u| u.write).map(|u| u.res));
+            dropped.push((number, "it is off".into()));
             continue;
         }
         steps.extend(planner.steps(number, &pass.value, link));
@@ -252,6 +260,7 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
             settles.insert(number, (ex.at, planner.count(ex, 1, "settles")));
         }
     }
+    planner.without(&missing, &steps);
     written_anew(&planner.textures, &planner.buffers, &mut steps);
     planner.checks();
     let max_edge = planner.max_edge();
@@ -424,6 +433,23 @@ impl Planner<'_> {
         for refused in &self.graph.refuse {
             if self.condition(&refused.when) {
                 self.error(refused.when.at, refused.message.clone());
+            }
+        }
+    }
+
+    /// What passes that are off would have begun anew holds zeros in their place, and the picture has to come from somewhere.
+    fn without(&mut self, missing: &[Res], steps: &[Step]) {
+        for res in missing {
+            match *res {
+                Res::Texture(t, _) => self.textures[t].transient = false,
+                Res::Buffer(b, _) => self.buffers[b].transient = false,
+            }
+            let name = super::report::resource_name(self.graph, *res);
+            let written = steps.iter().flat_map(|s| &s.uses).any(|u| u.write && u.res == *res);
+            if !written && self.input.wanted.contains(&name) {
+                let writes =
+                    format!("nothing writes '{name}' when these passes are off: {}", self.input.params.off.join(", "));
+                self.errors.push(Diagnostic::error(super::source::Place::default(), writes));
             }
         }
     }

@@ -48,27 +48,37 @@ pub(super) fn make(
         let own = !texture.usage.is_empty() && !texture.transient;
         for (c, slot) in copies.iter_mut().enumerate().take(usize::from(own) * (1 + usize::from(texture.history))) {
             let (name, desc) = (&graph.textures[t].0, image_desc(graph, plan, t, c));
-            *slot = Some(match parts.image(name, c, &desc) {
-                Some(kept) => kept,
-                None => {
-                    change.resized += usize::from(parts.had(name));
-                    Arc::new(Image::new(gpu, desc)?)
-                }
-            });
+            *slot = Some(
+                match parts
+                    .image(name, c, &desc)
+                    .filter(|_| is_written(plan, |r| matches!(r, Res::Texture(n, _) if n == t)))
+                {
+                    Some(kept) => kept,
+                    None => {
+                        change.resized += usize::from(parts.had(name));
+                        Arc::new(Image::new(gpu, desc)?)
+                    }
+                },
+            );
         }
         made.images.push(copies);
     }
-    for ((name, _), b) in graph.buffers.iter().zip(&plan.buffers) {
+    for (n, ((name, _), b)) in graph.buffers.iter().zip(&plan.buffers).enumerate() {
         let mut copies = [None, None];
         let own = b.used && !b.transient;
         for (c, slot) in copies.iter_mut().enumerate().take(usize::from(own) * (1 + usize::from(b.history))) {
-            *slot = Some(match parts.buffer(name, c, b.size) {
-                Some(kept) => kept,
-                None => {
-                    change.resized += usize::from(parts.had(name));
-                    Arc::new(Buffer::new(gpu, name, b.size, BUFFER_USAGE, MemoryLocation::GpuOnly)?)
-                }
-            });
+            *slot = Some(
+                match parts
+                    .buffer(name, c, b.size)
+                    .filter(|_| is_written(plan, |r| matches!(r, Res::Buffer(m, _) if m == n)))
+                {
+                    Some(kept) => kept,
+                    None => {
+                        change.resized += usize::from(parts.had(name));
+                        Arc::new(Buffer::new(gpu, name, b.size, BUFFER_USAGE, MemoryLocation::GpuOnly)?)
+                    }
+                },
+            );
         }
         made.buffers.push(copies);
     }
@@ -78,6 +88,11 @@ pub(super) fn make(
         make_transients(gpu, graph, plan, &transients, &mut made)?;
     }
     Ok(made)
+}
+
+/// Whether a step writes it. What none does is zeros, and not what another program left.
+fn is_written(plan: &Plan, is: impl Fn(Res) -> bool) -> bool {
+    plan.steps.iter().flat_map(|s| &s.uses).any(|u| u.write && is(u.res))
 }
 
 fn image_desc(graph: &Graph, plan: &Plan, t: usize, copy: usize) -> ImageDesc {

@@ -1,6 +1,7 @@
 //! The bar at the top: experiments, scenes, undo, comparisons; and the line at the foot.
 
 use super::engine::Order;
+use super::overlay::Rows;
 use super::{Workbench, edit, ron_files, short, side_of};
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
@@ -39,6 +40,14 @@ impl Workbench {
             ui.toggle_value(&mut self.desired.continuous, "keep rendering").on_hover_text(
                 "Frames are rendered when something changes; with this also when nothing does, to measure",
             );
+            let mut timers = self.view.timers != Rows::None;
+            if ui.toggle_value(&mut timers, "timers").on_hover_text("T: GPU times on the picture").clicked() {
+                self.view.timers = if timers { Rows::Stages } else { Rows::None };
+            }
+            if timers {
+                ui.selectable_value(&mut self.view.timers, Rows::Stages, "stages");
+                ui.selectable_value(&mut self.view.timers, Rows::Passes, "passes");
+            }
             if ui.button("help").on_hover_text("F1").clicked() {
                 self.help = !self.help;
             }

@@ -12,6 +12,7 @@ pub enum Action {
     Play,
     Step,
     Flip,
+    Timers,
     Unpoint,
     Save,
     Capture,
@@ -19,7 +20,7 @@ pub enum Action {
 }
 
 /// Longer combinations first: Ctrl Z is also pressed when Ctrl Shift Z is.
-const KEYS: [(Action, KeyboardShortcut, &str); 11] = [
+const KEYS: [(Action, KeyboardShortcut, &str); 12] = [
     (Action::Help, KeyboardShortcut::new(Modifiers::NONE, Key::F1), "these keys"),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), "redo"),
     (Action::Undo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Z), "undo the last edit of parameters or lights"),
@@ -27,6 +28,7 @@ const KEYS: [(Action, KeyboardShortcut, &str); 11] = [
     (Action::Play, KeyboardShortcut::new(Modifiers::NONE, Key::Space), "play and pause time"),
     (Action::Step, KeyboardShortcut::new(Modifiers::NONE, Key::Period), "one frame on"),
     (Action::Flip, KeyboardShortcut::new(Modifiers::NONE, Key::X), "A or B, when comparing by flipping"),
+    (Action::Timers, KeyboardShortcut::new(Modifiers::NONE, Key::T), "times on the picture: stages, passes, none"),
     (Action::Unpoint, KeyboardShortcut::new(Modifiers::NONE, Key::Escape), "forget the point clicked on"),
     (
         Action::Save,

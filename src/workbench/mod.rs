@@ -19,7 +19,9 @@ mod host;
 mod inspector;
 mod messages;
 mod motion;
+mod nodes;
 mod opening;
+mod overlay;
 mod panel;
 mod paths;
 mod poll;
@@ -102,6 +104,7 @@ enum Tab {
     Surroundings,
     Times,
     Chart,
+    Graph,
     Inspector,
     Tables,
     Paths,
@@ -150,6 +153,7 @@ pub struct Workbench {
     tab: Tab,
     times: times::Times,
     chart: chart::Chart,
+    nodes: nodes::Nodes,
     inspector: inspector::Inspector,
     tables: tables::Tables,
     paths: paths::Paths,
@@ -222,6 +226,7 @@ impl Workbench {
             tab: Tab::Surroundings,
             times: times::Times::default(),
             chart: chart::Chart::default(),
+            nodes: nodes::Nodes::default(),
             inspector: inspector::Inspector::default(),
             tables: tables::Tables::default(),
             paths: paths::Paths::default(),
@@ -336,9 +341,10 @@ impl Workbench {
             .size_range(180.0..=760.0)
             .show(ui, |ui| self.right(ui, textures));
         let inspecting = self.tab == Tab::Inspector && self.inspector.fills_viewport();
-        egui::CentralPanel::no_frame().show(ui, |ui| match inspecting {
-            true => self.inspected(ui, textures),
-            false => self.picture(ui, textures),
+        egui::CentralPanel::no_frame().show(ui, |ui| match (inspecting, self.tab) {
+            (true, _) => self.inspected(ui, textures),
+            (false, Tab::Graph) => self.graph_view(ui),
+            (false, _) => self.picture(ui, textures),
         });
         if self.help {
             self.help_window(ui);
@@ -414,6 +420,7 @@ impl Workbench {
                 (Tab::Surroundings, "Scene"),
                 (Tab::Times, "Time"),
                 (Tab::Chart, "Chart"),
+                (Tab::Graph, "Graph"),
                 (Tab::Inspector, "Inspect"),
                 (Tab::Tables, "Tables"),
                 (Tab::Paths, "Motion"),
@@ -429,6 +436,7 @@ impl Workbench {
             Tab::Surroundings => self.surroundings(ui),
             Tab::Times => self.times_tab(ui),
             Tab::Chart => self.chart_tab(ui),
+            Tab::Graph => self.graph_tab(ui),
             Tab::Inspector => self.inspector_tab(ui, textures),
             Tab::Tables => self.tables_tab(ui),
             Tab::Paths => self.paths_tab(ui),
@@ -448,6 +456,7 @@ impl Workbench {
                     self.desired.clock.playing = false;
                     self.desired.clock.steps += 1;
                 }
+                help::Action::Timers => self.view.timers = self.view.timers.next(),
                 help::Action::Flip => self.view.flipped = !self.view.flipped,
                 help::Action::Unpoint => self.point_at(None),
                 help::Action::Save => self.save(false),

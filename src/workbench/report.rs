@@ -24,6 +24,17 @@ pub struct DeviceReport {
     pub driver: String,
 }
 
+/// Names of the resources that a pass uses.
+#[derive(Clone, Debug, Default)]
+pub struct PassUses {
+    /// Number of the pass.
+    pub pass: usize,
+    /// Resources it reads, of this or the last frame.
+    pub reads: Vec<String>,
+    /// Resources it writes.
+    pub writes: Vec<String>,
+}
+
 /// The graph of a side as it runs now.
 #[derive(Clone)]
 pub struct GraphInfo {
@@ -39,8 +50,8 @@ pub struct GraphInfo {
     pub scene_bytes: u64,
     /// Numbers of the passes that run, in order.
     pub passes: Vec<usize>,
-    /// (pass number, names of the resources it writes).
-    pub writes: Vec<(usize, Vec<String>)>,
+    /// What the passes that run read and write, in order.
+    pub uses: Vec<PassUses>,
     /// Findings that are no errors.
     pub warnings: Vec<Diagnostic>,
 }

@@ -2,6 +2,7 @@
 
 use super::compare::{MODES, Mode};
 use super::motion;
+use super::overlay::Rows;
 use super::{COMPARISON, Workbench};
 use egui::{Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
@@ -15,6 +16,8 @@ pub struct View {
     pub flipped: bool,
     /// What is typed as the file of the sky's picture.
     pub picture: String,
+    /// The times that are on the picture.
+    pub timers: Rows,
     /// Multiplies the absolute difference.
     pub gain: u32,
     /// Mouse.
@@ -33,6 +36,7 @@ impl Default for View {
             split: 0.5,
             flipped: false,
             picture: String::new(),
+            timers: Rows::None,
             gain: 8,
             steering: motion::Mode::Orbit,
             speed: 1.0,
@@ -133,6 +137,11 @@ impl Workbench {
         if self.stale() {
             painter.rect_stroke(shown, 0.0, Stroke::new(2.0, Color32::from_rgb(220, 80, 60)), egui::StrokeKind::Inside);
         }
+        let b = match self.view.mode {
+            Mode::Side => fit(area.split_left_right_at_fraction(0.5).1, a, scale),
+            _ => shown,
+        };
+        self.timers(&painter.with_clip_rect(area), shown, both.then_some(b));
         self.view.place = Some(shown);
         self.mouse(ui, &response, shown, a, both);
     }

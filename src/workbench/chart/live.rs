@@ -118,6 +118,13 @@ impl super::Chart {
         side.times.push(picture.gpu_ms);
     }
 
+    /// Metric and error of what a side shows, if it has been measured: 0 is perfect.
+    pub fn known_error(&self, side: usize, sent: u64) -> Option<(&str, f64)> {
+        let measured = self.live.sides[side].error.as_ref().filter(|e| e.request >= sent)?;
+        let error = measured.result.as_ref().ok()?.error?.error;
+        Some((measured.query.metric.as_str(), error))
+    }
+
     /// The device is another one: what it was asked is asked again.
     pub fn restarted(&mut self) {
         self.live.sides.iter_mut().for_each(|s| s.asked = None);

@@ -1,7 +1,7 @@
 //! Reconciling what a side shows with the desired state: values are set, or a build is swapped in.
 
 use super::super::builder::{Done, Job, Key};
-use super::super::report::{GraphInfo, Report};
+use super::super::report::{GraphInfo, PassUses, Report};
 use super::super::request::SideRequest;
 use super::Run;
 use crate::graph::source::{Diagnostic, Place};
@@ -173,22 +173,21 @@ impl Run<'_> {
 
 fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
     let plan = &session.program.plan;
-    let mut passes: Vec<usize> = Vec::new();
-    let mut writes: Vec<(usize, Vec<String>)> = Vec::new();
+    let mut uses: Vec<PassUses> = Vec::new();
     for step in &plan.steps {
-        if !passes.contains(&step.pass) {
-            passes.push(step.pass);
-            writes.push((step.pass, Vec::new()));
+        if uses.last().is_none_or(|last| last.pass != step.pass) {
+            uses.push(PassUses { pass: step.pass, ..PassUses::default() });
         }
-        for u in step.uses.iter().filter(|u| u.write) {
+        let Some(of) = uses.last_mut() else { continue };
+        for u in &step.uses {
             let name = match u.res {
-                Res::Texture(t, _) => session.graph.textures[t].0.clone(),
-                Res::Buffer(b, _) => session.graph.buffers[b].0.clone(),
+                Res::Texture(t, _) => &session.graph.textures[t].0,
+                Res::Buffer(b, _) => &session.graph.buffers[b].0,
             };
-            if let Some((_, list)) = writes.iter_mut().find(|w| w.0 == step.pass)
-                && !list.contains(&name)
-            {
-                list.push(name);
+            for list in [u.read.then_some(&mut of.reads), u.write.then_some(&mut of.writes)].into_iter().flatten() {
+                if !list.contains(name) {
+                    list.push(name.clone());
+                }
             }
         }
     }
@@ -198,8 +197,8 @@ fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
         textures: plan.textures.clone(),
         memory: session.program.memory(&session.graph),
         scene_bytes: session.scene_bytes(),
-        passes,
-        writes,
+        passes: uses.iter().map(|u| u.pass).collect(),
+        uses,
         warnings: loaded.warnings.clone(),
     }
 }

@@ -4,9 +4,12 @@ mod chart;
 mod export;
 mod history;
 
-use super::report::{GraphInfo, PictureReport};
+pub use chart::color;
+
+use super::report::{GraphInfo, PassUses, PictureReport};
 use super::{Tab, Workbench};
 use crate::graph::run::Redo;
+use crate::stats::spread;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
 use history::{Frame, History, Row};
 use std::path::{Path, PathBuf};
@@ -54,6 +57,19 @@ impl Times {
             self.memory.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
             self.scene_bytes = info.scene_bytes;
         }
+    }
+
+    /// (number, median time in ms) of the passes of a side, in order; empty without frames.
+    pub fn medians(&self, side: usize) -> Vec<(usize, f64)> {
+        let history = &self.sides[side];
+        let frames = || history.frames.iter();
+        let median = |pass: usize| spread(frames().map(|f| f.pass(pass)).collect()).median;
+        history.passes.iter().filter(|_| !history.frames.is_empty()).map(|p| (p.0, median(p.0))).collect()
+    }
+
+    /// Median time of a side's frames from their first to their last command on the GPU, ms; 0 without frames.
+    pub fn median_total(&self, side: usize) -> f64 {
+        spread(self.sides[side].frames.iter().map(|f| f.gpu_ms).collect()).median
     }
 
     fn refresh(&mut self, both: bool) {
@@ -166,8 +182,8 @@ impl Workbench {
 
     fn pass_writes(&self, side: usize, name: &str) -> &[String] {
         let Some(info) = &self.sides[side].info else { return &[] };
-        let named = |w: &&(usize, Vec<String>)| info.graph.passes.get(w.0).is_some_and(|p| p.value.name.value == name);
-        info.writes.iter().find(named).map_or(&[], |w| &w.1)
+        let named = |u: &&PassUses| info.graph.passes.get(u.pass).is_some_and(|p| p.value.name.value == name);
+        info.uses.iter().find(named).map_or(&[], |u| &u.writes)
     }
 
     /// Opens the first texture that a pass writes in the inspector.
