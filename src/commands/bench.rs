@@ -173,7 +173,7 @@ fn counts(args: &BenchArgs, rounds: usize, frames: Frames) -> Result<(usize, Fra
 fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     let mut experiments = Vec::new();
     for path in &args.experiments {
-        let mut experiment = Experiment::read(path).map_err(LabError::Input)?;
+        let mut experiment = Experiment::read(&super::found(path)).map_err(LabError::Input)?;
         experiment.scene = args.scene.clone().unwrap_or(experiment.scene);
         experiments.push(experiment);
     }
