@@ -228,7 +228,7 @@ fn text_that_is_no_ron() {
     "#);
     let bench = bench();
     std::fs::write(bench.path("passes/graph.ron"), [0xff, 0xfe, 0x00]).unwrap();
-    assert_snapshot!(bench.findings(), @"passes/graph.ron: error: cannot read it: stream did not contain valid UTF-8");
+    assert_snapshot!(bench.findings(), @"passes/graph.ron: error: cannot read it: it is not UTF-8 text");
 }
 
 #[test]

@@ -194,7 +194,7 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
 /// The configurations of a record whose experiments the command line names; all if it names none.
 fn chosen<'r>(args: &BenchArgs, home: &Workspace, record: &'r Record) -> Result<Vec<&'r Recorded>, LabError> {
     let same = |path: &Path, recorded: &Recorded| {
-        let real = path.canonicalize();
+        let real = super::found(path).canonicalize();
         real.is_ok_and(|real| recorded.file(home).canonicalize().is_ok_and(|file| file == real))
     };
     for path in &args.experiments {

@@ -71,7 +71,7 @@ impl Diagnostic {
 /// Characters of a message or hint that are shown: they may quote what is wrong.
 const MAX_MESSAGE: usize = 2000;
 /// Characters of the offending line that are shown.
-const MAX_LINE: usize = 160;
+const MAX_LINE: usize = 240;
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -232,15 +232,41 @@ impl<R: BufRead> BufRead for CountLines<'_, R> {
         if self.progress.stopped() {
             return Err(std::io::ErrorKind::Other.into());
         }
+        let begin = line.len();
         let read = self.inner.read_line(line)?;
+        without_color(line, begin);
         self.lines.set(self.lines.get() + usize::from(read > 0));
         Ok(read)
+    }
+}
+
+/// Takes a vertex's colour out of the line from `begin` on: it is not used, and files that give it to some vertices alone
+/// would be refused.
+fn without_color(line: &mut String, begin: usize) {
+    let text = &line[begin..];
+    if text.starts_with("v ")
+        && let Some(color) = text.split_whitespace().nth(4)
+    {
+        let end = color.as_ptr() as usize - line.as_ptr() as usize;
+        line.truncate(end);
+        line.push('\n');
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn colours_of_vertices_are_taken_out() {
+        for (line, read) in
+            [("v 1 2 3 0.5 0.5 0.5\n", "v 1 2 3 \n"), ("v 1 2 3\n", "v 1 2 3\n"), ("vt 1 2 3 4 5\n", "vt 1 2 3 4 5\n")]
+        {
+            let mut text = format!("before\n{line}");
+            without_color(&mut text, 7);
+            assert_eq!(text, format!("before\n{read}"));
+        }
+    }
 
     #[test]
     fn texture_options_are_skipped() {

@@ -73,9 +73,8 @@ const WORDS: [&str; 44] = [
 /// The bytes of a file after one to eight changes; parts may come from another file.
 pub fn mutated(random: &mut Random, bytes: &[u8], other: &[u8]) -> Vec<u8> {
     let mut out = bytes.to_vec();
-    for _ in 0..1 + random.below(8) {
-        change(random, &mut out, other);
-    }
+    let changes = [1, 1, 1, 2, 3, 8][random.below(6)];
+    (0..changes).for_each(|_| change(random, &mut out, other));
     out.truncate(1 << 20);
     out
 }
@@ -86,7 +85,7 @@ fn change(random: &mut Random, out: &mut Vec<u8>, other: &[u8]) {
     let length = random.below(most);
     let end = (at + length).min(out.len());
     let word = WORDS[random.below(WORDS.len())].as_bytes();
-    match random.below(12) {
+    match random.below(14) {
         0 if at < out.len() => out[at] ^= 1 << random.below(8),
         1 if at < out.len() => out[at] = random.below(256) as u8,
         2 => drop(out.drain(at..end)),
