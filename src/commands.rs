@@ -1,19 +1,13 @@
 //! The command line.
 
-/// Like `println!`, but a reader that has gone away (`conelab graph ... | head`) is no error.
+/// Like `println!`; [`output::written`] tells whether it could be printed.
 macro_rules! say {
-    ($($text:tt)*) => {{
-        use std::io::Write as _;
-        let _ = writeln!(std::io::stdout(), $($text)*);
-    }};
+    ($($text:tt)*) => { $crate::commands::output::put(format_args!("{}\n", format_args!($($text)*))) };
 }
 
 /// Like `print!`, in the same way.
 macro_rules! say_part {
-    ($($text:tt)*) => {{
-        use std::io::Write as _;
-        let _ = write!(std::io::stdout(), $($text)*);
-    }};
+    ($($text:tt)*) => { $crate::commands::output::put(format_args!($($text)*)) };
 }
 
 mod ablate;
@@ -24,6 +18,7 @@ mod check;
 mod compare;
 mod fit;
 mod graph;
+mod output;
 mod reference;
 mod render;
 mod replay;
@@ -35,9 +30,11 @@ mod sweep;
 mod view;
 mod voxels;
 
-use crate::lab::{Lab, LabError};
+use crate::excerpt::excerpt;
+use crate::lab::{Lab, LabError, Workspace};
 use crate::vulkan::{GpuOptions, list_devices};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
+use output::{is_json_output, write_json, written};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -92,6 +89,11 @@ enum Command {
     Check(check::CheckArgs),
     /// List the Vulkan devices.
     Devices,
+    /// Print what a shell needs to complete this program's commands and options.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
 }
 
 /// Which device.
@@ -140,6 +142,21 @@ struct SceneArgs {
 /// # Errors
 /// Everything that a command can fail with.
 pub fn run(cli: Cli) -> Result<(), LabError> {
+    run_command(cli).and_then(|()| written())
+}
+
+/// What is told of an error: whose places say that it is one, as it is.
+pub fn told(error: &LabError) -> String {
+    match error {
+        LabError::Input(_) => error.to_string(),
+        other => format!("error: {}", excerpt(&other.to_string(), MAX_MESSAGE)),
+    }
+}
+
+/// Characters of a message that may quote a file.
+const MAX_MESSAGE: usize = 4000;
+
+fn run_command(cli: Cli) -> Result<(), LabError> {
     let Some(command) = cli.command else {
         return view::run(&view::ViewArgs::parse_from(["view"]));
     };
@@ -163,6 +180,12 @@ pub fn run(cli: Cli) -> Result<(), LabError> {
         Command::Check(args) => check::run(&args),
         Command::Scene(args) => scene(&args),
         Command::Devices => devices(),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "conelab", &mut script);
+            say_part!("{}", String::from_utf8_lossy(&script));
+            Ok(())
+        }
     }
 }
 
@@ -172,7 +195,8 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
         indicatif::ProgressStyle::with_template("{msg:40} {bar:30} {percent}%")
             .unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()),
     );
-    let scene = crate::scene::Scene::open(name, &|what, part| {
+    let file = if name.contains('.') { found(Path::new(name)).to_string_lossy().into_owned() } else { name.into() };
+    let scene = crate::scene::Scene::open(&file, &|what, part| {
         bar.set_message(what.to_string());
         bar.set_position((part.clamp(0.0, 1.0) * 1000.0) as u64);
         std::ops::ControlFlow::Continue(())
@@ -191,8 +215,20 @@ fn shown(path: &std::path::Path) -> PathBuf {
     here.and_then(|h| path.strip_prefix(h).ok()).unwrap_or(path).to_path_buf()
 }
 
+/// A file that the command line names: as it is, or in the program's folder where it is not here.
+fn found(path: &Path) -> PathBuf {
+    if path.is_absolute() || path.exists() {
+        return path.to_path_buf();
+    }
+    let at_home = Workspace::find().ok().map(|home| home.root.join(path)).filter(|p| p.exists());
+    at_home.unwrap_or_else(|| path.to_path_buf())
+}
+
 /// The ending, after checking that the folder can be written to before any work is done.
 fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
+    if endings == ["json"] && is_json_output(path) {
+        return Ok("json".into());
+    }
     let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
     if !endings.contains(&ending.as_str()) {
         let message = format!("'{}': give it a name that ends in .{}", path.display(), endings.join(" or ."));
@@ -220,15 +256,6 @@ fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
         Ok(_) => Ok(ending),
         Err(e) => Err(LabError::Request(format!("cannot write '{}': {e}", path.display()))),
     }
-}
-
-/// Writes what `--json` asks for.
-fn write_json(path: &std::path::Path, value: &impl serde::Serialize) -> Result<(), LabError> {
-    let text = serde_json::to_string_pretty(value).map_err(|e| LabError::Request(e.to_string()))?;
-    crate::files::write_whole(path, text.as_bytes())
-        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
-    say!("wrote {}", path.display());
-    Ok(())
 }
 
 /// Every message of the validation layer is an error.

@@ -1,7 +1,7 @@
 //! Files that are whole or absent: written under a temporary name and renamed, read back only when their checksum fits.
 
 use sha2::{Digest, Sha256};
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 
 /// Writes `bytes` to `path`: a reader sees the old file or the new one, never a part.
@@ -81,13 +81,57 @@ pub fn write_checked(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 
 /// Reads a cache file; `None` when it is absent, too large (256 MiB) or not what was written.
 pub fn read_checked(path: &Path) -> Option<Vec<u8>> {
-    if std::fs::metadata(path).ok()?.len() > 256 << 20 {
-        return None;
-    }
-    let mut bytes = std::fs::read(path).ok()?;
+    let mut bytes = read_input(path, 256 << 20).ok()?;
     if bytes.len() < 32 {
         return None;
     }
     let content = bytes.split_off(32);
     (bytes == Sha256::digest(&content)[..]).then_some(content)
+}
+
+/// Reads a file that a user or another file names. Only a regular file is opened (or a link to one): a pipe would wait, and a
+/// device such as /dev/zero has no end.
+///
+/// # Errors
+/// No such file, another kind of file, more than `most` bytes, no permission; the texts fit after the file's name.
+pub fn read_input(path: &Path, most: u64) -> std::io::Result<Vec<u8>> {
+    let length = check_input(path, most)?;
+    let mut bytes = Vec::with_capacity(length as usize);
+    // It may grow meanwhile, and files of /proc say that they are empty.
+    std::fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > most {
+        true => Err(unfit(format!("it has more than the {most} bytes allowed"))),
+        false => Ok(bytes),
+    }
+}
+
+/// Bytes of a file that others will read, if [`read_input`] would; nothing is opened.
+///
+/// # Errors
+/// As [`read_input`].
+pub fn check_input(path: &Path, most: u64) -> std::io::Result<u64> {
+    let found = std::fs::metadata(path)?;
+    if found.is_dir() {
+        return Err(unfit("it is a folder".into()));
+    }
+    if !found.is_file() {
+        return Err(unfit("it is a pipe, a device or a socket, and no regular file".into()));
+    }
+    if found.len() > most {
+        return Err(unfit(format!("{} bytes are more than the {most} allowed", found.len())));
+    }
+    Ok(found.len())
+}
+
+fn unfit(why: String) -> std::io::Error {
+    std::io::Error::new(std::io::ErrorKind::InvalidInput, why)
+}
+
+/// [`read_input`] of UTF-8 text.
+///
+/// # Errors
+/// As [`read_input`], and text that is not UTF-8.
+pub fn read_input_text(path: &Path, most: u64) -> std::io::Result<String> {
+    let bytes = read_input(path, most)?;
+    String::from_utf8(bytes).map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text"))
 }

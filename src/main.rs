@@ -7,7 +7,7 @@ fn main() -> ExitCode {
     match conelab::commands::run(conelab::commands::Cli::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            eprintln!("{}", conelab::commands::told(&error));
             ExitCode::FAILURE
         }
     }

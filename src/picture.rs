@@ -1,9 +1,11 @@
 //! Results as files: PNG for what is display-encoded, EXR for what is linear.
 
 use crate::experiment::MAX_SIZE;
+use crate::files::check_input;
 use crate::lab::{LabError, Texels};
 use crate::metrics::colour::srgb_to_linear;
 use crate::metrics::{Kind, Linear, MAX_PIXELS};
+use crate::panics::caught;
 use crate::vulkan::Format;
 use crate::vulkan::format::Channels;
 use exr::prelude::{
@@ -12,6 +14,9 @@ use exr::prelude::{
 };
 use std::io::Cursor;
 use std::path::Path;
+
+/// Files larger than this are refused.
+const MAX_BYTES: u64 = 2 << 30;
 
 /// Texels as floats, four a texel, missing channels 0 and missing alpha 1. Slices of volumes follow one another downwards.
 pub fn to_floats(texels: &Texels) -> Vec<[f32; 4]> {
@@ -158,6 +163,11 @@ pub fn exr(texels: &Texels) -> Result<Vec<u8>, LabError> {
 /// # Errors
 /// The text for the user: no such file, another size, a damaged file.
 pub fn read(path: &Path, size: (u32, u32)) -> Result<Vec<f32>, String> {
+    check_input(path, MAX_BYTES).map_err(|e| e.to_string())?;
+    caught(|| decode_of(path, size)).flatten()
+}
+
+fn decode_of(path: &Path, size: (u32, u32)) -> Result<Vec<f32>, String> {
     let other = |w: usize, h: usize| format!("its size is {w}x{h}, not {}x{}", size.0, size.1);
     if path.extension().is_some_and(|e| e == "png") {
         let open = || image::ImageReader::open(path)?.with_guessed_format();
@@ -203,6 +213,12 @@ fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {
 /// # Errors
 /// Another ending, no such file, too large, damaged.
 pub fn read_linear(path: &Path) -> Result<(Linear, Kind), LabError> {
+    let failed = |why: String| LabError::Request(format!("cannot read '{}': {why}", path.display()));
+    check_input(path, MAX_BYTES).map_err(|e| failed(e.to_string()))?;
+    caught(|| decode_linear(path)).map_err(failed).flatten()
+}
+
+fn decode_linear(path: &Path) -> Result<(Linear, Kind), LabError> {
     let failed = |why: String| LabError::Request(format!("cannot read '{}': {why}", path.display()));
     let fits = |w: usize, h: usize| match w.saturating_mul(h) as u64 {
         1..=MAX_PIXELS if w <= MAX_SIZE as usize && h <= MAX_SIZE as usize => Ok((w as u32, h as u32)),

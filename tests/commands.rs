@@ -205,28 +205,14 @@ fn wrong_arguments_are_told_and_leave_nothing() {
     let out = Out::new();
     let png = out.path("x.png");
     let error_of = |more: &[&str]| out.tidy(&fails(plain(&png).args(more)));
-    assert_snapshot!(error_of(&["--set", "voxel_dmi=64"]), @r"
-    error: --set:1:1: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)
-        | voxel_dmi=64
-    ");
+    assert_snapshot!(error_of(&["--set", "voxel_dmi=64"]), @"--set voxel_dmi=64: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)");
     assert_snapshot!(error_of(&["--set", "voxel_dim"]), @"error: --set voxel_dim: expected NAME=VALUE");
-    assert_snapshot!(error_of(&["--set", "voxel_dim=9000"]), @r"
-    error: --set:1:1: error: 'voxel_dim': 9000 is outside 16 to 512
-        | voxel_dim=9000
-    ");
-    assert_snapshot!(error_of(&["--set", "voxelizer=tesselated"]), @r"
-    error: --set:1:1: error: 'voxelizer' has no option 'tesselated' (did you mean 'tessellated'?)
-        | voxelizer=tesselated
-    ");
-    assert_snapshot!(error_of(&["--set", "volume_size=(1, 2)"]), @r"
-    error: --set:1:1: error: 'volume_size': expected 3 numbers in parentheses, got (1, 2)
-        | volume_size=(1, 2)
-    ");
+    assert_snapshot!(error_of(&["--set", "voxel_dim=9000"]), @"--set voxel_dim=9000: error: 'voxel_dim': 9000 is outside 16 to 512");
+    assert_snapshot!(error_of(&["--set", "voxelizer=tesselated"]), @"--set voxelizer=tesselated: error: 'voxelizer' has no option 'tesselated' (did you mean 'tessellated'?)");
+    assert_snapshot!(error_of(&["--set", "volume_size=(1, 2)"]), @"--set volume_size=(1, 2): error: 'volume_size': expected 3 numbers in parentheses, got (1, 2)");
     assert_snapshot!(error_of(&["--set", "voxel_dmi=64", "--set", "bias=x"]), @r"
-    error: --set:1:1: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)
-        | voxel_dmi=64
-    --set:2:1: error: 'bias': expected a number, got x
-        | bias=x
+    --set voxel_dmi=64: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)
+    --set bias=x: error: 'bias': expected a number, got x
     ");
     assert_snapshot!(error_of(&["--size", "0x64"]), @"error: a picture of 0x64 cannot be made: each side is 1 to 16384 pixels");
     assert_snapshot!(error_of(&["--size", "64"]), @"error: --size 64: expected WIDTHxHEIGHT, for example 1280x720");
@@ -252,20 +238,20 @@ fn files_that_are_missing_or_broken() {
     let png = out.path("x.png");
     let experiment = |path: &Path| out.tidy(&fails(conelab(root()).arg("render").arg(path).arg("-o").arg(&png)));
     assert_snapshot!(experiment(&out.path("missing.ron")), @r"
-    error: OUT/missing.ron: error: cannot read it: No such file or directory (os error 2)
+    OUT/missing.ron: error: cannot read it: No such file or directory (os error 2)
         = help: give the path of an experiment, for example configs/default.ron
     ");
-    assert_snapshot!(experiment(&out.write("empty.ron", "")), @"error: OUT/empty.ron:1:1: error: Expected opening `(` for struct `ExperimentFile`");
+    assert_snapshot!(experiment(&out.write("empty.ron", "")), @"OUT/empty.ron:1:1: error: Expected opening `(` for struct `ExperimentFile`");
     assert_snapshot!(experiment(&out.write("other.ron", "(graph: \"vtc.ron\", scene: \"cornell\")")), @r"
-    error: passes/vtc.ron: error: cannot read it: No such file or directory (os error 2)
+    passes/vtc.ron: error: cannot read it: No such file or directory (os error 2)
         = help: did you mean 'vct.ron'?
     ");
     let scene = |name: &str, content: &[u8]| {
         let path = out.write(name, content);
         out.tidy(&fails(&mut render(path.to_str().unwrap(), &png)))
     };
-    assert_snapshot!(scene("broken.gltf", b"{ \"asset\": { \"version\": \"2.0\" }, "), @"error: cannot load the model OUT/broken.gltf: EOF while parsing a value at line 1 column 33. Export it again as glTF 2.0 without compression extensions");
-    assert_snapshot!(scene("broken.glb", &[0x67, 0x6c, 0x54, 0x46, 2, 0, 0, 0, 255, 255, 255, 255]), @"error: cannot load the model OUT/broken.glb: could not completely read the object. Export it again as glTF 2.0 without compression extensions");
+    assert_snapshot!(scene("broken.gltf", b"{ \"asset\": { \"version\": \"2.0\" }, "), @"error: cannot load the model OUT/broken.gltf: it is no JSON: EOF while parsing a value at line 1 column 33. Export it again as glTF 2.0 without compression extensions");
+    assert_snapshot!(scene("broken.glb", &[0x67, 0x6c, 0x54, 0x46, 2, 0, 0, 0, 255, 255, 255, 255]), @"error: cannot load the model OUT/broken.glb: it has 12 bytes of 4294967295: it is cut short. Export it again as glTF 2.0 without compression extensions");
     assert_snapshot!(scene("broken.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n"), @"error: cannot load the model OUT/broken.obj: face vertex index out of bounds at or before line 3. Export it again");
     assert_snapshot!(scene("picture.bmp", b"BM"), @"error: no scene 'OUT/picture.bmp': the file's extension must be .ron, .obj, .gltf or .glb; convert other formats to glTF");
     let mut home = conelab(root());
@@ -288,6 +274,56 @@ fn outputs_that_cannot_be_written() {
     assert_snapshot!(out.tidy(&fails(render("cornell", &out.path("x.png")).arg("--json").arg(json))), @"error: cannot write 'OUT/file/x.json': 'OUT/file' is no folder");
     assert_eq!(out.names(), ["file", "folder.png"]);
     assert_eq!(std::fs::read_dir(out.path("folder.png")).unwrap().count(), 0);
+}
+
+#[test]
+fn what_is_wrong_is_told_before_what_is_missing() {
+    let without = |more: &[&str]| fails(conelab(root()).args(["render", "configs/default.ron"]).args(SMALL).args(more));
+    assert_snapshot!(without(&["--scene", "cornell", "--set", "bais=1"]), @"--set bais=1: error: no parameter 'bais' (did you mean 'bias'?)");
+    assert_snapshot!(without(&["--scene", "gone.obj"]), @"error: cannot read gone.obj: No such file or directory (os error 2). Check the path and its permissions");
+    assert_snapshot!(without(&["--scene", "cornell"]), @"error: nothing to write: name the picture with -o, for example -o picture.png");
+}
+
+#[test]
+fn standard_output_is_json_alone_or_an_error_when_full() {
+    let graph = ["graph", "passes/vct.ron", "--size", "64x48", "--json", "-"];
+    let outline: serde_json::Value = serde_json::from_str(&succeeds(conelab(root()).args(graph))).unwrap();
+    assert_eq!((&outline["schema"], &outline["graph"]), (&"conelab-graph-1".into(), &"vct".into()));
+    assert_eq!(outline["params"]["voxel_dim"], 160);
+    let list = |name: &str| outline[name].as_array().unwrap().clone();
+    let picture = list("textures").into_iter().find(|t| t["name"] == "display").unwrap();
+    assert_eq!((&picture["extent"], &picture["bytes"]), (&serde_json::json!([64, 48, 1]), &(64 * 48 * 4).into()));
+    assert!(list("passes").iter().any(|p| p["name"] == "display" && p["writes"] == serde_json::json!(["display"])));
+
+    let out = Out::new();
+    let stats = succeeds(render("cornell", &out.path("x.png")).args(["--frames", "1", "--json", "-"]));
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&stats).unwrap()["scene"], "cornell");
+    for command in [&["scene", "cornell"][..], &graph, &["completions", "bash"]] {
+        let full = std::fs::File::create("/dev/full").unwrap();
+        let told = fails(conelab(root()).args(command).stdout(full));
+        assert_eq!(told, "error: cannot write to standard output: No space left on device (os error 28)\n");
+    }
+    for shell in ["bash", "zsh", "fish"] {
+        let script = succeeds(conelab(root()).args(["completions", shell]));
+        assert!(script.contains("conelab") && script.contains("stability"), "{shell}: {script}");
+    }
+}
+
+#[test]
+fn files_of_the_program_are_found_from_anywhere() {
+    let out = Out::new();
+    let from_elsewhere = |args: &[&str]| succeeds(conelab(root()).current_dir(out.0.path()).args(args));
+    assert!(
+        from_elsewhere(&["check", "configs/default.ron", "passes/vct.ron"]).starts_with("checked 2 files, 0 errors")
+    );
+    assert!(from_elsewhere(&["graph", "passes/vct.ron"]).starts_with("graph vct: "));
+    assert!(from_elsewhere(&["graph", "configs/thesis.ron"]).starts_with("graph thesis: "));
+    let mut render = conelab(root());
+    render.current_dir(out.0.path()).args(["render", "configs/default.ron", "--scene", "cornell", "-o", "x.exr"]);
+    let output = render.args(SMALL).args(["--frames", "1", "--set", "view=direct"]).output().unwrap();
+    let (said, told) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert!(said.ends_with("wrote x.exr ('radiance', linear)\n"), "{said}");
+    assert!(told.contains("warning: 'radiance' is the whole light; --resource direct writes 'direct' alone"), "{told}");
 }
 
 #[test]
@@ -324,7 +360,7 @@ fn graph_explains_itself() {
     // What runs fits on two screens; all of it, with barriers, does not.
     for (name, stages) in [("vct", 11), ("thesis", 7), ("warps", 11), ("temporal", 11)] {
         let text = graph(&[&format!("passes/{name}.ron")]);
-        assert!(text.starts_with(&format!("graph {name}: ")) && text.lines().count() < 150, "{text}");
+        assert!(text.starts_with(&format!("graph {name}: ")) && text.lines().count() < 160, "{text}");
         assert!(text.lines().filter(|l| !l.is_empty() && !l.starts_with(' ')).count() >= stages, "{text}");
         assert!(!text.contains("COMPUTE_SHADER"), "{text}");
     }
@@ -359,7 +395,7 @@ fn graph_explains_itself() {
 
     let out = Out::new();
     assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "vtc.ron"]))), @r"
-    error: passes/vtc.ron: error: cannot read it: No such file or directory (os error 2)
+    passes/vtc.ron: error: cannot read it: No such file or directory (os error 2)
         = help: did you mean 'vct.ron'?
     ");
     assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/vct.ron", "--set", "bais=1"]))), @"error: no parameter 'bais' (did you mean 'bias'?)");

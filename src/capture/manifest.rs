@@ -81,11 +81,8 @@ impl Manifest {
     /// No such file, no manifest, a size beyond bounds, or a path that leads out of the folder.
     pub fn read(folder: &Path) -> Result<Manifest, LabError> {
         let path = folder.join(MANIFEST);
-        let size = std::fs::metadata(&path).map_err(|e| failed(&path, format!("cannot read it: {e}")))?.len();
-        if size > MAX_BYTES {
-            return Err(failed(&path, format!("{size} bytes are more than the {MAX_BYTES} allowed")));
-        }
-        let text = std::fs::read_to_string(&path).map_err(|e| failed(&path, format!("cannot read it: {e}")))?;
+        let text = crate::files::read_input_text(&path, MAX_BYTES)
+            .map_err(|e| failed(&path, format!("cannot read it: {e}")))?;
         let manifest: Manifest =
             serde_json::from_str(&text).map_err(|e| failed(&path, format!("it is damaged: {e}")))?;
         manifest.check(folder).map_err(|e| failed(&path, e))?;

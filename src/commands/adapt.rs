@@ -1,5 +1,6 @@
 //! What several commands let the command line change of an experiment.
 
+use crate::excerpt::excerpt;
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, PlacedCamera, check_size};
 use crate::graph::source::{At, Loc};
 use crate::lab::LabError;
@@ -52,7 +53,7 @@ impl ExperimentArgs {
 impl Changes {
     /// The experiment of a file, changed.
     pub fn read(&self, file: &Path) -> Result<Experiment, LabError> {
-        let mut experiment = Experiment::read(file).map_err(LabError::Input)?;
+        let mut experiment = Experiment::read(&super::found(file)).map_err(LabError::Input)?;
         if let Some(scene) = &self.scene {
             experiment.scene.clone_from(scene);
         }
@@ -75,14 +76,12 @@ impl Changes {
             experiment.environment = Some(Loc { value: before.overlaid(over), at });
         }
         // Later settings win, and messages about them point at the command line.
-        let file = experiment.sources.add("--set".as_ref(), self.set.join("\n"));
-        let mut offset = 0;
         for setting in &self.set {
+            let file = experiment.sources.add(format!("--set {}", excerpt(setting, 80)).as_ref(), setting.clone());
             let Some((name, value)) = setting.split_once('=') else {
                 return Err(LabError::Request(format!("--set {setting}: expected NAME=VALUE")));
             };
-            experiment.params.push((Loc { value: name.trim().into(), at: At { file, offset } }, value.into()));
-            offset += u32::try_from(setting.len() + 1).unwrap_or(0);
+            experiment.params.push((Loc { value: name.trim().into(), at: At { file, offset: 0 } }, value.into()));
         }
         Ok(experiment)
     }

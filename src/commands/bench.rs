@@ -173,7 +173,7 @@ fn counts(args: &BenchArgs, rounds: usize, frames: Frames) -> Result<(usize, Fra
 fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     let mut experiments = Vec::new();
     for path in &args.experiments {
-        let mut experiment = Experiment::read(path).map_err(LabError::Input)?;
+        let mut experiment = Experiment::read(&super::found(path)).map_err(LabError::Input)?;
         experiment.scene = args.scene.clone().unwrap_or(experiment.scene);
         experiments.push(experiment);
     }
@@ -194,7 +194,7 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
 /// The configurations of a record whose experiments the command line names; all if it names none.
 fn chosen<'r>(args: &BenchArgs, home: &Workspace, record: &'r Record) -> Result<Vec<&'r Recorded>, LabError> {
     let same = |path: &Path, recorded: &Recorded| {
-        let real = path.canonicalize();
+        let real = super::found(path).canonicalize();
         real.is_ok_and(|real| recorded.file(home).canonicalize().is_ok_and(|file| file == real))
     };
     for path in &args.experiments {

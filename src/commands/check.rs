@@ -2,6 +2,7 @@
 
 use crate::bench::check_record;
 use crate::experiment::Experiment;
+use crate::files::read_input_text;
 use crate::graph::file::GraphFile;
 use crate::graph::source::{Severity, Sources};
 use crate::lab::{LabError, Workspace, params_of};
@@ -36,13 +37,16 @@ pub enum FileKind {
     Times,
 }
 
+/// RON files larger than this are refused, whatever they are.
+const MAX_BYTES: u64 = 4 << 20;
+
 /// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights,
 /// camera paths hold keys, sweeps name experiments, suites of stability name methods. Recorded times end in `.json`.
 pub fn kind(path: &str) -> FileKind {
     if path.ends_with(".json") {
         return FileKind::Times;
     }
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = read_input_text(path.as_ref(), MAX_BYTES).unwrap_or_default();
     let has = |field: &str| {
         text.lines().any(|l| l.trim_start().trim_start_matches('(').trim_start().starts_with(&format!("{field}:")))
     };
@@ -96,7 +100,7 @@ fn own_files(home: &Workspace) -> Vec<PathBuf> {
 /// Checks files; every finding is printed.
 pub fn run(args: &CheckArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
-    let mut files = args.files.clone();
+    let mut files: Vec<PathBuf> = args.files.iter().map(|file| super::found(file)).collect();
     let all = files.is_empty();
     if all {
         files = own_files(&home);

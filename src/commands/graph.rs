@@ -1,12 +1,14 @@
 //! `conelab graph`.
 
 use crate::experiment::Experiment;
+use crate::graph::outline::outline;
 use crate::graph::plan::{PlanInput, plan};
 use crate::graph::report;
 use crate::graph::source::nearest;
 use crate::graph::value::fill;
 use crate::lab::{LabError, Workspace, any_device, environment, params_of};
 use clap::Args;
+use std::path::PathBuf;
 
 /// Arguments of `graph`.
 #[derive(Debug, Args)]
@@ -34,15 +36,20 @@ pub struct GraphArgs {
     /// Print a Graphviz picture.
     #[arg(long)]
     dot: bool,
+    /// Write parameters, passes, textures and buffers to this JSON file; `-`: to standard output.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["params", "barriers", "dot"])]
+    json: Option<PathBuf>,
 }
 
 /// Prints a graph's plan.
 pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     let home = Workspace::find()?;
-    let experiment = match crate::commands::check::kind(&args.file) {
-        crate::commands::check::FileKind::Experiment => {
-            Some(Experiment::read(args.file.as_ref()).map_err(LabError::Input)?)
-        }
+    if let Some(path) = &args.json {
+        super::writable(path, &["json"])?;
+    }
+    let file = super::found(args.file.as_ref());
+    let experiment = match crate::commands::check::kind(&file.to_string_lossy()) {
+        crate::commands::check::FileKind::Experiment => Some(Experiment::read(&file).map_err(LabError::Input)?),
         _ => None,
     };
     let name = experiment.as_ref().map_or(args.file.as_str(), |e| e.graph.as_str());
@@ -89,6 +96,9 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     let linked = home.linked(&graph, &params).map_err(LabError::Input)?;
     let input = PlanInput { params: &params, env, wanted, device: &device };
     let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
+    if let Some(path) = &args.json {
+        return super::write_json(path, &outline(&graph, &params, &plan));
+    }
     say_part!(
         "{}",
         match (args.dot, args.barriers) {

@@ -82,15 +82,16 @@ pub fn with_bar(
         indicatif::ProgressBar::new(1).with_style(style.unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()));
     let mut first = true;
     let result = gather(lab, experiment, scene, bounces, goal, &mut |now: Gathered| {
+        // The bar is drawn whenever its position changes: all else must be said before.
+        bar.set_length(now.goal);
+        bar.set_message(format!("relMSE {:.2e}", now.noise));
         if first {
             // What an earlier run gathered says nothing about this one's speed.
             bar.set_position(now.samples);
             bar.reset_eta();
             first = false;
         }
-        bar.set_length(now.goal);
         bar.set_position(now.samples);
-        bar.set_message(format!("relMSE {:.2e}", now.noise));
         ControlFlow::Continue(())
     });
     bar.finish_and_clear();

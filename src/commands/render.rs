@@ -4,8 +4,9 @@ use super::adapt::{self, ExperimentArgs, parse_resource};
 use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
 use crate::graph::load::Graph;
+use crate::graph::param::Value;
 use crate::graph::run::{FrameTimes, Redo};
-use crate::lab::{Lab, LabError, Session, Workspace};
+use crate::lab::{Lab, LabError, Session, Texels, Workspace};
 use crate::{picture, stats};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -41,9 +42,9 @@ pub struct RenderArgs {
     #[arg(long, value_name = "SEED")]
     shuffle: Option<u64>,
     /// Output file, .png or .exr: the last frame.
-    #[arg(short, long, required_unless_present = "sequence")]
+    #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Write timings and settings to this JSON file.
+    /// Write timings and settings to this JSON file; `-`: to standard output, and nothing else there.
     #[arg(long)]
     json: Option<PathBuf>,
     #[command(flatten)]
@@ -65,7 +66,8 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     if let Some(folder) = &args.sequence {
         without_frames(folder)?;
     }
-    let path = args.path.as_deref().map(CameraPath::read).transpose().map_err(LabError::Input)?;
+    let path =
+        args.path.as_deref().map(|path| CameraPath::read(&super::found(path))).transpose().map_err(LabError::Input)?;
     let home = Workspace::find()?;
     let mut scene = adapt::open_scene(&experiment)?;
     if let Some(seed) = args.shuffle {
@@ -87,6 +89,9 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     for warning in warnings {
         eprintln!("{warning}");
     }
+    if shown.is_none() && frames_of.is_none() {
+        return Err(LabError::Request("nothing to write: name the picture with -o, for example -o picture.png".into()));
+    }
     session.set_redo(args.redo);
     let mut times = Vec::new();
     let alone = args.frames.is_none() && args.sequence.is_none() && args.path.is_none() && args.step == 0.0;
@@ -106,7 +111,10 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     times.extend(session.finish()?);
     bar.finish_and_clear();
     let times: Vec<FrameTimes> = times.split_off(times.len().saturating_sub(frames));
-    let failed = session.failed_checks()?;
+    let mut failed = session.failed_checks()?;
+    if let Some((_, shown)) = &shown {
+        failed.extend(not_finite(&session.texels(&shown.0, shown.1, shown.2)?, &shown.0));
+    }
     for message in &failed {
         eprintln!("warning: {message}");
     }
@@ -118,14 +126,31 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     if let Some((folder, _)) = &frames_of {
         say!("wrote {} frames to {}", frames, folder.display());
     }
-    if let Some((path, _)) = &shown {
-        say!("wrote {}", path.display());
+    if let Some((path, (name, ..))) = &shown {
+        let what = if exr { format!(" ('{name}', linear)") } else { String::new() };
+        say!("wrote {}{what}", path.display());
+        if let Some(part) = part_asked_for(&session).filter(|(_, texture)| exr && resource.is_none() && texture != name)
+        {
+            eprintln!("warning: '{name}' is the whole light; --resource {} writes '{}' alone", part.1, part.0);
+        }
     }
     if let Some(path) = &args.json {
         super::write_json(path, &stats)?;
     }
     drop(session);
     super::validated(&lab)
+}
+
+/// Told where texels are no numbers.
+fn not_finite(texels: &Texels, name: &str) -> Option<String> {
+    let count = picture::to_floats(texels).iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
+    (count > 0).then(|| format!("'{name}' has {count} texels that are NaN or infinite"))
+}
+
+/// The part of the light that a parameter is set to show, and its texture.
+fn part_asked_for(session: &Session) -> Option<(String, String)> {
+    let set = |part: &str| session.params.values.iter().any(|v| matches!(v, Value::Choice(option) if option == part));
+    session.graph.parts.iter().find(|(part, _)| set(part)).cloned()
 }
 
 fn write_texture(session: &mut Session, path: &Path, shown: &(String, u32, u32)) -> Result<(), LabError> {

@@ -47,7 +47,7 @@ pub struct StabilityArgs {
 
 /// Runs a suite; an error if a method failed in a case.
 pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
-    let mut suite = Suite::read(&args.suite).map_err(LabError::Input)?;
+    let mut suite = Suite::read(&super::found(&args.suite)).map_err(LabError::Input)?;
     if !args.methods.is_empty() {
         suite.keep(&args.methods).map_err(LabError::Request)?;
     }

@@ -38,7 +38,7 @@ pub struct SweepArgs {
 
 /// Runs a sweep; an error if points failed.
 pub fn run(args: &SweepArgs) -> Result<(), LabError> {
-    let sweep = Sweep::read(&args.sweep).map_err(LabError::Input)?;
+    let sweep = Sweep::read(&super::found(&args.sweep)).map_err(LabError::Input)?;
     let shard = args.shard.as_deref().map_or(Ok(Shard { number: 1, of: 1 }), parse_shard)?;
     let frames =
         Frames { warmup: args.warmup.unwrap_or(sweep.frames.warmup), count: args.frames.unwrap_or(sweep.frames.count) };

@@ -13,7 +13,7 @@ pub use write::{resolved_text, write};
 use crate::graph::param::Params;
 use crate::graph::source::{At, Loc, Sources};
 use crate::lab::LabError;
-use crate::scene::{Camera, environment};
+use crate::scene::{Camera, MAX_COORDINATE, environment};
 use glam::Vec3;
 use serde::Deserialize;
 
@@ -65,6 +65,13 @@ impl PlacedCamera {
         let numbers = [self.eye, self.target, self.up].map(|v| Vec3::from(v).is_finite());
         if numbers.contains(&false) || !self.fov_y.is_finite() {
             return Err("the camera's numbers must be finite".into());
+        }
+        let (eye, target) = (Vec3::from(self.eye), Vec3::from(self.target));
+        if eye.abs().max(target.abs()).max_element() > MAX_COORDINATE {
+            return Err(format!("the camera must be within {MAX_COORDINATE:e} m of the origin"));
+        }
+        if eye == target {
+            return Err("the camera's eye and target are one place".into());
         }
         let (near, far) = (self.near.unwrap_or(f32::MIN_POSITIVE), self.far.unwrap_or(f32::MAX));
         if !(near > 0.0 && far > near && far.is_finite()) {

@@ -101,7 +101,9 @@ impl Check<'_> {
             stages.push(stage);
             let path = self.folders.shaders.join(&shader.value);
             // The compiler's own words for this are pages of built-in functions.
-            if std::fs::read_to_string(&path).is_ok_and(|text| !text.contains("#version")) {
+            if crate::files::read_input_text(&path, crate::shader::MAX_BYTES)
+                .is_ok_and(|text| !text.contains("#version"))
+            {
                 self.error(
                     shader.at,
                     format!("shader '{}' has no line `#version 460`, which must be its first", shader.value),

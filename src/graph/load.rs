@@ -10,6 +10,7 @@ use super::param::{OFF, Param, Params};
 use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
 use super::table::TableDecl;
 use super::value::{Named, ordered};
+use crate::excerpt::chain;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -264,6 +265,11 @@ impl Graph {
     }
 }
 
+/// Files that a graph may have.
+const MAX_FILES: usize = 256;
+/// How deep includes may be nested.
+const MAX_DEPTH: usize = 32;
+
 /// Reads a file and what it includes; whether all of it could be read.
 #[expect(clippy::too_many_arguments, reason = "one recursive walk that fills several lists")]
 fn include(
@@ -280,9 +286,17 @@ fn include(
         return true;
     }
     if stack.iter().any(|p| p == path) {
-        let message = format!("'{}' includes itself", path.display());
+        let name = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let circle: Vec<String> = stack.iter().skip_while(|p| *p != path).map(|p| name(p)).collect();
+        let message = format!("'{}' includes itself: {} > {}", path.display(), circle.join(" > "), name(path));
         errors.push(from.map_or(Diagnostic::error(Place::default(), message.clone()), |at| sources.error(at, message)));
         return true;
+    }
+    if stack.len() >= MAX_DEPTH || sources.paths().count() >= MAX_FILES {
+        let names: Vec<String> = stack.iter().map(|p| p.display().to_string()).collect();
+        let message = format!("a graph has at most {MAX_FILES} files, {MAX_DEPTH} deep: {}", chain(&names));
+        errors.push(from.map_or(Diagnostic::error(Place::default(), message.clone()), |at| sources.error(at, message)));
+        return false;
     }
     let file = match sources.read(path) {
         Ok(file) => file,

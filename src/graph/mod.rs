@@ -13,6 +13,7 @@ pub mod link;
 mod live;
 pub mod load;
 mod needs;
+pub mod outline;
 pub mod param;
 mod pipelines;
 pub mod plan;

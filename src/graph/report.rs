@@ -17,7 +17,7 @@ pub(super) fn resource_name(graph: &Graph, res: Res) -> String {
     }
 }
 
-fn texture_bytes(plan: &Plan, t: usize) -> u64 {
+pub(super) fn texture_bytes(plan: &Plan, t: usize) -> u64 {
     let p = &plan.textures[t];
     let mips = (0..p.mips).map(|m| p.extent.iter().map(|n| u64::from((n >> m).max(1))).product::<u64>()).sum::<u64>();
     mips * u64::from(p.layers) * u64::from(p.format.bytes) * (1 + u64::from(p.history))

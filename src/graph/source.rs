@@ -1,6 +1,8 @@
 //! RON files with positions: every value that can be wrong remembers where it stands, and one wrong item does not hide
 //! the mistakes in the others.
 
+use crate::excerpt::{excerpt, excerpt_at};
+use crate::files::read_input_text;
 use ron::extensions::Extensions;
 use serde::de::{Deserialize, Deserializer, Error as _};
 use std::cell::RefCell;
@@ -66,22 +68,29 @@ impl Diagnostic {
     }
 }
 
+/// Characters of a message or hint that are shown: they may quote what is wrong.
+const MAX_MESSAGE: usize = 2000;
+/// Characters of the offending line that are shown.
+const MAX_LINE: usize = 240;
+
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.place.file.display())?;
-        if self.place.line > 0 {
+        // What the command line gives has no lines.
+        let option = self.place.file.to_string_lossy().starts_with("--");
+        if self.place.line > 0 && !option {
             write!(f, ":{}", self.place.line)?;
             if self.place.column > 0 {
                 write!(f, ":{}", self.place.column)?;
             }
         }
         let level = if self.severity == Severity::Error { "error" } else { "warning" };
-        write!(f, ": {level}: {}", self.message)?;
-        if let Some(source) = &self.source {
-            write!(f, "\n    | {}", source.trim_end())?;
+        write!(f, ": {level}: {}", excerpt(&self.message, MAX_MESSAGE))?;
+        if let Some(source) = self.source.as_ref().filter(|_| !option) {
+            write!(f, "\n    | {}", excerpt_at(source.trim_end(), self.place.column as usize, MAX_LINE))?;
         }
         if let Some(help) = &self.help {
-            write!(f, "\n    = help: {help}")?;
+            write!(f, "\n    = help: {}", excerpt(help, MAX_MESSAGE))?;
         }
         Ok(())
     }
@@ -137,11 +146,7 @@ impl Sources {
         let fail = |why: String| {
             Diagnostic::error(Place { file: path.to_path_buf(), ..Place::default() }, format!("cannot read it: {why}"))
         };
-        let size = std::fs::metadata(path).map_err(|e| fail(e.to_string()))?.len();
-        if size > MAX_BYTES {
-            return Err(fail(format!("{size} bytes are more than the {MAX_BYTES} allowed")));
-        }
-        let text = std::fs::read_to_string(path).map_err(|e| fail(e.to_string()))?;
+        let text = read_input_text(path, MAX_BYTES).map_err(|e| fail(e.to_string()))?;
         Ok(self.add(path, text))
     }
 

@@ -73,11 +73,15 @@ impl Workspace {
         Folders { passes: self.root.join("passes"), shaders: self.root.join("shaders") }
     }
 
-    /// The file of a graph: a bare name is looked up among the graphs, a path is taken as it is.
+    /// The file of a graph: a bare name is looked up among the graphs, a path from here, then from the program's folder.
     pub fn graph_path(&self, name: &str) -> PathBuf {
         let given = Path::new(name);
-        let bare = given.components().count() == 1 && !given.is_file();
-        if bare { self.root.join("passes").join(name) } else { given.to_path_buf() }
+        if given.is_file() {
+            return given.to_path_buf();
+        }
+        let bare = given.components().count() == 1;
+        let at_home = if bare { self.root.join("passes").join(name) } else { self.root.join(given) };
+        if bare || at_home.is_file() { at_home } else { given.to_path_buf() }
     }
 
     /// A graph with all of its shaders compiled and checked, and warnings; needs no device.

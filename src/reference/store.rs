@@ -4,6 +4,7 @@
 use super::{Noise, Reference, ReferencePart};
 use crate::capture::hex;
 use crate::experiment::Experiment;
+use crate::files::read_input;
 use crate::graph::load::Graph;
 use crate::lab::LabError;
 use crate::metrics::{Linear, MetricError, relmse, structure_noise};
@@ -186,7 +187,7 @@ fn encode(sums: &Sums) -> Result<Vec<u8>, exr::error::Error> {
 /// The sums in a folder; `None` when there are none, or none of this size and these parts.
 pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Option<Sums>, LabError> {
     let json = folder.join("reference.json");
-    let Ok(text) = std::fs::read(&json) else { return Ok(None) };
+    let Ok(text) = read_input(&json, MAX_JSON) else { return Ok(None) };
     let record: Record = serde_json::from_slice(&text).map_err(|e| failed(&json, format!("{e}; delete the folder")))?;
     let plain = record.sums.starts_with("sums-") && !record.sums.contains(['/', '\\']);
     if record.schema != SCHEMA || record.size != size || !plain {
@@ -240,16 +241,32 @@ pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Opt
     if !sums.parts.values().flatten().all(counted) {
         return Err(wrong("it does not hold as many samples as reference.json says"));
     }
+    keep_noise(&json, record, &sums)?;
     Ok(Some(sums))
 }
+
+/// Writes the noise that the sums have into their description, if it says something else. Nobody computes with what it says.
+fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabError> {
+    let noise: BTreeMap<String, f64> =
+        sums.parts.keys().map(|p| Ok((p.clone(), sums.noise(p)?))).collect::<Result<_, LabError>>()?;
+    let same = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) || a.is_nan() && b.is_nan();
+    let kept = noise.iter().all(|(part, value)| record.noise.get(part).is_some_and(|told| same(*told, *value)));
+    if kept && noise.len() == record.noise.len() {
+        return Ok(());
+    }
+    record.noise = noise;
+    let text = serde_json::to_vec_pretty(&record).map_err(|e| failed(json, e))?;
+    // A folder that cannot be written to keeps it.
+    let _ = crate::files::write_whole(json, &text);
+    Ok(())
+}
+
+/// Descriptions larger than this are not what was written.
+const MAX_JSON: u64 = 16 << 20;
 
 /// A file that is no larger than the sums of so many parts can be.
 fn read_bounded(file: &Path, size: (u32, u32), parts: usize) -> Result<Vec<u8>, String> {
     let texels = u64::from(size.0) * u64::from(size.1) * 2 * parts as u64;
-    let length = std::fs::metadata(file).map_err(|e| e.to_string())?.len();
     // Compression may make noise a little larger.
-    if length > texels * 32 + (1 << 20) {
-        return Err(format!("it has {length} bytes, more than its samples take"));
-    }
-    std::fs::read(file).map_err(|e| e.to_string())
+    read_input(file, texels * 32 + (1 << 20)).map_err(|e| e.to_string())
 }

@@ -10,6 +10,7 @@ mod error;
 mod export;
 mod file;
 mod gltf;
+mod limits;
 mod mesh;
 mod obj;
 mod open;
@@ -28,6 +29,7 @@ use indexmap::IndexMap;
 
 pub use environment::{Environment, SUN, SkyPicture};
 pub use error::SceneError;
+pub use limits::MAX_COORDINATE;
 pub use mesh::Side;
 pub(crate) use shuffle::splitmix;
 pub use split::MAX_TRIANGLES;

@@ -1,15 +1,22 @@
 //! Wavefront OBJ with MTL, and the keys that other programs add for metallic-roughness materials.
 
+mod library;
+
 use std::cell::{Cell, RefCell};
 use std::io::{BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 use glam::{Mat4, Vec3};
 
+use crate::files::read_input;
+
 use super::mesh::{RawMesh, prepare_all};
 use super::progress::Progress;
 use super::texture::{Recipe, Requests, Source};
 use super::{Instance, Material, Mesh, Scene, SceneError, Submesh, Vertex};
+
+/// Files larger than this are refused.
+const MAX_BYTES: u64 = 4 << 30;
 
 /// Geometry, materials and textures of an OBJ file; no lights, cameras or sky.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
@@ -21,7 +28,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let lines_read = Cell::new(0);
     let mut reader = CountLines { inner: Cursor::new(text.as_bytes()), lines: &lines_read, progress };
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
-    let load_mtl = |name: &Path| Ok(load_mtl(folder, name, &warnings));
+    let load_mtl = |names: &Path| Ok(library::load(folder, names, &warnings));
     let (models, materials) = tobj::load_obj_buf(&mut reader, &options, load_mtl)
         .map_err(|error| fail(format!("{error} at or before line {}. Export it again", lines_read.get())))?;
     let mut warnings = warnings.into_inner();
@@ -53,7 +60,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
 
 /// Text with anything that is not UTF-8 replaced: comments and names of old files often are not.
 fn read_text(path: &Path) -> Result<String, SceneError> {
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
+    let bytes = read_input(path, MAX_BYTES).map_err(|source| SceneError::Read {
         path: path.into(),
         hint: "Check the path and its permissions".into(),
         source,
@@ -62,38 +69,6 @@ fn read_text(path: &Path) -> Result<String, SceneError> {
         Ok(text) => text,
         Err(error) => String::from_utf8_lossy(error.as_bytes()).into_owned(),
     })
-}
-
-fn load_mtl(
-    folder: &Path,
-    name: &Path,
-    warnings: &RefCell<Vec<String>>,
-) -> (Vec<tobj::Material>, <MtlIndex as Parts>::Map) {
-    let path = folder.join(name.to_string_lossy().replace('\\', "/"));
-    let warn = |problem: String| {
-        let message = format!("material library {}: {problem}; grey materials stand in for its own", path.display());
-        warnings.borrow_mut().push(message);
-    };
-    match std::fs::read(&path) {
-        Err(error) => warn(error.to_string()),
-        Ok(bytes) => {
-            let text = String::from_utf8_lossy(&bytes).into_owned();
-            match tobj::load_mtl_buf(&mut Cursor::new(text.as_bytes())) {
-                Ok(library) => return library,
-                Err(error) => warn(error.to_string()),
-            }
-        }
-    }
-    Default::default()
-}
-
-/// Names the map type inside `tobj::MTLLoadResult`, which depends on that crate's features.
-trait Parts {
-    type Map;
-}
-type MtlIndex = tobj::MTLLoadResult;
-impl<M, T, E> Parts for Result<(Vec<T>, M), E> {
-    type Map = M;
 }
 
 /// Joins the pieces that tobj cuts at each `usemtl` into one mesh per object.
@@ -257,15 +232,41 @@ impl<R: BufRead> BufRead for CountLines<'_, R> {
         if self.progress.stopped() {
             return Err(std::io::ErrorKind::Other.into());
         }
+        let begin = line.len();
         let read = self.inner.read_line(line)?;
+        without_color(line, begin);
         self.lines.set(self.lines.get() + usize::from(read > 0));
         Ok(read)
+    }
+}
+
+/// Takes a vertex's colour out of the line from `begin` on: it is not used, and files that give it to some vertices alone
+/// would be refused.
+fn without_color(line: &mut String, begin: usize) {
+    let text = &line[begin..];
+    if text.starts_with("v ")
+        && let Some(color) = text.split_whitespace().nth(4)
+    {
+        let end = color.as_ptr() as usize - line.as_ptr() as usize;
+        line.truncate(end);
+        line.push('\n');
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn colours_of_vertices_are_taken_out() {
+        for (line, read) in
+            [("v 1 2 3 0.5 0.5 0.5\n", "v 1 2 3 \n"), ("v 1 2 3\n", "v 1 2 3\n"), ("vt 1 2 3 4 5\n", "vt 1 2 3 4 5\n")]
+        {
+            let mut text = format!("before\n{line}");
+            without_color(&mut text, 7);
+            assert_eq!(text, format!("before\n{read}"));
+        }
+    }
 
     #[test]
     fn texture_options_are_skipped() {

@@ -5,6 +5,11 @@ use std::path::Path;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
+use glam::Mat4;
+
+use crate::panics::caught;
+
+use super::limits::check_extent;
 use super::progress::{Progress, Watch};
 use super::{Scene, SceneError, builtin, defaults, file, gltf, obj};
 
@@ -74,14 +79,22 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
 /// A model with what its file says and no more.
 pub(super) fn load_model(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let mut scene = match extension.as_str() {
-        "obj" => obj::load(path, progress)?,
-        "gltf" | "glb" => gltf::load(path, progress)?,
+    let reader = match extension.as_str() {
+        "obj" => obj::load,
+        "gltf" | "glb" => gltf::load,
         _ => {
             let hint = "the file's extension must be .ron, .obj, .gltf or .glb; convert other formats to glTF";
             return Err(SceneError::NotFound { spec: path.display().to_string(), hint: hint.into() });
         }
     };
+    let mut scene = caught(|| reader(path, progress)).unwrap_or_else(|message| {
+        let message = format!("{message}. The file is damaged; export it again");
+        Err(SceneError::Model { path: path.into(), message })
+    })?;
+    check_extent(&scene, Mat4::IDENTITY).map_err(|message| SceneError::Model { path: path.into(), message })?;
+    if scene.triangle_count() == 0 {
+        scene.warnings.push(format!("{}: no triangles: there is nothing to see", path.display()));
+    }
     scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(scene)
 }

@@ -2,9 +2,11 @@
 
 use super::access::decorated;
 use super::reflect::{Interface, MAX_BINDINGS, reflect};
+use crate::excerpt::excerpt;
 use crate::graph::source::{Diagnostic, Place, nearest};
 use crate::vulkan::Stage;
 use sha2::{Digest, Sha256};
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
@@ -66,7 +68,14 @@ pub struct ShaderCompiler {
 /// Changes whenever compiled modules of an older program must not be used.
 const CACHE_VERSION: &str = "conelab spirv 2";
 /// Shader files larger than this are refused.
-const MAX_BYTES: u64 = 2 << 20;
+pub(crate) const MAX_BYTES: u64 = 2 << 20;
+
+/// Includes that a shader may have, counted as often as they stand there.
+const MAX_INCLUDES: usize = 4096;
+/// Begins the message about more.
+const TOO_MANY: &str = "too many includes";
+/// How deep they may be nested.
+const MAX_DEPTH: usize = 32;
 
 impl ShaderCompiler {
     /// A compiler for `folder`, with compiled modules kept in `cache`.
@@ -161,11 +170,7 @@ impl ShaderCompiler {
         let fail = |why: String| {
             vec![Diagnostic::error(Place { file: path.clone(), ..Place::default() }, format!("cannot read it: {why}"))]
         };
-        let size = std::fs::metadata(&path).map_err(|e| fail(e.to_string()))?.len();
-        if size > MAX_BYTES {
-            return Err(fail(format!("{size} bytes are more than the {MAX_BYTES} allowed")));
-        }
-        let text = std::fs::read_to_string(&path).map_err(|e| fail(e.to_string()))?;
+        let text = crate::files::read_input_text(&path, MAX_BYTES).map_err(|e| fail(e.to_string()))?;
         if text.contains('\0') {
             return Err(fail("it holds a zero byte".into()));
         }
@@ -217,9 +222,16 @@ impl ShaderCompiler {
             // Stages are compiled apart and share one descriptor set.
             options.set_binding_base(resource, stage * MAX_BINDINGS as u32);
         }
-        options.set_include_callback(|name, _, _, depth| {
-            if depth > 32 {
-                return Err(String::from("includes are nested more than 32 deep"));
+        // Files that include others twice grow with a power of their depth.
+        let (count, chain) = (Cell::new(0), RefCell::new(Vec::new()));
+        options.set_include_callback(move |name, _, _, depth| {
+            let mut chain = chain.borrow_mut();
+            chain.truncate(depth.saturating_sub(1));
+            chain.push(name.to_string());
+            count.set(count.get() + 1);
+            if depth > MAX_DEPTH || count.get() > MAX_INCLUDES {
+                let names = crate::excerpt::chain(&chain);
+                return Err(format!("{TOO_MANY} ({MAX_INCLUDES} at most, {MAX_DEPTH} of them nested): {names}"));
             }
             match texts.get(name) {
                 Some(content) => {
@@ -275,15 +287,22 @@ impl ShaderCompiler {
             let Some((file, number, level, message)) = parsed else { continue };
             let path = self.find(file).unwrap_or_else(|| PathBuf::from(format!("{file} (generated)")));
             let place = Place { file: path, line: number, column: 0 };
+            // Some print a whole type.
+            let told = excerpt(message, 400);
             let mut found = match level {
-                "error" => Diagnostic::error(place, message),
-                _ => Diagnostic::warning(place, message),
+                "error" => Diagnostic::error(place, told),
+                _ => Diagnostic::warning(place, told),
             };
+            if let Some((name, _)) = message.strip_prefix('\'').and_then(|m| m.split_once("' : no such field")) {
+                found = found.nearest(name, texts.get("params.glsl").into_iter().flat_map(|text| members(text)));
+            }
             found.source = texts
                 .get(file)
                 .and_then(|t| t.lines().nth(number.saturating_sub(1) as usize))
                 .map(|l| l.trim().to_string());
-            if !list.contains(&found) {
+            // Every include up to the first one is told again.
+            let again = message.contains(TOO_MANY) && list.iter().any(|f| f.message.contains(TOO_MANY));
+            if !list.contains(&found) && !again {
                 list.push(found);
             }
         }
@@ -293,6 +312,12 @@ impl ShaderCompiler {
         }
         list
     }
+}
+
+/// Names before semicolons.
+fn members(text: &str) -> impl Iterator<Item = &str> {
+    let declared = text.lines().filter_map(|line| line.trim_end().strip_suffix(';'));
+    declared.filter_map(|line| line.split_whitespace().next_back()).map(|name| name.split('[').next().unwrap_or(name))
 }
 
 /// The name in an `#include "name"` line.

@@ -6,6 +6,7 @@ pub mod layout;
 mod reflect;
 mod strip;
 
+pub(crate) use compile::MAX_BYTES;
 pub use compile::{Compiled, Generated, ShaderCompiler, Source, find, module_include};
 pub use layout::Layout;
 pub use reflect::{Binding, Interface, Resource, Shape};

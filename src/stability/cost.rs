@@ -232,8 +232,7 @@ fn same(kept: &Cost, wanted: &Cost) -> bool {
 
 /// What is kept; folders may come from anywhere, and what is no such file is nothing.
 fn read(path: &Path) -> Vec<Cost> {
-    let small = std::fs::metadata(path).is_ok_and(|m| m.len() <= MAX_FILE);
-    let bytes = small.then(|| std::fs::read(path).ok()).flatten().unwrap_or_default();
+    let bytes = crate::files::read_input(path, MAX_FILE).unwrap_or_default();
     let kept = serde_json::from_slice::<Kept>(&bytes).ok().filter(|k| k.schema == SCHEMA);
     kept.map_or(Vec::new(), |k| k.costs)
 }

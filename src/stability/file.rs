@@ -233,7 +233,11 @@ impl Suite {
         let experiment = match Experiment::read(&folder.join(&parsed.experiment.value)) {
             Ok(experiment) => Some(experiment),
             Err(found) if found.iter().all(|d| d.place.line == 0) => {
-                errors.extend(found.iter().map(|d| sources.error(parsed.experiment.at, d.to_string())));
+                errors.extend(found.iter().map(|d| {
+                    sources
+                        .error(parsed.experiment.at, format!("{}: {}", d.place.file.display(), d.message))
+                        .help(d.help.clone())
+                }));
                 None
             }
             Err(found) => {

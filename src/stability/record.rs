@@ -196,8 +196,7 @@ impl Folder {
     /// A result that is there, whole, and measured; anything else is measured again.
     pub fn read(&self, id: &str) -> Option<Record> {
         let path = self.result(id);
-        let size = std::fs::metadata(&path).ok()?.len();
-        let bytes = (size <= MAX_FILE).then(|| std::fs::read(&path).ok()).flatten()?;
+        let bytes = crate::files::read_input(&path, MAX_FILE).ok()?;
         let record: Record = serde_json::from_slice(&bytes).ok()?;
         let fits = record.schema == RESULT_SCHEMA && record.id == id;
         let whole = record.measured().is_some_and(|m| m.worst.is_none() || self.picture(id).is_file());

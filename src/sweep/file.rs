@@ -111,7 +111,9 @@ fn experiments(path: &Path, names: &Items<String>, sources: &Sources, errors: &m
             }
             // A file that cannot be read is a mistake of the sweep.
             Err(found) if found.iter().all(|d| d.place.line == 0) => {
-                errors.extend(found.iter().map(|d| sources.error(name.at, d.to_string())));
+                errors.extend(found.iter().map(|d| {
+                    sources.error(name.at, format!("{}: {}", d.place.file.display(), d.message)).help(d.help.clone())
+                }));
             }
             Err(found) => errors.extend(found),
         }

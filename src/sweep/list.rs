@@ -23,7 +23,7 @@ pub struct SweepPoint {
     pub experiment: Experiment,
     /// The scene, lit as the experiment says; an empty one where it is absent.
     pub scene: Arc<Scene>,
-    /// Why the scene is not on this machine: the point cannot be measured here.
+    /// Why the scene is not on this machine, or cannot be read: the point cannot be measured here.
     pub absent: Option<String>,
     /// Scene, camera, size and time of the picture.
     pub subject: Subject,
@@ -106,7 +106,8 @@ impl<'a> PointBuilder<'a> {
     }
 }
 
-/// A point whose model is not on this machine. Where it is, the point has another number, by the scene's content.
+/// A point whose model is not on this machine, or cannot be read. Where it can, the point has another number, by the scene's
+/// content.
 fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoint {
     let name = Path::new(&experiment.scene).file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned());
     let (size, time) = (experiment.size, format!("{:?}", experiment.time));
@@ -117,7 +118,7 @@ fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoin
 }
 
 /// All points of a sweep in order, without those that another one equals; and how many those are. A model that is not
-/// on this machine makes its points absent, and no error: suites name scenes that not everybody has.
+/// on this machine, or damaged, makes its points absent, and no error: suites name scenes that not everybody has.
 ///
 /// # Errors
 /// Everything that is wrong with the sweep's settings: nothing is measured then.
@@ -133,7 +134,9 @@ pub fn list(
     for index in 0..sweep.len() {
         let point = sweep.point(index).map_err(LabError::Input).and_then(|(experiment, labels)| {
             match builder.point(warm, experiment.clone(), labels.clone(), frames) {
-                Err(LabError::Scene(why @ SceneError::NoModel { .. })) => Ok(absent(experiment, labels, &why)),
+                Err(LabError::Scene(
+                    why @ (SceneError::NoModel { .. } | SceneError::Model { .. } | SceneError::SceneFile { .. }),
+                )) => Ok(absent(experiment, labels, &why)),
                 other => other,
             }
         });

@@ -2,7 +2,7 @@
 //! finished point each; `pictures/ID.jpg` and `errors/ID.jpg`. Folders may come from anywhere and are not trusted.
 
 use super::list::SweepPoint;
-use crate::files::write_whole;
+use crate::files::{read_input, write_whole};
 use crate::lab::LabError;
 use crate::measure::{Frames, Measured, Point};
 use crate::stats::DeviceStats;
@@ -187,8 +187,7 @@ fn jpeg(folder: &Path, kind: &str, name: &str) -> PathBuf {
 }
 
 fn small_file(path: &Path) -> Option<Vec<u8>> {
-    let size = std::fs::metadata(path).ok()?.len();
-    (size <= MAX_FILE).then(|| std::fs::read(path).ok()).flatten()
+    read_input(path, MAX_FILE).ok()
 }
 
 /// Reads folders of sweeps. A point that several hold is taken from the first in which it was measured without an error.
@@ -242,11 +241,7 @@ pub fn collect(folders: &[PathBuf]) -> Result<Collected, LabError> {
 
 /// Reads a JSON file of at most so many bytes; the error is what is wrong with it.
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path, most: u64) -> Result<T, String> {
-    let size = std::fs::metadata(path).map_err(|e| format!("cannot read it: {e}"))?.len();
-    if size > most {
-        return Err(format!("{size} bytes are more than the {most} allowed"));
-    }
-    let bytes = std::fs::read(path).map_err(|e| format!("cannot read it: {e}"))?;
+    let bytes = read_input(path, most).map_err(|e| format!("cannot read it: {e}"))?;
     serde_json::from_slice(&bytes).map_err(|e| format!("it is damaged: {e}"))
 }
 

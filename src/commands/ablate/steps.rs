@@ -1,6 +1,6 @@
 //! `conelab ablate --steps`: the steps from an ideal to the method that a graph names.
 
-use super::super::{adapt, reference, validated, write_json};
+use super::super::{adapt, reference, validated, writable, write_json};
 use super::AblateArgs;
 use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::metrics::{Linear, relative_distance, relmse};
@@ -38,6 +38,9 @@ struct Ablation {
 pub fn run(args: &AblateArgs) -> Result<(), LabError> {
     let experiment = args.experiment.read()?;
     adapt::check_frames(args.frames.unwrap_or(1), 0, 0.0)?;
+    if let Some(path) = &args.json {
+        writable(path, &["json"])?;
+    }
     let home = Workspace::find()?;
     let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
     if loaded.graph.ablation.is_empty() {

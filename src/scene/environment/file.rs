@@ -1,6 +1,8 @@
 //! Pictures of the sky from files, which are not trusted: sizes and memory are limited, what is no radiance becomes 0.
 
 use super::{Environment, Level, SkyPicture};
+use crate::files::read_input;
+use crate::panics::caught;
 use image::{ImageFormat, ImageReader, Limits};
 use std::io::Cursor;
 use std::path::Path;
@@ -20,7 +22,8 @@ const MAX_RADIANCE: f32 = 1e12;
 /// # Errors
 /// The text for the user: no such file, no such picture, too large.
 pub(crate) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Environment, String> {
-    let level = decode(path).map_err(|problem| format!("environment '{}': {problem}", path.display()))?;
+    let level =
+        caught(|| decode(path)).flatten().map_err(|problem| format!("environment '{}': {problem}", path.display()))?;
     let mut warn = |what: String| warnings.push(format!("environment {}: {what}", path.display()));
     let level = checked(level, &mut warn);
     let picture = Arc::new(SkyPicture::new(level));
@@ -28,11 +31,7 @@ pub(crate) fn read(path: &Path, warnings: &mut Vec<String>) -> Result<Environmen
 }
 
 fn decode(path: &Path) -> Result<Level, String> {
-    let length = std::fs::metadata(path).map_err(|e| format!("cannot read it: {e}"))?.len();
-    if length > MAX_FILE_BYTES {
-        return Err(format!("the file has {} MB, and {} is the most", length >> 20, MAX_FILE_BYTES >> 20));
-    }
-    let bytes = std::fs::read(path).map_err(|e| format!("cannot read it: {e}"))?;
+    let bytes = read_input(path, MAX_FILE_BYTES).map_err(|e| format!("cannot read it: {e}"))?;
     let format = image::guess_format(&bytes).ok();
     let format = format
         .filter(|f| matches!(f, ImageFormat::Hdr | ImageFormat::OpenExr))

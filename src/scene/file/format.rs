@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use serde::Deserialize;
 
 use crate::scene::environment::check as check_environment;
-use crate::scene::{Animation, Camera, Keyframe, Light, LightKind, builtin};
+use crate::scene::{Animation, Camera, Keyframe, Light, LightKind, MAX_COORDINATE, builtin};
 
 /// A whole scene file.
 #[derive(Debug, Default, Deserialize)]
@@ -155,8 +155,12 @@ impl TryFrom<ModelFields> for ModelEntry {
             _ => return Err("a model needs either a file or a builtin".into()),
         }
         let TransformFields { translate, rotate_deg, scale } = fields.transform;
+        let far = |v: Vec3| v.abs().max_element() > MAX_COORDINATE;
         if !translate.is_finite() || !rotate_deg.is_finite() || !scale.is_finite() || scale.min_element() <= 0.0 {
             return Err("a transform's numbers must be finite and its scale above 0".into());
+        }
+        if far(translate) || far(scale) || scale.min_element() < 1.0 / MAX_COORDINATE {
+            return Err(format!("a model can be moved {MAX_COORDINATE:e} m at most, and scaled by as much"));
         }
         Ok(ModelEntry {
             transform: Mat4::from_scale_rotation_translation(scale, rotation(rotate_deg), translate),
@@ -177,7 +181,9 @@ fn rotation(degrees: Vec3) -> Quat {
 fn animation(fields: AnimationFields) -> Result<Animation, String> {
     let keys = &fields.keyframes;
     let finite = |key: &KeyframeFields| {
-        key.time.is_finite() && key.translate.is_finite() && key.rotate_deg.abs().max_element() < 36_000.0
+        key.time.is_finite()
+            && key.translate.abs().max_element() <= MAX_COORDINATE
+            && key.rotate_deg.abs().max_element() < 36_000.0
     };
     if keys.is_empty() || !keys.iter().all(finite) || !keys.is_sorted_by(|a, b| a.time < b.time) || keys[0].time < 0.0 {
         return Err("an animation needs keyframes with finite numbers and times that rise from 0 or more".into());
@@ -253,8 +259,11 @@ impl TryFrom<LightFields> for LightEntry {
                 (name, kind, color, position, direction, shadow)
             }
         };
-        if !color.is_finite() || color.min_element() < 0.0 || !position.is_finite() {
-            return Err("a light's color must be finite and not negative, its position finite".into());
+        let placed = position.abs().max_element() <= MAX_COORDINATE;
+        if !color.is_finite() || color.min_element() < 0.0 || !placed {
+            return Err(format!(
+                "a light's color must be finite and not negative, its position within {MAX_COORDINATE:e} m of the origin"
+            ));
         }
         let direction = direction.try_normalize().ok_or("a light's direction must be finite and not zero")?;
         Ok(LightEntry(Light { name, kind, color, position, direction, shadow }))
@@ -301,6 +310,14 @@ impl TryFrom<CameraFields> for CameraEntry {
 
     fn try_from(camera: CameraFields) -> Result<Self, String> {
         let forward = camera.target - camera.eye;
+        if !(camera.eye.abs().max(camera.target.abs()).max_element() <= MAX_COORDINATE) {
+            return Err(format!("a camera must be within {MAX_COORDINATE:e} m of the origin"));
+        }
+        if forward == Vec3::ZERO {
+            let size = camera.eye.abs().max_element();
+            let step = size.next_up() - size;
+            return Err(format!("a camera's eye and target are one place: coordinates there are {step:e} m apart"));
+        }
         if !forward.cross(camera.up).is_finite() || forward.cross(camera.up).length_squared() == 0.0 {
             return Err("a camera must look somewhere other than along its up vector".into());
         }

@@ -7,13 +7,23 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
+use crate::excerpt::excerpt;
+use crate::files::read_input_text;
+
+use super::limits::check_extent;
 use super::progress::Progress;
 use super::{Environment, Scene, SceneError, builtin, defaults, environment, open};
 use format::{EnvironmentEntry, ModelEntry, SceneFile};
 
+/// Scene files larger than this are refused.
+const MAX_BYTES: u64 = 4 << 20;
+
+/// Characters of a message that may quote the file.
+const MAX_MESSAGE: usize = 400;
+
 /// Opens a scene file and everything that it names.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
-    let text = std::fs::read_to_string(path).map_err(|source| SceneError::Read {
+    let text = read_input_text(path, MAX_BYTES).map_err(|source| SceneError::Read {
         path: path.into(),
         hint: "Check the path; scene files are UTF-8 text".into(),
         source,
@@ -27,6 +37,11 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         if i == 0 {
             (sky, picture) = (Some(model.sky), model.environment.clone());
         }
+        check_extent(&model, entry.transform).map_err(|message| {
+            let named = entry.file.as_deref().or(entry.builtin.as_deref()).unwrap_or_default();
+            let (line, column) = position_of(&text, named);
+            SceneError::SceneFile { path: path.into(), line, column, message: format!("'{named}', placed: {message}") }
+        })?;
         compose::add(&mut scene, model, entry);
     }
     match &file.environment {
@@ -117,7 +132,7 @@ fn parse(text: &str, path: &Path) -> Result<SceneFile, SceneError> {
         path: path.into(),
         line: error.span.start.line,
         column: error.span.start.col,
-        message: describe(&error.code),
+        message: excerpt(&describe(&error.code), MAX_MESSAGE),
     })
 }
 

@@ -3,13 +3,14 @@
 use ::gltf::Accessor;
 use ::gltf::accessor::{DataType, Dimensions, sparse::IndexType};
 
-use super::buffers::view;
+use super::buffers::{Buffers, view};
 
 /// Largest accessor without a buffer view, whose size nothing else bounds.
-const MAX_ZEROS: usize = 1 << 26;
+const MAX_ZEROS: usize = 1 << 22;
 
 /// Vectors of N floats; normalised integers become -1 to 1 or 0 to 1.
-pub(super) fn floats<const N: usize>(accessor: &Accessor, buffers: &[Vec<u8>]) -> Result<Vec<[f32; N]>, String> {
+pub(super) fn floats<const N: usize>(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<[f32; N]>, String> {
+    check_type(accessor, buffers)?;
     let components = components(accessor.dimensions());
     if components != N {
         return Err(format!("accessor {} has {components} numbers per element, not {N}", accessor.index()));
@@ -23,7 +24,8 @@ pub(super) fn floats<const N: usize>(accessor: &Accessor, buffers: &[Vec<u8>]) -
 }
 
 /// Unsigned integers.
-pub(super) fn indices(accessor: &Accessor, buffers: &[Vec<u8>]) -> Result<Vec<u32>, String> {
+pub(super) fn indices(accessor: &Accessor, buffers: &Buffers) -> Result<Vec<u32>, String> {
+    check_type(accessor, buffers)?;
     let kind = accessor.data_type();
     let unsigned = matches!(kind, DataType::U8 | DataType::U16 | DataType::U32);
     if accessor.dimensions() != Dimensions::Scalar || !unsigned {
@@ -32,7 +34,14 @@ pub(super) fn indices(accessor: &Accessor, buffers: &[Vec<u8>]) -> Result<Vec<u3
     read(accessor, buffers, unsigned_number)
 }
 
-fn read<T: Clone>(accessor: &Accessor, buffers: &[Vec<u8>], element: impl Fn(&[u8]) -> T) -> Result<Vec<T>, String> {
+fn check_type(accessor: &Accessor, buffers: &Buffers) -> Result<(), String> {
+    match buffers.unreadable.contains(&accessor.index()) {
+        true => Err(format!("accessor {} has a type that glTF does not have", accessor.index())),
+        false => Ok(()),
+    }
+}
+
+fn read<T: Clone>(accessor: &Accessor, buffers: &Buffers, element: impl Fn(&[u8]) -> T) -> Result<Vec<T>, String> {
     let size = accessor.data_type().size() * components(accessor.dimensions());
     let count = accessor.count();
     let name = format!("accessor {}", accessor.index());

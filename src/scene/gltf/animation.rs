@@ -7,6 +7,7 @@ use ::gltf::animation::{Interpolation, Property};
 use glam::{Quat, Vec3};
 
 use super::accessors;
+use super::buffers::Buffers;
 
 /// A sampled curve: times in order, one value each.
 #[derive(Clone, Debug)]
@@ -53,7 +54,7 @@ impl Track {
 /// The tracks of all animated nodes, by node index. A node that two animations move follows the first.
 pub(super) fn tracks(
     document: &Document,
-    buffers: &[Vec<u8>],
+    buffers: &Buffers,
     warnings: &mut Vec<String>,
 ) -> Result<HashMap<usize, Track>, String> {
     let mut tracks: HashMap<usize, Track> = HashMap::new();

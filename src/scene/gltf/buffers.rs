@@ -1,47 +1,68 @@
 //! Buffers and URIs: the binary chunk, files beside the model and data inside of it.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use ::gltf::{Document, buffer};
 
+use crate::files::read_input;
 use crate::scene::texture::Source;
 
-/// The bytes of each buffer, at least as long as the file says.
-pub(super) fn load(document: &Document, mut blob: Option<Vec<u8>>, folder: &Path) -> Result<Vec<Vec<u8>>, String> {
-    let mut buffers = Vec::new();
-    for buffer in document.buffers() {
-        let i = buffer.index();
-        let bytes = match buffer.source() {
-            buffer::Source::Bin => blob.take().ok_or(format!("buffer {i} has neither a uri nor a binary chunk"))?,
-            buffer::Source::Uri(uri) => match resolve(uri, folder)? {
-                Target::Data(bytes) => bytes,
-                Target::File(path) => std::fs::read(&path)
-                    .map_err(|error| format!("buffer {}: {error}. Copy it beside the model", path.display()))?,
-            },
+/// Buffers larger than this are refused; a binary file cannot have more.
+pub(super) const MAX_BYTES: u64 = 4 << 30;
+
+/// What a document's numbers are read from.
+#[derive(Debug, Default)]
+pub(super) struct Buffers {
+    /// The bytes of each buffer, at least as many as the file says; or why there are none.
+    bytes: Vec<Result<Vec<u8>, String>>,
+    /// Accessors of a type that the format does not have.
+    pub unreadable: HashSet<usize>,
+}
+
+impl Buffers {
+    /// Reads the buffers. One that cannot be read is a mistake only where something in it is used.
+    pub fn load(document: &Document, mut blob: Option<Vec<u8>>, unreadable: HashSet<usize>, folder: &Path) -> Buffers {
+        let one = |buffer: buffer::Buffer| {
+            let i = buffer.index();
+            let bytes = match buffer.source() {
+                buffer::Source::Bin => blob.take().ok_or(format!("buffer {i} has neither a uri nor a binary chunk"))?,
+                buffer::Source::Uri(uri) => match resolve(uri, folder)? {
+                    Target::Data(bytes) => bytes,
+                    Target::File(path) => read_input(&path, MAX_BYTES)
+                        .map_err(|error| format!("buffer {}: {error}. Copy it beside the model", path.display()))?,
+                },
+            };
+            if bytes.len() < buffer.length() {
+                let (has, needs) = (bytes.len(), buffer.length());
+                return Err(format!("buffer {i} has {has} bytes of {needs}: it is cut short; copy or export it again"));
+            }
+            Ok(bytes)
         };
-        if bytes.len() < buffer.length() {
-            return Err(format!(
-                "buffer {i} has {} bytes of {}: the file is cut short; copy or export it again",
-                bytes.len(),
-                buffer.length()
-            ));
-        }
-        buffers.push(bytes);
+        Buffers { bytes: document.buffers().map(one).collect(), unreadable }
     }
-    Ok(buffers)
+
+    /// Bytes of all buffers.
+    pub fn len(&self) -> usize {
+        self.bytes.iter().flatten().map(Vec::len).sum()
+    }
 }
 
 /// The bytes of a view, or what is wrong with it.
-pub(super) fn view<'a>(buffers: &'a [Vec<u8>], view: &buffer::View) -> Result<&'a [u8], String> {
-    let bytes = buffers.get(view.buffer().index()).map(Vec::as_slice).unwrap_or_default();
+pub(super) fn view<'a>(buffers: &'a Buffers, view: &buffer::View) -> Result<&'a [u8], String> {
+    let bytes = match buffers.bytes.get(view.buffer().index()) {
+        Some(Ok(bytes)) => bytes.as_slice(),
+        Some(Err(problem)) => return Err(problem.clone()),
+        None => &[],
+    };
     let end = view.offset().checked_add(view.length());
     end.and_then(|end| bytes.get(view.offset()..end))
         .ok_or_else(|| format!("buffer view {} reaches past the end of its buffer", view.index()))
 }
 
 /// Where an image's bytes are.
-pub(super) fn image(image: &::gltf::Image, document: &Document, buffers: &[Vec<u8>], folder: &Path) -> Source {
+pub(super) fn image(image: &::gltf::Image, document: &Document, buffers: &Buffers, folder: &Path) -> Source {
     // By its JSON: the crate's own accessor requires a media type that files leave out.
     let json = &document.as_json().images[image.index()];
     let name = image.name().map_or_else(|| format!("image {}", image.index()), str::to_owned);

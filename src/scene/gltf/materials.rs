@@ -6,6 +6,7 @@ use ::gltf::material::AlphaMode;
 use ::gltf::{Document, texture};
 use glam::{Vec3, Vec4};
 
+use super::buffers::Buffers;
 use super::means::Means;
 use super::placing::UvSource;
 use super::{buffers, extensions};
@@ -16,7 +17,7 @@ use crate::scene::{Material, SceneError};
 /// All materials, and after them the default one where a primitive has none; the coordinates that each reads.
 pub(super) fn read(
     document: &Document,
-    data: &[Vec<u8>],
+    data: &Buffers,
     folder: &Path,
     warnings: &mut Vec<String>,
     progress: Progress,

@@ -5,15 +5,19 @@ use ::gltf::{Document, Semantic};
 use glam::Vec2;
 
 use super::accessors;
+use super::buffers::Buffers;
 use super::placing::UvSource;
 use crate::scene::mesh::{Dropped, RawMesh, prepare_all};
 use crate::scene::progress::Progress;
 use crate::scene::{Material, Mesh, Submesh, Vertex};
 
+/// Vertices and indices that any file may have.
+const MANY: usize = 1 << 24;
+
 /// One mesh per mesh of the file, in order.
 pub(super) fn read(
     document: &Document,
-    buffers: &[Vec<u8>],
+    buffers: &Buffers,
     materials: &[Material],
     uv_sources: &[UvSource],
     warnings: &mut Vec<String>,
@@ -22,6 +26,8 @@ pub(super) fn read(
     let mut owners = Vec::new();
     let mut primitives = Vec::new();
     let mut meshes = Vec::new();
+    // Primitives may share their vertices; a small file must not fill the memory.
+    let mut room = MANY + buffers.len();
     for mesh in document.meshes() {
         let name = mesh.name().map_or_else(|| format!("mesh {}", mesh.index()), str::to_owned);
         for primitive in mesh.primitives() {
@@ -33,13 +39,19 @@ pub(super) fn read(
             if materials[material].is_left_out() {
                 continue;
             }
-            let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
-            if let Some(raw) = read.map_err(|problem| format!("mesh '{name}': {problem}"))? {
-                primitives.push(raw);
-                owners.push(mesh.index());
-            } else {
-                warnings.push(format!("mesh '{name}' has points or lines, which are left out"));
+            let points = matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip);
+            if points || primitive.get(&Semantic::Positions).is_none() {
+                let what = if points { "points or lines" } else { "a primitive without positions" };
+                warnings.push(format!("mesh '{name}' has {what}, which are left out"));
+                continue;
             }
+            let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
+            let raw = read.map_err(|problem| format!("mesh '{name}': {problem}"))?;
+            room = room.checked_sub(raw.mesh.vertices.len() + raw.mesh.indices.len()).ok_or_else(|| {
+                format!("mesh '{name}': with it there are many more vertices than the file holds bytes")
+            })?;
+            primitives.push(raw);
+            owners.push(mesh.index());
             if primitive.morph_targets().next().is_some() {
                 warnings.push(format!("mesh '{name}' has morph targets, which stay at rest"));
             }
@@ -66,14 +78,11 @@ fn append(mesh: &mut Mesh, primitive: Mesh) -> Result<(), String> {
 
 fn read_primitive(
     primitive: &Primitive,
-    buffers: &[Vec<u8>],
+    buffers: &Buffers,
     name: &str,
     material: usize,
     uv_source: &UvSource,
-) -> Result<Option<RawMesh>, String> {
-    if matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
-        return Ok(None);
-    }
+) -> Result<RawMesh, String> {
     let positions = primitive.get(&Semantic::Positions).ok_or("a primitive has no positions")?;
     let positions = accessors::floats::<3>(&positions, buffers)?;
     let same_count = |found: usize, what: &str| match found == positions.len() {
@@ -107,7 +116,7 @@ fn read_primitive(
     let submesh = Submesh { first_index: 0, index_count: indices.len() as u32, material: material as u32 };
     let mesh = Mesh { name: name.into(), vertices, indices, submeshes: vec![submesh] };
     // Tangents without normals cannot have been meant for ours.
-    Ok(Some(RawMesh { mesh, has_normals: normals.is_some(), has_tangents: normals.is_some() && tangents.is_some() }))
+    Ok(RawMesh { mesh, has_normals: normals.is_some(), has_tangents: normals.is_some() && tangents.is_some() })
 }
 
 /// Strips and fans as separate triangles with the same winding.

@@ -6,6 +6,8 @@
 mod accessors;
 mod animation;
 mod buffers;
+mod container;
+mod document;
 mod extensions;
 mod materials;
 mod means;
@@ -15,29 +17,29 @@ mod placing;
 
 use std::path::Path;
 
-use ::gltf::{Document, json};
+use crate::files::read_input;
 
 use super::progress::Progress;
 use super::{Scene, SceneError};
+use buffers::Buffers;
+use document::Checks;
 
 /// Geometry, materials, textures, lights and cameras of a glTF file; no sky.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
     let fail = |message: String| SceneError::Model { path: path.into(), message };
     progress.step("reading", 0.0)?;
-    let bytes = std::fs::read(path).map_err(|source| SceneError::Read {
+    let bytes = read_input(path, buffers::MAX_BYTES).map_err(|source| SceneError::Read {
         path: path.into(),
         hint: "Check the path and its permissions".into(),
         source,
     })?;
-    let (document, blob) = parse(&bytes)
+    let Checks { document, blob, unreadable, mut warnings } = document::read(&bytes)
         .map_err(|error| fail(format!("{error}. Export it again as glTF 2.0 without compression extensions")))?;
     drop(bytes);
-    check(document.as_json()).map_err(|problem| fail(format!("{problem}. Export it again")))?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let buffers = buffers::load(&document, blob, folder).map_err(fail)?;
+    let buffers = Buffers::load(&document, blob, unreadable, folder);
 
     progress.step("materials", 0.2)?;
-    let mut warnings = Vec::new();
     let (materials, uv_sources, requests) = materials::read(&document, &buffers, folder, &mut warnings, progress)?;
     progress.step("meshes", 0.3)?;
     let (meshes, dropped) =
@@ -55,47 +57,4 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     (scene.meshes, scene.materials, scene.textures) = (meshes, materials, textures);
     scene.instances.retain(|instance| !scene.meshes[instance.mesh as usize].submeshes.is_empty());
     Ok(scene)
-}
-
-/// The document, validated, and the binary chunk.
-fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ::gltf::Error> {
-    let ::gltf::Gltf { document, blob } = ::gltf::Gltf::from_slice_without_validation(bytes)?;
-    let mut root = document.into_json();
-    // The crate reads it, and does not count it among what it supports.
-    root.extensions_required.retain(|name| name != "KHR_materials_specular");
-    Ok((Document::from_json(root)?, blob))
-}
-
-/// What the gltf crate takes for granted after its own validation, and what a damaged file may still break.
-fn check(root: &json::Root) -> Result<(), String> {
-    let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()).map_or(&[][..], |l| &l.lights);
-    for (i, light) in lights.iter().enumerate() {
-        use json::extensions::scene::khr_lights_punctual::Type;
-        if matches!(light.type_, json::validation::Checked::Valid(Type::Spot)) && light.spot.is_none() {
-            return Err(format!("light {i} is a spot without cone angles"));
-        }
-    }
-    for (i, node) in root.nodes.iter().enumerate() {
-        let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        if light.is_some_and(|light| light.light.value() >= lights.len()) {
-            return Err(format!("node {i} has a light that does not exist"));
-        }
-    }
-    for (i, camera) in root.cameras.iter().enumerate() {
-        use json::camera::Type;
-        let complete = match camera.type_ {
-            json::validation::Checked::Valid(Type::Perspective) => camera.perspective.is_some(),
-            json::validation::Checked::Valid(Type::Orthographic) => camera.orthographic.is_some(),
-            json::validation::Checked::Invalid => false,
-        };
-        if !complete {
-            return Err(format!("camera {i} lacks the numbers of its type"));
-        }
-    }
-    for (i, animation) in root.animations.iter().enumerate() {
-        if animation.channels.iter().any(|channel| channel.sampler.value() >= animation.samplers.len()) {
-            return Err(format!("animation {i} has a channel whose sampler does not exist"));
-        }
-    }
-    Ok(())
 }

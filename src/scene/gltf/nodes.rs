@@ -24,6 +24,9 @@ struct Moving {
     below: Mat4,
 }
 
+/// Keyframes of all instances: each below a moving node has a copy.
+const MAX_KEYFRAMES: usize = 1 << 22;
+
 /// Instances, lights and cameras of the default scene (of the first, where none is the default).
 pub(super) fn place(
     document: &Document,
@@ -38,6 +41,7 @@ pub(super) fn place(
     let mut seen = vec![false; document.nodes().count()];
     let mut stack: Vec<Visit> = root.nodes().map(|node| Visit { node, parent: Mat4::IDENTITY, moving: None }).collect();
     stack.reverse();
+    let mut keyframes = 0;
     while let Some(visit) = stack.pop() {
         let node = &visit.node;
         if std::mem::replace(&mut seen[node.index()], true) {
@@ -69,6 +73,10 @@ pub(super) fn place(
                 Some(moving) => (moving.below, Some(moving.animation.clone())),
                 None => (world, None),
             };
+            keyframes += animation.as_ref().map_or(0, |a| a.keyframes.len());
+            if keyframes > MAX_KEYFRAMES {
+                return Err(format!("its moving meshes have more than {MAX_KEYFRAMES} keyframes in all"));
+            }
             placed.instances.push(Instance { name: name.clone(), mesh: mesh.index() as u32, transform, animation });
         }
         if let Some(light) = node.light() {

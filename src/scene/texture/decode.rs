@@ -6,6 +6,8 @@ use std::io::Cursor;
 use glam::{Vec2, Vec3};
 use image::{ImageFormat, ImageReader, Limits, RgbaImage};
 
+use crate::files::read_input;
+
 use super::{Filter, Recipe, Source, Texture, TextureFormat, dds, mips, texture_from_rgba};
 
 /// Largest width and height of an image file.
@@ -162,7 +164,7 @@ fn pixels(source: &Source) -> Result<RgbaImage, Failure> {
 
 fn read(source: &Source) -> Result<Cow<'_, [u8]>, String> {
     match source {
-        Source::File(path) => match std::fs::read(path) {
+        Source::File(path) => match read_input(path, MAX_FILE_BYTES) {
             Ok(bytes) => Ok(Cow::Owned(bytes)),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err("the file does not exist".into()),
             Err(error) => Err(format!("cannot read it: {error}")),

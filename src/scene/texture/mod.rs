@@ -12,6 +12,8 @@ use glam::Vec4;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
+use crate::panics::caught;
+
 use super::progress::Progress;
 use super::{SceneError, Texture, TextureFormat};
 
@@ -55,6 +57,22 @@ pub(super) enum Recipe {
     RoughnessAndMetallic { roughness: Option<Source>, metallic: Option<Source> },
 }
 
+impl Recipe {
+    /// Of its first image.
+    fn name(&self) -> String {
+        match self {
+            Recipe::Color { image, .. }
+            | Recipe::Normal { image }
+            | Recipe::MetallicRoughness { image }
+            | Recipe::Glossiness { image, .. } => image.name(),
+            Recipe::ColorAndMask { color, alpha, .. } => color.as_ref().unwrap_or(alpha).name(),
+            Recipe::RoughnessAndMetallic { roughness, metallic } => {
+                roughness.as_ref().or(metallic.as_ref()).map(Source::name).unwrap_or_default()
+            }
+        }
+    }
+}
+
 /// The textures that materials ask for, each recipe once.
 #[derive(Debug, Default)]
 pub(super) struct Requests {
@@ -80,7 +98,7 @@ impl Requests {
     pub fn means(self, progress: Progress) -> Result<(Vec<Vec4>, Vec<String>), SceneError> {
         self.each(progress, |recipe, material| {
             let mut warnings = Vec::new();
-            let mean = decode::cook(recipe, &mut warnings)
+            let mean = decoded(recipe, &mut warnings)
                 .and_then(|texture| mips::mean_color(&texture).map_err(|problem| (texture.name.clone(), problem)));
             let mean = mean.unwrap_or_else(|(file, problem)| {
                 warnings.push(format!("texture {file} of material '{material}': {problem}; it is left out"));
@@ -106,9 +124,17 @@ impl Requests {
     }
 }
 
+/// The texture, or the file and what is wrong with it: a decoder may panic on a damaged one.
+fn decoded(recipe: &Recipe, warnings: &mut Vec<String>) -> Result<Texture, (String, String)> {
+    let mut more = Vec::new();
+    let texture = caught(|| decode::cook(recipe, &mut more));
+    warnings.append(&mut more);
+    texture.unwrap_or_else(|problem| Err((recipe.name(), problem)))
+}
+
 fn cook(recipe: &Recipe, material: &str) -> (Texture, Vec<String>) {
     let mut warnings = Vec::new();
-    match decode::cook(recipe, &mut warnings) {
+    match decoded(recipe, &mut warnings) {
         Ok(texture) => (texture, warnings),
         Err((file, problem)) => {
             warnings

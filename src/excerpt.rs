@@ -1,0 +1,43 @@
+//! Text of files that nobody has read yet, made fit to be shown.
+
+/// At most so many characters, with a mark where there are more, and nothing in it that a terminal would obey.
+pub fn excerpt(text: &str, most: usize) -> String {
+    let plain = |c: char| if c.is_control() && c != '\n' { '\u{fffd}' } else { c };
+    let mut out: String = text.chars().take(most).map(|c| if c == '\t' { ' ' } else { plain(c) }).collect();
+    if text.chars().nth(most).is_some() {
+        out.push_str(" ...");
+    }
+    out
+}
+
+/// The part of a line round a column (from 1; 0 when it is not known), at most so many characters.
+pub fn excerpt_at(line: &str, column: usize, most: usize) -> String {
+    let first = if column + 20 > most { column - most / 2 } else { 0 };
+    let rest = line.char_indices().nth(first).map_or("", |(i, _)| &line[i..]);
+    format!("{}{}", if first > 0 { "... " } else { "" }, excerpt(rest, most))
+}
+
+/// Names one after another, the middle of many left out.
+pub fn chain(names: &[String]) -> String {
+    let short = |names: &[String]| names.iter().map(|n| excerpt(n, 60)).collect::<Vec<_>>().join(" > ");
+    match names.len() {
+        0..=8 => short(names),
+        n => format!("{} > ... > {}", short(&names[..4]), short(&names[n - 3..])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lines_and_control_characters_are_not_shown() {
+        assert_eq!(excerpt("a\0b\tc", 9), "a\u{fffd}b c");
+        assert_eq!(excerpt("abcdef", 3), "abc ...");
+        assert_eq!(excerpt_at("short", 3, 80), "short");
+        let line = format!("{}HERE{}", "x".repeat(1000), "y".repeat(1000));
+        let shown = excerpt_at(&line, 1001, 80);
+        assert!(shown.contains("HERE") && shown.len() < 100, "{shown}");
+        assert!(excerpt_at(&line, 0, 80).len() < 100);
+    }
+}

@@ -1,0 +1,56 @@
+//! Panics of other people's readers as errors.
+
+use crate::excerpt::excerpt;
+use std::any::Any;
+use std::cell::{Cell, RefCell};
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::sync::Once;
+
+thread_local! {
+    /// Whether a panic of this thread is caught and told.
+    static CAUGHT: Cell<bool> = const { Cell::new(false) };
+    /// Where it happened.
+    static PLACE: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Runs a reader of files that may panic on what it did not expect. What it was working on is lost with it.
+///
+/// # Errors
+/// The panic's message, with nothing printed.
+pub fn caught<T>(read: impl FnOnce() -> T) -> Result<T, String> {
+    static HOOK: Once = Once::new();
+    HOOK.call_once(|| {
+        let usual = take_hook();
+        set_hook(Box::new(move |panic| {
+            if !CAUGHT.get() {
+                return usual(panic);
+            }
+            let place = panic.location().map_or(String::new(), |l| format!("{}:{}", l.file(), l.line()));
+            // Of a dependency: its name and version, and the file in it.
+            let crates = place.find("/registry/src/").and_then(|i| place[i + 14..].find('/').map(|j| i + 15 + j));
+            PLACE.set(place[crates.unwrap_or(0)..].to_owned());
+        }));
+    });
+    let before = CAUGHT.replace(true);
+    let result = catch_unwind(AssertUnwindSafe(read));
+    CAUGHT.set(before);
+    result.map_err(|panic| message(&*panic))
+}
+
+fn message(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    let first = text.and_then(|t| t.lines().next()).unwrap_or("no message");
+    format!("its reader gave up ({} at {})", excerpt(first, 200), PLACE.take())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::caught;
+
+    #[test]
+    fn a_panic_is_its_message() {
+        assert_eq!(caught(|| 3), Ok(3));
+        let told = caught(|| panic!("no {}", "such thing")).unwrap_err();
+        assert!(told.starts_with("its reader gave up (no such thing at src/panics.rs:"), "{told}");
+    }
+}

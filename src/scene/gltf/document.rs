@@ -1,0 +1,204 @@
+//! From a file's bytes to a document that the gltf crate can be asked about without a panic.
+//!
+//! The crate refuses more than the specification does, so what the format leaves to defaults is written out first.
+
+use std::collections::HashSet;
+
+use ::gltf::Document;
+use ::gltf::json::validation::{Checked, Error, Validate};
+use ::gltf::json::{Path, Root};
+use serde_json::{Value, json};
+
+use super::container::split;
+
+/// Extensions that a file may require.
+const READ: [&str; 10] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "MSFT_texture_dds",
+];
+
+/// A document that has been checked.
+pub(super) struct Checks {
+    pub document: Document,
+    /// The binary chunk.
+    pub blob: Option<Vec<u8>>,
+    /// Accessors of a type that the format does not have: whoever needs one fails.
+    pub unreadable: HashSet<usize>,
+    pub warnings: Vec<String>,
+}
+
+/// Parses a file, text or binary.
+pub(super) fn read(bytes: &[u8]) -> Result<Checks, String> {
+    let (text, blob) = split(bytes)?;
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let mut value: Value = serde_json::from_slice(text).map_err(|e| format!("it is no JSON: {e}"))?;
+    check_version(&value)?;
+    check_extensions(&value)?;
+    let mut warnings = Vec::new();
+    write_out(&mut value, &mut warnings);
+    let root: Root = serde_json::from_value(value).map_err(|e| e.to_string())?;
+    check(&root)?;
+    let unreadable = validate(&root)?;
+    Ok(Checks { document: Document::from_json_without_validation(root), blob, unreadable, warnings })
+}
+
+fn check_version(value: &Value) -> Result<(), String> {
+    let asset = value.get("asset").ok_or("it has no `asset`, which every glTF file has")?;
+    let version = |key: &str| asset.get(key).and_then(Value::as_str);
+    let needed = version("minVersion").or(version("version")).unwrap_or_default();
+    match needed.split_once('.').map_or(needed, |v| v.0) {
+        "2" if version("minVersion").is_none_or(|v| v == "2.0") => Ok(()),
+        _ => Err(format!("it is of version '{needed}', and 2.0 is read")),
+    }
+}
+
+fn check_extensions(value: &Value) -> Result<(), String> {
+    let required = value.get("extensionsRequired").and_then(Value::as_array).into_iter().flatten();
+    let missing: Vec<&str> = required.filter_map(Value::as_str).filter(|name| !READ.contains(name)).collect();
+    match missing.as_slice() {
+        [] => Ok(()),
+        list => Err(format!("it requires {}, which is not read", list.join(" and "))),
+    }
+}
+
+/// Writes out what the format leaves to defaults and the crate asks for.
+fn write_out(value: &mut Value, warnings: &mut Vec<String>) {
+    whole_numbers(value);
+    let Some(root) = value.as_object_mut() else { return };
+    root.remove("extensionsRequired");
+    let scenes = root.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten();
+    for scene in scenes.filter_map(Value::as_object_mut) {
+        scene.entry("nodes").or_insert(json!([]));
+    }
+    let animations = root.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten();
+    for (i, animation) in animations.enumerate() {
+        let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else { continue };
+        let before = channels.len();
+        channels.retain(|channel| channel.get("target").is_none_or(moves_a_node));
+        if channels.len() < before {
+            let count = before - channels.len();
+            warnings.push(format!("animation {i} has {count} channels that move no node, which are left out"));
+        }
+    }
+    let mut images = root.get("images").and_then(Value::as_array).map_or(0, Vec::len);
+    let mut absent = Vec::new();
+    let textures = root.get_mut("textures").and_then(Value::as_array_mut).into_iter().flatten();
+    for (i, texture) in textures.enumerate() {
+        let Some(texture) = texture.as_object_mut().filter(|t| !t.contains_key("source")) else { continue };
+        let dds = texture.get("extensions").and_then(|e| e.get("MSFT_texture_dds")?.get("source")).cloned();
+        let source = dds.unwrap_or_else(|| {
+            absent.push(json!({ "name": format!("of texture {i}, which names none that can be read,") }));
+            images += 1;
+            json!(images - 1)
+        });
+        texture.insert("source".into(), source);
+    }
+    if !absent.is_empty() {
+        if let Some(list) = root.entry("images").or_insert(json!([])).as_array_mut() {
+            list.append(&mut absent);
+        }
+    }
+}
+
+/// Without a node, an extension says what is moved.
+fn moves_a_node(target: &Value) -> bool {
+    let path = target.get("path").and_then(Value::as_str).unwrap_or_default();
+    target.get("node").is_some() && ["translation", "rotation", "scale", "weights"].contains(&path)
+}
+
+/// JSON has one kind of number: 1.0 is an index as good as 1.
+fn whole_numbers(value: &mut Value) {
+    match value {
+        Value::Array(list) => list.iter_mut().for_each(whole_numbers),
+        Value::Object(fields) => {
+            fields.iter_mut().filter(|(key, _)| *key != "extras").for_each(|(_, v)| whole_numbers(v))
+        }
+        Value::Number(number) if number.is_f64() => {
+            let float = number.as_f64().unwrap_or(0.5);
+            let whole = float.fract() == 0.0 && float.abs() < 1e15 && !(float == 0.0 && float.is_sign_negative());
+            if whole {
+                *value = json!(float as i64);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The crate's own validation, without what the format allows; the accessors that have no known type.
+fn validate(root: &Root) -> Result<HashSet<usize>, String> {
+    let mut unreadable = HashSet::new();
+    let mut wrong = Vec::new();
+    root.validate(root, Path::new, &mut |path, error| {
+        let path = path();
+        let path = path.as_str();
+        let accessor = path.strip_prefix("accessors[").and_then(|rest| rest.split_once("]."));
+        match (error, accessor) {
+            (Error::Missing, Some((_, "bufferView"))) => {}
+            (Error::Missing, _) if path.ends_with("attributes[\"POSITION\"]") => {}
+            (Error::Invalid, Some((number, "type" | "componentType"))) => {
+                unreadable.extend(number.parse::<usize>());
+            }
+            _ => wrong.push(format!("{path}: {}", error.to_string().to_lowercase())),
+        }
+    });
+    match wrong.len() {
+        0 => Ok(unreadable),
+        n => {
+            wrong.truncate(4);
+            let more = if n > 4 { format!(" and {} more mistakes", n - 4) } else { String::new() };
+            Err(format!("{}{more}", wrong.join(", ")))
+        }
+    }
+}
+
+/// What the crate's validation does not look at, or breaks at.
+fn check(root: &Root) -> Result<(), String> {
+    for (i, mesh) in root.meshes.iter().enumerate() {
+        for primitive in &mesh.primitives {
+            let targets = primitive.targets.iter().flatten();
+            let moved = targets.flat_map(|t| [t.positions, t.normals, t.tangents].into_iter().flatten());
+            let mut used = primitive.attributes.values().copied().chain(primitive.indices).chain(moved);
+            if let Some(index) = used.find(|index| index.value() >= root.accessors.len()) {
+                return Err(format!("mesh {i} uses accessor {}, which does not exist", index.value()));
+            }
+        }
+    }
+    let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref()).map_or(&[][..], |l| &l.lights);
+    for (i, light) in lights.iter().enumerate() {
+        use ::gltf::json::extensions::scene::khr_lights_punctual::Type;
+        if matches!(light.type_, Checked::Valid(Type::Spot)) && light.spot.is_none() {
+            return Err(format!("light {i} is a spot without cone angles"));
+        }
+    }
+    for (i, node) in root.nodes.iter().enumerate() {
+        let light = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
+        if light.is_some_and(|light| light.light.value() >= lights.len()) {
+            return Err(format!("node {i} has a light that does not exist"));
+        }
+    }
+    for (i, camera) in root.cameras.iter().enumerate() {
+        use ::gltf::json::camera::Type;
+        let complete = match camera.type_ {
+            Checked::Valid(Type::Perspective) => camera.perspective.is_some(),
+            Checked::Valid(Type::Orthographic) => camera.orthographic.is_some(),
+            Checked::Invalid => false,
+        };
+        if !complete {
+            return Err(format!("camera {i} lacks the numbers of its type"));
+        }
+    }
+    for (i, animation) in root.animations.iter().enumerate() {
+        if animation.channels.iter().any(|channel| channel.sampler.value() >= animation.samplers.len()) {
+            return Err(format!("animation {i} has a channel whose sampler does not exist"));
+        }
+    }
+    Ok(())
+}
