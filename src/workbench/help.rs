@@ -7,6 +7,7 @@ use egui::{Key, KeyboardShortcut, Modifiers, Ui};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     Help,
+    Find,
     Undo,
     Redo,
     Play,
@@ -19,8 +20,9 @@ pub enum Action {
 }
 
 /// Longer combinations first: Ctrl Z is also pressed when Ctrl Shift Z is.
-const KEYS: [(Action, KeyboardShortcut, &str); 11] = [
+const KEYS: [(Action, KeyboardShortcut, &str); 12] = [
     (Action::Help, KeyboardShortcut::new(Modifiers::NONE, Key::F1), "these keys"),
+    (Action::Find, KeyboardShortcut::new(Modifiers::COMMAND, Key::F), "search the parameters"),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), "redo"),
     (Action::Undo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Z), "undo the last edit of parameters or lights"),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Y), "redo"),

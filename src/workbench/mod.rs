@@ -6,8 +6,10 @@ mod bar;
 mod builder;
 mod chart;
 pub mod compare;
+mod control;
 mod difference;
 pub mod edit;
+mod effects;
 pub mod engine;
 pub mod error_worker;
 pub mod events;
@@ -127,6 +129,7 @@ pub struct Workbench {
     returning: bool,
     panel: panel::Panel,
     panel_side: usize,
+    effects: effects::Effects,
     view: view::View,
     tab: Tab,
     times: times::Times,
@@ -199,6 +202,7 @@ impl Workbench {
             returning: false,
             panel: panel::Panel::default(),
             panel_side: 0,
+            effects: effects::Effects::default(),
             view: view::View::default(),
             tab: Tab::Surroundings,
             times: times::Times::default(),
@@ -292,7 +296,7 @@ impl Workbench {
                     .as_ref()
                     .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.sides[i].info.is_some())
         };
-        shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits()
+        shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits() && !self.effects.awaits()
     }
 
     /// The interface of one frame.
@@ -327,6 +331,7 @@ impl Workbench {
             self.comparison_of = None;
         }
         self.compare();
+        self.find_effects(ui);
         self.send_request();
         self.request_errors(ui);
     }
@@ -377,7 +382,7 @@ impl Workbench {
         };
         let other = self.desired.sides[1 - number].clone();
         if let Some(side) = &mut self.desired.sides[number] {
-            self.panel.show(ui, &info.graph.params, side, other.as_ref());
+            self.panel.show(ui, &info.graph, side, other.as_ref(), self.effects.of(number));
         }
     }
 
@@ -413,6 +418,7 @@ impl Workbench {
         let typing = ui.ctx().egui_wants_keyboard_input();
         for action in help::pressed(ui, typing) {
             match action {
+                help::Action::Find => self.panel.find = true,
                 help::Action::Help => self.help = !self.help,
                 help::Action::Undo => self.go(true),
                 help::Action::Redo => self.go(false),
