@@ -27,9 +27,18 @@ pub struct Running<'a> {
     pub variables: &'a Env,
 }
 
-/// Parameters that change nothing now, by name, with the reason in words. `compiler` finds the files of options that are
+/// Why a parameter changes nothing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reason {
+    /// In words.
+    pub text: String,
+    /// Choices with an option each with which it would count.
+    pub needs: Vec<(String, String)>,
+}
+
+/// Parameters that change nothing now, by name, with the reason. `compiler` finds the files of options that are
 /// not chosen.
-pub fn idle(running: &Running<'_>, params: &Params, compiler: &ShaderCompiler) -> BTreeMap<String, String> {
+pub fn idle(running: &Running<'_>, params: &Params, compiler: &ShaderCompiler) -> BTreeMap<String, Reason> {
     let read = read_by_shaders(running);
     let trial = Trial::new(running, params, &read);
     let silent: Vec<&Param> = params
@@ -67,7 +76,14 @@ fn read_by_shaders(running: &Running<'_>) -> BTreeSet<String> {
             for member in layout.members() {
                 let end = member.offset + member.layout.bytes();
                 let inside = |range: &(u32, u32)| range.0 < end && member.offset < range.1;
-                if bound.reads.as_ref().is_none_or(|ranges| ranges.iter().any(inside)) {
+                // Where the instructions do not tell, the text does.
+                let in_text = || {
+                    let word = format!("params.{}", member.name);
+                    let stages = link.stages.iter().filter(|s| s.stage == bound.stage);
+                    let mut texts = stages.flat_map(|s| s.texts.values());
+                    texts.any(|text| has_word(text, &word))
+                };
+                if bound.reads.as_ref().map_or_else(in_text, |ranges| ranges.iter().any(inside)) {
                     names.insert(member.name.clone());
                 }
             }
@@ -91,12 +107,14 @@ fn read_by_shaders(running: &Running<'_>) -> BTreeSet<String> {
 struct Trial<'a> {
     running: &'a Running<'a>,
     params: &'a Params,
+    /// What shaders of running passes read.
+    read: &'a BTreeSet<String>,
     env: Env,
     expressions: Vec<&'a Ex>,
 }
 
 impl<'a> Trial<'a> {
-    fn new(running: &'a Running<'a>, params: &'a Params, read: &BTreeSet<String>) -> Trial<'a> {
+    fn new(running: &'a Running<'a>, params: &'a Params, read: &'a BTreeSet<String>) -> Trial<'a> {
         let graph = running.graph;
         let mut env = running.variables.clone();
         super::value::fill(graph, params, &mut env);
@@ -117,7 +135,7 @@ impl<'a> Trial<'a> {
         expressions.extend(cases.flat_map(|c| c.when.iter().chain(&c.bind.mip).chain(&c.bind.layer)));
         expressions.extend(graph.values.iter().filter(|v| read.contains(&v.name)).map(|v| &v.expr));
         expressions.extend(graph.scene.iter().flat_map(|s| std::iter::once(&s.value.max_edge).chain(&s.value.when)));
-        Trial { running, params, env, expressions }
+        Trial { running, params, read, env, expressions }
     }
 
     fn value(&self, param: &Param) -> Value {
@@ -141,97 +159,121 @@ impl<'a> Trial<'a> {
     }
 
     fn changes_in(&self, param: &Param, env: &Env, expressions: &[&Ex]) -> bool {
-        let names = variables_of(param);
-        let mut moved: Vec<&str> = names.iter().map(String::as_str).collect();
-        let values = &self.running.graph.values;
-        for value in values {
-            if value.expr.value.variables().iter().any(|v| moved.contains(&v.as_str())) {
-                moved.push(&value.name);
-            }
-        }
-        let named: Vec<&&Ex> = expressions
-            .iter()
-            .filter(|ex| ex.value.variables().iter().any(|v| moved.contains(&v.as_str())))
-            .collect();
+        let moved = self.depending_on(param);
+        let counts = |ex: &&&Ex| !is_hash(ex) && ex.value.variables().iter().any(|v| moved.contains(v));
+        let named: Vec<&&Ex> = expressions.iter().filter(counts).collect();
         let outcome = |env: &Env| -> Vec<Option<u64>> {
             named.iter().map(|ex| ex.value.eval(env).ok().map(f64::to_bits)).collect()
         };
-        let now = if named.is_empty() { return false } else { outcome(env) };
-        others(param, &self.value(param)).into_iter().any(|other| {
-            let mut env = env.clone();
-            put(&mut env, param, &other);
-            for value in values.iter().filter(|v| moved.contains(&v.name.as_str())) {
-                if let Ok(number) = value.expr.value.eval(&env) {
-                    let number = if value.whole { (number + 1e-9).floor() } else { number };
-                    env.insert(value.name.clone(), Var::Number(number));
-                }
-            }
-            outcome(&env) != now
-        })
+        let now = outcome(env);
+        !named.is_empty()
+            && others(param, &self.value(param)).iter().any(|other| outcome(&self.with(env, param, other)) != now)
     }
 
     /// Why it changes nothing, in words.
-    fn reason(&self, param: &Param, texts: &Texts) -> String {
+    fn reason(&self, param: &Param, texts: &Texts) -> Reason {
         if let Some(when) = param.when.as_ref().filter(|_| self.refuses(param)) {
-            return format!("only where {}", when.value.text);
+            return Reason { text: format!("where {}", when.value.text), needs: self.needs_of(when) };
         }
-        let files = texts.naming(param);
+        let files = texts.naming(param, &self.depending_on(param));
         let mut clauses: Vec<String> = Vec::new();
-        for module in self.params.list.iter().filter(|m| m.is_module() && m.name != param.name) {
-            let options = texts.options.iter().filter(|o| o.0 == module.name && !o.2.is_disjoint(&files));
-            let options: Vec<&str> = options.map(|o| o.1.as_str()).collect();
-            if !options.is_empty() {
-                clauses.push(format!("{} is {}", module.name, options.join(" or ")));
-            }
-        }
-        if clauses.is_empty() {
-            clauses = self.switches(param);
-        }
-        for (condition, used) in &texts.resting {
-            let clause = format!("{condition} holds");
-            if clauses.len() < 2 && !used.is_disjoint(&files) && !clauses.contains(&clause) {
-                clauses.push(clause);
-            }
-        }
-        clauses.truncate(2);
-        match clauses.len() {
-            0 => "no pass that runs now reads it".into(),
-            _ => format!("only where {}", clauses.join(", or where ")),
-        }
-    }
-
-    /// Choices and flags with which another value would change an expression that names both.
-    fn switches(&self, param: &Param) -> Vec<String> {
-        let names = variables_of(param);
-        let all: Vec<&Ex> = super::plan::all_expressions(self.running.graph).collect();
-        let naming: Vec<&Ex> =
-            all.into_iter().filter(|ex| ex.value.variables().iter().any(|v| names.contains(v))).collect();
-        let mut clauses = Vec::new();
-        for switch in self.params.list.iter().filter(|s| s.name != param.name) {
-            if !naming.iter().any(|ex| ex.value.variables().contains(&switch.name)) {
+        let mut needs = Vec::new();
+        // A module that no running pass includes makes no difference.
+        let modules = self.params.list.iter().filter(|m| m.is_module() && m.name != param.name);
+        for module in modules.filter(|m| self.read.contains(&m.name)) {
+            let naming = |o: &&OptionFiles| !o.is_chosen && o.module == module.name && !o.files.is_disjoint(&files);
+            let options: Vec<&OptionFiles> = texts.options.iter().filter(naming).collect();
+            let names: Vec<&str> = options.iter().map(|o| o.option.as_str()).collect();
+            if names.is_empty() {
                 continue;
             }
-            let works = |value: &Value| {
-                let mut env = self.env.clone();
-                put(&mut env, switch, value);
-                self.changes_in(param, &env, &naming)
-            };
-            match &switch.kind {
-                Kind::Bool | Kind::Choice(_) => {
-                    let values: Vec<String> = others(switch, &self.value(switch))
-                        .into_iter()
-                        .filter(works)
-                        .map(|v| v.to_string())
-                        .collect();
-                    if !values.is_empty() {
-                        clauses.push(format!("{} is {}", switch.name, values.join(" or ")));
-                    }
-                }
-                _ => {}
+            clauses.push(format!("{} is {}", module.name, names.join(" or ")));
+            needs.extend(names.iter().map(|o| (module.name.clone(), (*o).to_string())));
+        }
+        if clauses.is_empty() {
+            (clauses, needs) = self.switches(param);
+        }
+        if clauses.is_empty() {
+            let resting = texts.resting.iter().filter(|(_, used)| !used.is_disjoint(&files));
+            clauses = resting.map(|(condition, _)| condition.clone()).collect();
+            clauses.dedup();
+        }
+        clauses.truncate(2);
+        let text = match clauses.len() {
+            0 => "no pass that runs now reads it".into(),
+            _ => format!("where {}", clauses.join(", or where ")),
+        };
+        Reason { text, needs }
+    }
+
+    /// Choices and flags with which a condition holds.
+    fn needs_of(&self, condition: &Ex) -> Vec<(String, String)> {
+        let switches = self.params.list.iter().filter(|s| matches!(s.kind, Kind::Bool | Kind::Choice(_)));
+        let holds = |switch: &Param, value: &Value| {
+            condition.value.eval(&self.with(&self.env, switch, value)).is_ok_and(|v| v != 0.0)
+        };
+        let mut needs = Vec::new();
+        for switch in switches {
+            let values = others(switch, &self.value(switch)).into_iter().filter(|v| holds(switch, v));
+            needs.extend(values.map(|v| (switch.name.clone(), v.to_string())));
+        }
+        needs
+    }
+
+    /// Choices and flags with which another value would change an expression that depends on both.
+    fn switches(&self, param: &Param) -> (Vec<String>, Vec<(String, String)>) {
+        let moved = self.depending_on(param);
+        let all: Vec<&Ex> = super::plan::all_expressions(self.running.graph).filter(|ex| !is_hash(ex)).collect();
+        let naming: Vec<&Ex> =
+            all.into_iter().filter(|ex| ex.value.variables().iter().any(|v| moved.contains(v))).collect();
+        let (mut clauses, mut needs) = (Vec::new(), Vec::new());
+        for switch in self.params.list.iter().filter(|s| s.name != param.name) {
+            let deciding = self.depending_on(switch);
+            let is_switch = matches!(switch.kind, Kind::Bool | Kind::Choice(_));
+            let named = naming.iter().any(|ex| ex.value.variables().iter().any(|v| deciding.contains(v)));
+            if !is_switch || !named {
+                continue;
+            }
+            let works = |value: &Value| self.changes_in(param, &self.with(&self.env, switch, value), &naming);
+            let values: Vec<Value> = others(switch, &self.value(switch)).into_iter().filter(works).collect();
+            if !values.is_empty() {
+                let names: Vec<String> = values.iter().map(ToString::to_string).collect();
+                clauses.push(format!("{} is {}", switch.name, names.join(" or ")));
+                needs.extend(names.into_iter().map(|v| (switch.name.clone(), v)));
             }
         }
-        clauses
+        (clauses, needs)
     }
+
+    /// The parameter's names in expressions, and the values that follow from it.
+    fn depending_on(&self, param: &Param) -> Vec<String> {
+        let mut moved = variables_of(param);
+        for value in &self.running.graph.values {
+            if !is_hash(&value.expr) && value.expr.value.variables().iter().any(|v| moved.contains(v)) {
+                moved.push(value.name.clone());
+            }
+        }
+        moved
+    }
+
+    /// The variables with another value of a parameter, and all that follows from it.
+    fn with(&self, env: &Env, param: &Param, value: &Value) -> Env {
+        let mut env = env.clone();
+        put(&mut env, param, value);
+        let moved = self.depending_on(param);
+        for value in self.running.graph.values.iter().filter(|v| moved.contains(&v.name)) {
+            if let Ok(number) = value.expr.value.eval(&env) {
+                let number = if value.whole { (number + 1e-9).floor() } else { number };
+                env.insert(value.name.clone(), Var::Number(number));
+            }
+        }
+        env
+    }
+}
+
+/// Whether an expression only tells settings apart: such a number changes nothing by itself.
+fn is_hash(ex: &Ex) -> bool {
+    ex.value.text.contains("hash(")
 }
 
 /// Its names in expressions.
@@ -286,11 +328,18 @@ fn put(env: &mut Env, param: &Param, value: &Value) {
     env.insert(name.clone(), var);
 }
 
-/// Files of shaders that are not in use now, by what would use them.
+/// The shader files of a module's option.
+struct OptionFiles {
+    module: String,
+    option: String,
+    is_chosen: bool,
+    files: BTreeSet<String>,
+}
+
+/// Files of shaders, by what uses them or would use them.
 struct Texts {
     files: BTreeMap<String, String>,
-    /// Module, option, files.
-    options: Vec<(String, String, BTreeSet<String>)>,
+    options: Vec<OptionFiles>,
     /// A condition that does not hold, files of the pass's shaders.
     resting: Vec<(String, BTreeSet<String>)>,
 }
@@ -312,9 +361,9 @@ impl Texts {
             let Kind::Choice(names) = &param.kind else { continue };
             let chosen = params.get(&param.name);
             for (option, file) in names.iter().zip(&param.files) {
-                if chosen != Some(&Value::Choice(option.clone())) {
-                    options.push((param.name.clone(), option.clone(), take(file)));
-                }
+                let is_chosen = chosen == Some(&Value::Choice(option.clone()));
+                let (module, option) = (param.name.clone(), option.clone());
+                options.push(OptionFiles { module, option, is_chosen, files: take(file) });
             }
         }
         let mut env = running.variables.clone();
@@ -329,12 +378,14 @@ impl Texts {
         Texts { files, options, resting }
     }
 
-    /// Files that name a parameter.
-    fn naming(&self, param: &Param) -> BTreeSet<String> {
+    /// Files that name a parameter, or a value that depends on it.
+    fn naming(&self, param: &Param, moved: &[String]) -> BTreeSet<String> {
         if param.is_module() {
             return BTreeSet::from([module_include(&param.name)]);
         }
-        let word = if param.constant { param.name.to_uppercase() } else { format!("params.{}", param.name) };
-        self.files.iter().filter(|(_, text)| has_word(text, &word)).map(|(file, _)| file.clone()).collect()
+        let own = if param.constant { param.name.to_uppercase() } else { format!("params.{}", param.name) };
+        let words: Vec<String> = std::iter::once(own).chain(moved.iter().map(|v| format!("params.{v}"))).collect();
+        let named = |text: &str| words.iter().any(|w| has_word(text, w));
+        self.files.iter().filter(|(_, text)| named(text)).map(|(file, _)| file.clone()).collect()
     }
 }

@@ -58,7 +58,13 @@ pub(super) fn control(ui: &mut Ui, param: &Param, title: &str, value: &mut Value
     }
 }
 
-fn slider<N: egui::emath::Numeric>(ui: &mut Ui, param: &Param, title: &str, v: &mut N, (low, high): (N, N)) -> Response {
+fn slider<N: egui::emath::Numeric>(
+    ui: &mut Ui,
+    param: &Param,
+    title: &str,
+    v: &mut N,
+    (low, high): (N, N),
+) -> Response {
     // Ranges over many powers of ten, with no negative part, are easier on a logarithmic slider.
     let (least, most) = (low.to_f64(), high.to_f64());
     let slider = egui::Slider::new(v, low..=high).show_value(false).logarithmic(least > 0.0 && most / least >= 1000.0);

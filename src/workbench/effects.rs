@@ -2,7 +2,7 @@
 
 use super::Workbench;
 use super::report::GraphInfo;
-use crate::graph::effect::{Running, effective, idle};
+use crate::graph::effect::{Reason, Running, effective, idle};
 use crate::shader::ShaderCompiler;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::Ui;
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 #[derive(Default)]
 pub struct Found {
     /// Parameters that change nothing, and why.
-    pub idle: BTreeMap<String, String>,
+    pub idle: BTreeMap<String, Reason>,
     /// What shaders take in place of a value.
     pub effective: BTreeMap<String, f64>,
 }

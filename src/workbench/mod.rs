@@ -296,7 +296,12 @@ impl Workbench {
                     .as_ref()
                     .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.sides[i].info.is_some())
         };
-        shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits() && !self.effects.awaits()
+        shown(0)
+            && shown(1)
+            && self.loading.is_none()
+            && !self.comparing
+            && !self.chart_awaits()
+            && !self.effects.awaits()
     }
 
     /// The interface of one frame.
@@ -428,6 +433,7 @@ impl Workbench {
                     self.desired.clock.steps += 1;
                 }
                 help::Action::Flip => self.view.flipped = !self.view.flipped,
+                help::Action::Unpoint if std::mem::take(&mut self.panel.typing) => self.panel.search.clear(),
                 help::Action::Unpoint => self.point_at(None),
                 help::Action::Save => self.save(false),
                 help::Action::Capture => self.capture(),

@@ -4,9 +4,10 @@ use super::control::{CHANGED, control};
 use super::edit;
 use super::effects::Found;
 use super::request::SideRequest;
+use crate::graph::effect::Reason;
 use crate::graph::load::Graph;
 use crate::graph::param::Param;
-use egui::{Key, RichText, Ui};
+use egui::{RichText, Ui};
 
 /// What of the panel is not part of the experiment.
 #[derive(Default)]
@@ -15,8 +16,8 @@ pub struct Panel {
     pub search: String,
     /// Show only what is not at its default.
     pub only_changed: bool,
-    /// Whether the search is to get the keys.
-    pub find: bool,
+    /// Whether it had them when it was shown last: Esc has taken them by then.
+    pub typing: bool,
 }
 
 /// What the rows of a side are made from.
@@ -27,7 +28,17 @@ struct Shown<'a> {
     other: Option<&'a SideRequest>,
 }
 
+/// The search field.
+fn search_id() -> egui::Id {
+    egui::Id::new("search parameters")
+}
+
 impl Panel {
+    /// Gives the search the keys, those of this frame too.
+    pub fn find(ui: &Ui) {
+        ui.memory_mut(|m| m.request_focus(search_id()));
+    }
+
     /// Shows the parameters of a side; edits go into it. `other` is the side it is compared with.
     pub fn show(
         &mut self,
@@ -52,8 +63,7 @@ impl Panel {
             }
             for (number, group) in groups(graph).into_iter().enumerate() {
                 let of_group = |p: &&Param| p.group == group;
-                let list: Vec<&Param> =
-                    graph.params.list.iter().filter(of_group).filter(|p| wanted(p, side)).collect();
+                let list: Vec<&Param> = graph.params.list.iter().filter(of_group).filter(|p| wanted(p, side)).collect();
                 if list.is_empty() {
                     continue;
                 }
@@ -72,7 +82,9 @@ impl Panel {
                     }
                 });
             }
-            for (name, instead) in graph.params.retired.iter().filter(|r| searching && !self.only_changed && !r.0.contains('=')) {
+            for (name, instead) in
+                graph.params.retired.iter().filter(|r| searching && !self.only_changed && !r.0.contains('='))
+            {
                 if folded(name).contains(&needle) && graph.params.index(name).is_none() {
                     any = true;
                     elsewhere(ui, name, name, instead, side);
@@ -95,14 +107,11 @@ impl Panel {
             ui.checkbox(&mut self.only_changed, "changed").on_hover_text("Only what is not at its default");
             let clear = ui.add_enabled(!self.search.is_empty(), egui::Button::new("×").small().frame(false));
             clear.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, "clear the search"));
-            let hint = egui::TextEdit::singleline(&mut self.search).hint_text("search");
+            let hint = egui::TextEdit::singleline(&mut self.search).id(search_id()).hint_text("search");
             let field = ui.add(hint.desired_width(f32::INFINITY)).on_hover_text("Ctrl F; Esc clears");
             field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search parameters"));
-            if std::mem::take(&mut self.find) {
-                field.request_focus();
-            }
-            let escape = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape));
-            if clear.clicked() || escape {
+            self.typing = field.has_focus();
+            if clear.clicked() {
                 self.search.clear();
             }
         });
@@ -120,6 +129,24 @@ impl Shown<'_> {
                 elsewhere(ui, name, title, instead, side);
             }
         }
+        self.needed(ui, side);
+    }
+
+    /// The choice with which most of the dimmed pinned parameters would count, a click away.
+    fn needed(&self, ui: &mut Ui, side: &mut SideRequest) {
+        let reasons = self.graph.pinned.iter().filter_map(|p| self.found?.idle.get(&p.0));
+        let needs: Vec<&(String, String)> = reasons.flat_map(|r| &r.needs).collect();
+        let count = |need: &(String, String)| needs.iter().filter(|n| **n == need).count();
+        // Of several, the first.
+        let Some((name, option)) = needs.iter().rev().max_by_key(|n| count(n)) else { return };
+        let Some(param) = self.graph.params.list.iter().find(|p| p.name == *name) else { return };
+        let Ok(value) = param.parse(option) else { return };
+        ui.horizontal(|ui| {
+            ui.weak("what is dimmed counts with");
+            if ui.small_button(format!("{name} = {option}")).on_hover_text(&param.help).clicked() {
+                edit::set(side, param, &value);
+            }
+        });
     }
 
     fn row(&self, ui: &mut Ui, param: &Param, title: &str, side: &mut SideRequest) {
@@ -135,12 +162,12 @@ impl Shown<'_> {
                 value = param.default.clone();
             }
             if idle.is_some() {
-                ui.multiply_opacity(0.45);
+                ui.multiply_opacity(0.55);
             }
             let response = control(ui, param, title, &mut value, changed);
             response.on_hover_ui(|ui| help(ui, param, idle));
             if let Some(taken) = self.found.and_then(|f| f.effective.get(&param.name)) {
-                ui.weak(format!("→ {}{}", short_number(*taken), unit(param))).on_hover_text("What shaders take for it");
+                ui.weak(format!("= {}{}", short_number(*taken), unit(param))).on_hover_text("What shaders take for it");
             }
             if let Some(other) = self.other {
                 let theirs = edit::value(other, param);
@@ -202,11 +229,13 @@ fn is_changed(graph: &Graph, side: &SideRequest, param: &Param) -> bool {
     edit::value(side, param) != param.default && graph.pointer.as_ref() != Some(&param.name)
 }
 
-fn help(ui: &mut Ui, param: &Param, idle: Option<&String>) {
+fn help(ui: &mut Ui, param: &Param, idle: Option<&Reason>) {
     ui.set_max_width(320.0);
     ui.strong(&param.name);
     if let Some(why) = idle {
-        ui.colored_label(CHANGED, format!("changes nothing now: it counts {why}"));
+        let why = &why.text;
+        let text = if why.starts_with("where") { format!("it counts {why}") } else { why.clone() };
+        ui.colored_label(CHANGED, format!("changes nothing now: {text}"));
     }
     ui.label(&param.help);
     let mut facts = vec![format!("default {}", param.default)];
