@@ -276,13 +276,18 @@ impl ShaderCompiler {
             let path = self.find(file).unwrap_or_else(|| PathBuf::from(format!("{file} (generated)")));
             let place = Place { file: path, line: number, column: 0 };
             let mut found = match level {
-                "error" => Diagnostic::error(place, message),
-                _ => Diagnostic::warning(place, message),
+                "error" => Diagnostic::error(place, shortened(message)),
+                _ => Diagnostic::warning(place, shortened(message)),
             };
             found.source = texts
                 .get(file)
                 .and_then(|t| t.lines().nth(number.saturating_sub(1) as usize))
                 .map(|l| l.trim().to_string());
+            if let Some(name) = missing_member(message) {
+                let line = found.source.clone().unwrap_or_default();
+                let members = texts.get("params.glsl").filter(|_| line.contains(&format!("params.{name}")));
+                found = found.nearest(name, members.into_iter().flat_map(|text| params_members(text)));
+            }
             if !list.contains(&found) {
                 list.push(found);
             }
@@ -293,6 +298,38 @@ impl ShaderCompiler {
         }
         list
     }
+}
+
+/// The member in the compiler's words that a structure has none of that name.
+fn missing_member(message: &str) -> Option<&str> {
+    let (name, rest) = message.strip_prefix('\'')?.split_once('\'')?;
+    rest.contains("no such field").then_some(name)
+}
+
+/// Names of the members of the block of parameters in the generated include.
+fn params_members(text: &str) -> impl Iterator<Item = &str> {
+    let block = text.lines().skip_while(|l| !l.contains("uniform Params")).skip(1).take_while(|l| !l.starts_with('}'));
+    block.filter_map(|line| line.trim().strip_suffix(';')?.split_whitespace().nth(1))
+}
+
+/// A message without the members of the types that it writes out.
+fn shortened(message: &str) -> String {
+    let mut out = String::new();
+    let mut depth = 0_u32;
+    for c in message.chars() {
+        match c {
+            '{' => {
+                if depth == 0 {
+                    out.push_str("{...}");
+                }
+                depth += 1;
+            }
+            '}' => depth = depth.saturating_sub(1),
+            _ if depth == 0 => out.push(c),
+            _ => {}
+        }
+    }
+    out
 }
 
 /// The name in an `#include "name"` line.
