@@ -77,8 +77,15 @@ impl Workbench {
                 self.loading = None;
                 self.event("load failed", json!({ "why": why }));
                 self.trouble = Some(why);
+                self.return_to_scene();
+                self.send_request();
             }
-            Report::Texels(target, texels) => self.inspector.note(target, *texels, &self.wake),
+            Report::Texels(target, texels) => {
+                let info = self.sides[target.side.min(1)].info.as_ref();
+                let number = info.and_then(|i| i.graph.textures.iter().position(|t| t.0 == target.texture));
+                let volume = info.zip(number).is_some_and(|(i, n)| i.textures.get(n).is_some_and(|t| t.volume));
+                self.inspector.note(target, *texels, volume, &self.wake);
+            }
             Report::Table(number, table, bytes) => self.tables.note(number, table, bytes),
             Report::Checks(side, failed) => self.sides[side].checks = failed,
             Report::Captured(result) => {
