@@ -96,7 +96,8 @@ impl Workbench {
 
     fn scenes_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        ui.menu_button(format!("scene: {}", short(&self.desired.scene)), |ui| {
+        let name = if self.no_scene { "none".into() } else { short(&self.desired.scene) };
+        ui.menu_button(format!("scene: {name}"), |ui| {
             for (name, about) in crate::scene::builtin::list() {
                 if ui.button(name).on_hover_text(about).clicked() {
                     chosen = Some(name.to_string());

@@ -119,6 +119,13 @@ pub struct Workbench {
     name: String,
     sides: [Side; 2],
     scene: Option<Arc<Scene>>,
+    /// Name of the loaded scene, its sky's picture, and how it was seen before another was asked for.
+    loaded_scene: Option<(String, String)>,
+    before_loading: Option<history::State>,
+    /// Whether the scene that was asked for last could not be loaded.
+    no_scene: bool,
+    /// What is to be known about the scene, until it is dismissed.
+    warned: bool,
     /// Diagonal of the scene's bounds, m; asking for the bounds walks through all vertices.
     diagonal: f32,
     experiment: Option<Experiment>,
@@ -194,6 +201,10 @@ impl Workbench {
             name: experiment.name.clone(),
             sides: Default::default(),
             scene: None,
+            loaded_scene: None,
+            before_loading: None,
+            no_scene: false,
+            warned: false,
             diagonal: 1.0,
             experiment: Some(experiment),
             loading: None,
@@ -246,6 +257,7 @@ impl Workbench {
     fn waiting_text(&self) -> String {
         match &self.loading {
             Some((what, part)) => format!("loading {what}: {:.0} %", 100.0 * part),
+            None if self.no_scene => "no scene".into(),
             None if self.device.is_none() => "opening the device".into(),
             None => "building the passes".into(),
         }

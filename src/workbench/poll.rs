@@ -75,7 +75,8 @@ impl Workbench {
             Report::Loaded(scene) => self.loaded(scene),
             Report::LoadFailed(why) => {
                 self.loading = None;
-                self.event("load failed", json!({ "why": why }));
+                self.event("load failed", json!({ "why": why, "scene": self.desired.scene }));
+                self.no_scene = self.scene.is_none();
                 self.trouble = Some(why);
                 self.return_to_scene();
                 self.send_request();
@@ -139,7 +140,8 @@ impl Workbench {
     fn loaded(&mut self, scene: Arc<Scene>) {
         self.loading = None;
         self.trouble = None;
-        self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
+        self.loaded_scene = Some((self.desired.scene.clone(), self.desired.environment.clone()));
+        (self.before_loading, self.no_scene) = (None, false);
         let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.desired.camera.is_some();
         if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
             let fallback = Experiment { camera: CameraChoice::Named("default".into()), ..self.bare() };
@@ -158,7 +160,11 @@ impl Workbench {
         }
         let (low, high) = scene.bounds();
         self.diagonal = (high - low).length().max(1e-3);
+        let (name, triangles) = (scene.name.clone(), scene.triangle_count());
         self.scene = Some(scene);
+        let warnings = self.scene_warnings();
+        self.warned = !warnings.is_empty();
+        self.event("loaded", json!({ "scene": name, "triangles": triangles, "warnings": warnings }));
         self.send_request();
     }
 }

@@ -1,11 +1,13 @@
 //! Camera, lights, sky and time: what is around the method.
 
 use super::Workbench;
+use super::control::spin;
+use super::messages::AMBER;
 use super::motion;
 use super::request::LightState;
 use crate::lab::Viewpoint;
 use crate::scene::{Light, LightKind};
-use egui::{DragValue, Ui};
+use egui::{DragValue, RichText, Ui};
 use glam::Vec3;
 
 fn metres(ui: &mut Ui, label: &str, v: &mut Vec3) {
@@ -21,6 +23,16 @@ impl Workbench {
     /// The section.
     pub(super) fn surroundings(&mut self, ui: &mut Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let warnings = self.scene_warnings();
+            if !warnings.is_empty() {
+                let title = RichText::new(format!("Warnings ({})", warnings.len())).color(AMBER);
+                egui::CollapsingHeader::new(title).id_salt("warnings").default_open(true).show(ui, |ui| {
+                    for warning in &warnings {
+                        ui.label(warning);
+                    }
+                });
+                ui.separator();
+            }
             ui.strong("Camera");
             self.camera(ui);
             ui.separator();
@@ -131,6 +143,9 @@ impl Workbench {
             let done = ui.add(field.desired_width(180.0)).lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let clicked = ui.button("load").on_hover_text("A picture of the sky; empty: the scene's own").clicked();
             if (done || clicked) && self.view.picture.trim() != self.desired.environment {
+                if self.missing_scene().is_none() {
+                    self.before_loading = Some(self.state());
+                }
                 self.desired.environment = self.view.picture.trim().into();
                 self.desired.lights = None;
             }
