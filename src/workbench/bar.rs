@@ -39,6 +39,10 @@ impl Workbench {
             ui.toggle_value(&mut self.desired.continuous, "keep rendering").on_hover_text(
                 "Frames are rendered when something changes; with this also when nothing does, to measure",
             );
+            let mut panels = !self.hidden;
+            if ui.toggle_value(&mut panels, "panels").on_hover_text("H").clicked() {
+                self.hidden = !panels;
+            }
             if ui.button("help").on_hover_text("F1").clicked() {
                 self.help = !self.help;
             }

@@ -9,6 +9,7 @@ pub mod compare;
 mod control;
 mod difference;
 pub mod edit;
+mod editor;
 mod effects;
 pub mod engine;
 pub mod error_worker;
@@ -146,6 +147,11 @@ pub struct Workbench {
     paths: paths::Paths,
     gallery: gallery::Gallery,
     help: bool,
+    /// Whether the panels at the sides are hidden, and the window fills the screen.
+    hidden: bool,
+    full_screen: bool,
+    /// The experiment's file as it was written last from here: its change is no news.
+    written: Option<PathBuf>,
     /// The last message of the status line.
     status: String,
     trouble: Option<String>,
@@ -223,6 +229,9 @@ impl Workbench {
             paths: paths::Paths::default(),
             gallery: gallery::Gallery::default(),
             help: false,
+            hidden: false,
+            full_screen: false,
+            written: None,
             status: String::new(),
             trouble,
             pixels: Vec::new(),
@@ -318,27 +327,29 @@ impl Workbench {
 
     /// The interface of one frame.
     pub fn ui(&mut self, ui: &mut Ui, textures: &[TextureId]) {
+        release_focus(ui);
         self.shortcuts(ui);
         egui::Panel::top("bar").show(ui, |ui| self.bar(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
-        if self.has_messages() {
-            egui::Panel::bottom("messages").resizable(true).show(ui, |ui| self.messages(ui));
+        if !self.hidden {
+            egui::Panel::left("parameters")
+                .default_size(340.0)
+                .size_range(180.0..=640.0)
+                .show(ui, |ui| self.parameters(ui));
+            egui::Panel::right("right")
+                .default_size(320.0)
+                .size_range(180.0..=760.0)
+                .show(ui, |ui| self.right(ui, textures));
         }
-        egui::Panel::left("parameters")
-            .default_size(340.0)
-            .size_range(180.0..=640.0)
-            .show(ui, |ui| self.parameters(ui));
-        egui::Panel::right("right")
-            .default_size(320.0)
-            .size_range(180.0..=760.0)
-            .show(ui, |ui| self.right(ui, textures));
         let inspecting = self.tab == Tab::Inspector && self.inspector.fills_viewport();
-        egui::CentralPanel::no_frame().show(ui, |ui| match inspecting {
+        let central = egui::CentralPanel::no_frame().show(ui, |ui| match inspecting {
             true => self.inspected(ui, textures),
             false => self.picture(ui, textures),
         });
+        let place = central.response.rect;
+        self.messages(ui, place);
         if self.help {
-            self.help_window(ui);
+            self.help_window(ui, place);
         }
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
@@ -405,6 +416,9 @@ impl Workbench {
 
     fn right(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         ui.horizontal_wrapped(|ui| {
+            // All of them in one row.
+            ui.spacing_mut().item_spacing.x = 1.0;
+            ui.spacing_mut().button_padding.x = 3.0;
             for (tab, name) in [
                 (Tab::Surroundings, "Scene"),
                 (Tab::Times, "Time"),
@@ -414,7 +428,7 @@ impl Workbench {
                 (Tab::Paths, "Motion"),
                 (Tab::Gallery, "Save"),
             ] {
-                ui.selectable_value(&mut self.tab, tab, name);
+                ui.selectable_value(&mut self.tab, tab, egui::RichText::new(name).size(12.0));
             }
         });
         ui.separator();
@@ -435,7 +449,10 @@ impl Workbench {
         let typing = ui.ctx().egui_wants_keyboard_input();
         for action in help::pressed(ui, typing) {
             match action {
-                help::Action::Find => self.panel.find = true,
+                help::Action::Find => {
+                    self.hidden = false;
+                    panel::Panel::find(ui);
+                }
                 help::Action::Help => self.help = !self.help,
                 help::Action::Undo => self.go(true),
                 help::Action::Redo => self.go(false),
@@ -449,6 +466,12 @@ impl Workbench {
                 help::Action::Unpoint => self.point_at(None),
                 help::Action::Save => self.save(false),
                 help::Action::Capture => self.capture(),
+                help::Action::Panels => self.hidden = !self.hidden,
+                help::Action::FullScreen => {
+                    self.full_screen = !self.full_screen;
+                    ui.ctx().send_viewport_cmd(egui::ViewportCommand::Fullscreen(self.full_screen));
+                }
+                help::Action::WholePicture => self.view.zoom = zoom::Zoom::default(),
                 help::Action::RenderDoc => self.engine.order(Order::RenderDoc),
             }
         }
@@ -459,6 +482,19 @@ impl Workbench {
         let mut messages = self.chart.close(Duration::from_secs(5));
         messages.extend(self.engine.stop(Duration::from_secs(20)));
         messages
+    }
+}
+
+/// A press of the mouse elsewhere takes the keys away from a text field: a drag on a slider would leave them there, and
+/// with them what Ctrl Z means.
+fn release_focus(ui: &Ui) {
+    let Some(focused) = ui.ctx().memory(egui::Memory::focused) else { return };
+    let pressed = ui.input(|i| if i.pointer.any_pressed() { i.pointer.interact_pos() } else { None });
+    let rect = ui.ctx().read_response(focused).map(|r| r.rect);
+    if let (Some(at), Some(rect)) = (pressed, rect)
+        && !rect.contains(at)
+    {
+        ui.ctx().memory_mut(|m| m.surrender_focus(focused));
     }
 }
 
