@@ -29,10 +29,14 @@ impl Workbench {
         if path.file_stem().is_none_or(|s| s.to_string_lossy() != self.name.as_str()) {
             return;
         }
+        let own = self.written.take().is_some_and(|w| w.file_name() == path.file_name());
         match Experiment::read(path) {
+            Ok(_) if own => {}
             Ok(experiment) => {
                 self.sides[0].errors.clear();
-                if side_of(&experiment) != self.desired.sides[0].clone().unwrap_or_default()
+                let pointer = self.sides[0].info.as_ref().and_then(|i| i.graph.pointer.as_deref());
+                let shown = self.desired.sides[0].clone().unwrap_or_default();
+                if sorted(side_of(&experiment)) != sorted(save::without_pointer(&shown, pointer))
                     || experiment.scene != self.desired.scene
                     || picture_of(&experiment) != self.desired.environment
                 {
@@ -115,6 +119,12 @@ impl Workbench {
         let side = self.desired.sides[0].clone().unwrap_or_default();
         Experiment { name: self.name.clone(), ..self.desired.experiment(&side) }
     }
+}
+
+/// A side with its parameters in order: what a file says does not depend on theirs.
+fn sorted(mut side: SideRequest) -> SideRequest {
+    side.params.sort();
+    side
 }
 
 /// The file of the picture that an experiment gives the sky.

@@ -99,6 +99,7 @@ impl Workbench {
                     Err(why) => format!("not captured: {why}"),
                 };
                 self.event("captured", json!({ "ok": ok, "text": text }));
+                self.gallery.captured(ok, &text);
                 self.status = text;
             }
             Report::Error(result) => self.error_came(result),
