@@ -29,6 +29,7 @@ mod renderdoc;
 pub mod report;
 pub mod request;
 mod save;
+mod sequence;
 mod surroundings;
 mod tables;
 mod times;

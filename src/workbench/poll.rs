@@ -33,6 +33,7 @@ impl Workbench {
             self.pixels.push(pixels);
         }
         self.poll_chart();
+        self.poll_sequence();
         match self.watch.take() {
             Ok(changed) => {
                 self.files_changed(&changed);
