@@ -35,6 +35,7 @@ mod tables;
 mod times;
 mod view;
 mod watch;
+mod zoom;
 
 use crate::experiment::Experiment;
 use crate::graph::run::Redo;
