@@ -115,6 +115,11 @@ impl Workbench {
                     ui.close();
                 }
             }
+            ui.separator();
+            if let Some(spec) = self.models.menu(ui) {
+                chosen = Some(spec);
+                ui.close();
+            }
             ui.weak("Models (.gltf, .glb, .obj) can be dropped on the window");
         });
         if let Some(spec) = chosen {

@@ -3,6 +3,7 @@
 //! Nothing here knows a window system: [`crate::window`] and offscreen screenshots are two hosts of the same interface.
 
 mod bar;
+mod bookmarks;
 mod builder;
 mod chart;
 pub mod compare;
@@ -20,6 +21,7 @@ mod history;
 mod host;
 mod inspector;
 mod messages;
+mod models;
 mod motion;
 mod opening;
 mod panel;
@@ -147,6 +149,8 @@ pub struct Workbench {
     inspector: inspector::Inspector,
     tables: tables::Tables,
     paths: paths::Paths,
+    bookmarks: bookmarks::Bookmarks,
+    models: models::Models,
     gallery: gallery::Gallery,
     help: bool,
     /// Whether the panels at the sides are hidden, and the window fills the screen.
@@ -229,6 +233,8 @@ impl Workbench {
             inspector: inspector::Inspector::default(),
             tables: tables::Tables::default(),
             paths: paths::Paths::default(),
+            bookmarks: bookmarks::Bookmarks::default(),
+            models: models::Models::default(),
             gallery: gallery::Gallery::default(),
             help: false,
             hidden: false,
