@@ -22,13 +22,16 @@ pub struct Found {
 /// What they were found for: the graph as it runs, and the parameters that are set.
 type Of = (Arc<GraphInfo>, Vec<(String, String)>);
 
+/// What was found: side, what for, what.
+type Made = (usize, Of, Found);
+
 /// What is known of sides A and B.
 pub struct Effects {
     known: [Option<(Of, Found)>; 2],
     /// Since when a side waits.
     since: Option<Instant>,
     working: bool,
-    made: (Sender<(usize, Of, Found)>, Receiver<(usize, Of, Found)>),
+    made: (Sender<Made>, Receiver<Made>),
 }
 
 impl Default for Effects {
