@@ -80,8 +80,12 @@ pub fn run(options: Options, window: WindowOptions) -> Result<(), LabError> {
 impl App {
     fn create(&mut self, event_loop: &ActiveEventLoop) -> Result<Open, LabError> {
         let (width, height) = self.options.size;
-        let attributes =
-            Window::default_attributes().with_title("conelab").with_inner_size(LogicalSize::new(width, height));
+        let monitor = event_loop.primary_monitor().or_else(|| event_loop.available_monitors().next());
+        let size = match monitor {
+            Some(m) => clamped((width, height), m.scale_factor(), (m.size().width, m.size().height)),
+            None => LogicalSize::new(f64::from(width), f64::from(height)),
+        };
+        let attributes = Window::default_attributes().with_title("conelab").with_inner_size(size);
         let window = event_loop
             .create_window(attributes)
             .map_err(|e| LabError::Request(format!("cannot open a window: {e}")))?;
@@ -111,6 +115,12 @@ impl App {
         let more = workbench.describe(output.platform_output.accesskit_update.as_ref(), output.pixels_per_point);
         output.platform_output.accesskit_update = None;
         open.state.handle_platform_output(&open.window, output.platform_output);
+        let commands = output.viewport_output.get(&ViewportId::ROOT).map_or(&[][..], |v| &v.commands);
+        for command in commands {
+            if let egui::ViewportCommand::Fullscreen(on) = command {
+                open.window.set_fullscreen(on.then_some(winit::window::Fullscreen::Borderless(None)));
+            }
+        }
         let primitives = self.context.tessellate(output.shapes, output.pixels_per_point);
         let size = open.window.inner_size();
         let pixels: Vec<Pixels<'_>> = workbench.pixels().iter().filter_map(NewPixels::source).collect();
@@ -145,6 +155,12 @@ impl App {
             event_loop.exit();
         }
     }
+}
+
+/// A size in points that fits a monitor of so many pixels.
+fn clamped(points: (u32, u32), scale: f64, monitor: (u32, u32)) -> LogicalSize<f64> {
+    let most = |pixels: u32| if pixels == 0 { f64::INFINITY } else { f64::from(pixels) / scale.max(0.1) };
+    LogicalSize::new(f64::from(points.0).min(most(monitor.0)), f64::from(points.1).min(most(monitor.1)))
 }
 
 impl ApplicationHandler<Wake> for App {
@@ -204,5 +220,18 @@ impl ApplicationHandler<Wake> for App {
             Some(at) => event_loop.set_control_flow(ControlFlow::WaitUntil(at)),
             None => event_loop.set_control_flow(ControlFlow::Wait),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_fits_its_monitor() {
+        assert_eq!(clamped((1600, 900), 2.0, (1600, 900)), LogicalSize::new(800.0, 450.0));
+        assert_eq!(clamped((1600, 900), 1.0, (3840, 2160)), LogicalSize::new(1600.0, 900.0));
+        // Some servers know no size.
+        assert_eq!(clamped((1600, 900), 1.0, (0, 0)), LogicalSize::new(1600.0, 900.0));
     }
 }

@@ -189,6 +189,19 @@ fn graph(old: &str, new: &str) -> String {
     bench().edit("passes/graph.ron", old, new).findings()
 }
 
+#[test]
+fn a_graph_pins_what_it_declares() {
+    let said = graph(
+        "    output: \"picture\",",
+        "    output: \"picture\",\n    pinned: { \"cels\": \"Cells\", \"level\": \"\" },",
+    );
+    assert!(said.contains("no parameter 'cels' to pin") && said.contains("did you mean 'cells'?"), "{said}");
+    assert!(said.contains("'level' is pinned without a title"), "{said}");
+    let edit = ("Float(name: \"level\", ", "Float(name: \"level\", when: \"methd == fast\", ");
+    let said = bench().edit("passes/shared.ron", edit.0, edit.1).findings();
+    assert!(said.contains("unknown variable 'methd'") && said.contains("did you mean 'method'?"), "{said}");
+}
+
 /// One mistake in a shader.
 #[track_caller]
 fn shader(name: &str, old: &str, new: &str) -> String {
@@ -828,7 +841,7 @@ fn texts_of_shaders() {
     shaders/include/light.glsl:3: error: 'levle' : no such field in structure 'params'
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
         = help: did you mean 'level'?
-    shaders/include/light.glsl:3: error: '*' :  wrong operand types: no operation '*' exists that takes a left-hand operand of type 'layout( column_major std140) uniform block{layout( column_major std140 offset=0) uniform highp float level, layout( column_major std140 offset=4) uniform highp int cells, layout( column_major std140 offset=8) uniform highp int method, layout( column_major std140 offset=12) uniform highp int grid_format, lay ...
+    shaders/include/light.glsl:3: error: '*' :  wrong operand types: no operation '*' exists that takes a left-hand operand of type 'layout( column_major std140) uniform block{...}' and a right operand of type ' temp float' (or there is no acceptable conversion)
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
     shaders/include/light.glsl:3: error: 'constructor' : can't convert
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));

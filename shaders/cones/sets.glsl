@@ -13,10 +13,9 @@ struct ConeSet {
     float tan_half; // of the half-angle
 };
 
-// Angles in degrees; `aperture` is the full angle, which diffuse_aperture replaces.
-ConeSet makeConeSet(int count, float axial_weight, float tilt, float aperture) {
-    float angle = params.diffuse_aperture > 0.0 ? params.diffuse_aperture : aperture;
-    return ConeSet(count, axial_weight, cos(radians(tilt)), sin(radians(tilt)), tan(radians(0.5 * angle)));
+// Angles in degrees; the graph's value cone_aperture is the full angle, of the set or as diffuse_aperture says.
+ConeSet makeConeSet(int count, float axial_weight, float tilt) {
+    return ConeSet(count, axial_weight, cos(radians(tilt)), sin(radians(tilt)), tan(radians(0.5 * params.cone_aperture)));
 }
 
 #include "modules/cone_set.glsl"

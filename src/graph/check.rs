@@ -224,6 +224,22 @@ impl Check<'_> {
         }
     }
 
+    /// Names of pinned parameters: those of another graph too, where the graph says which.
+    pub(super) fn pinned(&mut self, list: &[(Loc<String>, Loc<String>)]) {
+        let params = &self.graph.params;
+        for (name, title) in list {
+            let elsewhere = params.retired.iter().any(|(retired, _)| *retired == name.value);
+            if params.index(&name.value).is_none() && !elsewhere && self.is_unknown(&name.value) {
+                let known = params.list.iter().map(|p| p.name.as_str());
+                let found = self.graph.sources.error(name.at, format!("no parameter '{}' to pin", name.value));
+                self.errors.push(found.nearest(&name.value, known));
+            }
+            if title.value.trim().is_empty() || title.value.contains('\n') {
+                self.error(title.at, format!("'{}' is pinned without a title of one line", name.value));
+            }
+        }
+    }
+
     pub(super) fn voxels(&mut self, voxels: &VoxelsDecl) {
         for name in [&voxels.occupied, &voxels.color, &voxels.normal] {
             let known = self.texture_name(name);

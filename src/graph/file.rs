@@ -16,6 +16,8 @@ pub struct GraphFile {
     pub params: Items<Decl>,
     /// Other defaults for parameters of included files.
     pub defaults: Entries<RawText>,
+    /// Parameters that the panel shows first: name, title in plain words.
+    pub pinned: Entries<String>,
     /// Modules that nobody chooses: name, file in the shader folder.
     pub modules: Entries<String>,
     /// What to write instead of a parameter, or of `parameter=option`, that is no more.

@@ -32,6 +32,8 @@ pub struct Graph {
     pub params: Params,
     /// Where each parameter is declared.
     pub params_at: Vec<At>,
+    /// Parameters that the panel shows first: name, title. One that is retired is shown with what to write instead.
+    pub pinned: Vec<(String, String)>,
     /// Modules that nobody chooses: name, file in the shader folder.
     pub modules: Vec<(String, String)>,
     /// Named values, each after those that it reads.
@@ -116,6 +118,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
         params: Params::default(),
         params_at: Vec::new(),
+        pinned: Vec::new(),
         modules: Vec::new(),
         values: Vec::new(),
         textures: Vec::new(),
@@ -149,6 +152,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let mut defaults: Vec<(Loc<String>, Loc<RawText>)> = Vec::new();
     let mut modules: Vec<(Loc<String>, Loc<String>)> = Vec::new();
     let mut retired = Vec::new();
+    let mut pinned: Vec<(Loc<String>, Loc<String>)> = Vec::new();
     for file in files {
         // A parameter takes the place of the module that an included file has set once and for all.
         modules.retain(|(name, _)| !file.params.0.iter().any(|p| p.value.name().value == name.value));
@@ -157,6 +161,12 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
             modules.push((name, path));
         }
         defaults.extend(file.defaults.0);
+        for (name, title) in file.pinned.0 {
+            match pinned.iter_mut().find(|p| p.0.value == name.value) {
+                Some(known) => known.1 = title,
+                None => pinned.push((name, title)),
+            }
+        }
         retired.extend(file.retired.0.into_iter().map(|(name, instead)| (name.value, instead.value)));
         // A value or parameter of an including file takes the place of an included one's value.
         values.retain(|(name, _): &(Loc<String>, _)| {
@@ -206,6 +216,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     graph.values = ordered(values, &graph.params, &graph.sources, &mut errors, &mut broken);
     let mut check = Check { graph: &graph, folders, errors, broken, whole, variables: HashSet::new() };
     check.names();
+    check.pinned(&pinned);
+    check.exprs(graph.params.list.iter().flat_map(|p| p.when.iter().chain(&p.effective)));
     check.modules(&modules);
     check.named_values();
     check.textures();
@@ -242,6 +254,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         check.exprs(needs.value.when.as_ref());
     }
     let mut errors = check.errors;
+    graph.pinned = pinned.into_iter().map(|(name, title)| (name.value, title.value)).collect();
     graph.modules = modules.into_iter().map(|(name, file)| (name.value, file.value)).collect();
     graph.checks = checks.into_iter().map(|c| c.value).collect();
     graph.pointer = pointer.map(|p| p.value);

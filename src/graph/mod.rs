@@ -3,6 +3,7 @@ mod alias;
 mod check;
 mod check_pass;
 mod choices;
+pub mod effect;
 pub mod expr;
 pub mod externals;
 pub mod file;

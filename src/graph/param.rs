@@ -1,6 +1,7 @@
 //! Parameters: declared once in a graph, read by shaders, `--set`, experiments, panels and sweeps.
 
 use super::expr::{Env, Var};
+use super::file::Ex;
 use super::source::{Entries, Loc, nearest, options};
 use super::value::{Named, members as members_of};
 use serde::{Deserialize, Serialize};
@@ -112,6 +113,10 @@ pub struct Param {
     pub help: String,
     /// Whether it is a specialisation constant.
     pub constant: bool,
+    /// When it counts at all, where shaders decide that at run time.
+    pub when: Option<Ex>,
+    /// What shaders take in its place, where that is not the value itself.
+    pub effective: Option<Ex>,
     /// Of a module: the shader file of each option; empty for all others.
     pub files: Vec<String>,
 }
@@ -157,6 +162,8 @@ pub struct ModuleFields {
     pub group: String,
     /// Help.
     pub help: String,
+    /// When it counts.
+    pub when: Option<Ex>,
 }
 
 /// Fields of a declaration.
@@ -187,6 +194,10 @@ pub struct Fields<T> {
     /// Specialisation constant.
     #[serde(default)]
     pub constant: bool,
+    /// When it counts, where shaders decide that at run time.
+    pub when: Option<Ex>,
+    /// What shaders take in its place.
+    pub effective: Option<Ex>,
 }
 
 impl Decl {
@@ -222,6 +233,8 @@ impl Decl {
                     help: f.help.clone(),
                     options: self.options(),
                     constant: false,
+                    when: f.when.clone(),
+                    effective: None,
                 };
                 let files = f.options.0.iter().map(|(_, file)| file.value.clone()).collect();
                 Decl::Choice(choice).param().map(|param| Param { files, ..param })
@@ -279,6 +292,8 @@ fn make<T>(fields: &Fields<T>, kind: Kind, value: impl Fn(&T) -> Value) -> Resul
         group: fields.group.clone(),
         help: fields.help.clone(),
         constant: fields.constant,
+        when: fields.when.clone(),
+        effective: fields.effective.clone(),
         files: Vec::new(),
     };
     param.check(&param.default).map_err(|e| format!("default of {e}"))?;

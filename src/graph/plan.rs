@@ -191,15 +191,17 @@ pub fn all_expressions(graph: &Graph) -> impl Iterator<Item = &Ex> {
     let values = graph.values.iter().map(|v| &v.expr).chain(graph.refuse.iter().map(|r| &r.when));
     let cases = graph.aliases.iter().flat_map(|a| &a.cases);
     let aliases = cases.flat_map(|c| c.when.iter().chain(&c.bind.mip).chain(&c.bind.layer));
+    let params = graph.params.list.iter().flat_map(|p| p.when.iter().chain(&p.effective));
     textures
         .chain(buffers)
+        .chain(params)
         .chain(scene)
         .chain(values)
         .chain(aliases)
         .chain(graph.passes.iter().flat_map(|p| pass_expressions(&p.value)))
 }
 
-fn pass_expressions(pass: &PassDecl) -> Vec<&Ex> {
+pub(super) fn pass_expressions(pass: &PassDecl) -> Vec<&Ex> {
     let mut list: Vec<&Ex> = pass.conditions().chain(&pass.settles).chain(&pass.repeat).chain(&pass.mip).collect();
     if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = pass.dispatch.as_ref().map(|d| &d.value) {
         list.extend([x, y, z]);

@@ -81,7 +81,8 @@ pub struct ReusableParts {
 pub struct Session {
     /// The graph.
     pub graph: Arc<Graph>,
-    linked: Arc<Vec<Linked>>,
+    /// Its passes with their shaders.
+    pub linked: Arc<Vec<Linked>>,
     wanted: Vec<String>,
     /// Present parameter values.
     pub params: Params,

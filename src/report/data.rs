@@ -81,6 +81,8 @@ pub struct Data {
     pub keys: Vec<(Subject, String)>,
     /// Bounces of the reference that all parts of each subject are scored against.
     pub bounces: Vec<Option<u32>>,
+    /// Bounces and samples of a pixel of the references of each subject.
+    pub samples: Vec<Vec<(u32, u64)>>,
     /// How each subject was measured, one line.
     pub settings: Vec<String>,
     pub parts: Vec<String>,
@@ -114,6 +116,7 @@ impl Data {
             subjects: Vec::new(),
             keys: Vec::new(),
             bounces: Vec::new(),
+            samples: Vec::new(),
             settings: Vec::new(),
             parts: Vec::new(),
             references: Vec::new(),
@@ -144,6 +147,7 @@ impl Data {
                 data.subjects.push(format!("{}{number} at {}x{}, {}", s.scene, s.size.0, s.size.1, device.name));
                 let references: Vec<String> =
                     point.references.iter().map(|(bounces, n)| format!("{n} samples a pixel of {bounces} bounces")).collect();
+                data.samples.push(point.references.iter().map(|(bounces, n)| (*bounces, *n)).collect());
                 let samples = match references.is_empty() {
                     true => String::from("no reference"),
                     false => format!("reference: {}", references.join("; ")),

@@ -288,18 +288,20 @@ impl ShaderCompiler {
             let path = self.find(file).unwrap_or_else(|| PathBuf::from(format!("{file} (generated)")));
             let place = Place { file: path, line: number, column: 0 };
             // Some print a whole type.
-            let told = excerpt(message, 400);
+            let told = excerpt(&shortened(message), 400);
             let mut found = match level {
                 "error" => Diagnostic::error(place, told),
                 _ => Diagnostic::warning(place, told),
             };
-            if let Some((name, _)) = message.strip_prefix('\'').and_then(|m| m.split_once("' : no such field")) {
-                found = found.nearest(name, texts.get("params.glsl").into_iter().flat_map(|text| members(text)));
-            }
             found.source = texts
                 .get(file)
                 .and_then(|t| t.lines().nth(number.saturating_sub(1) as usize))
                 .map(|l| l.trim().to_string());
+            if let Some(name) = missing_member(message) {
+                let line = found.source.clone().unwrap_or_default();
+                let members = texts.get("params.glsl").filter(|_| line.contains(&format!("params.{name}")));
+                found = found.nearest(name, members.into_iter().flat_map(|text| params_members(text)));
+            }
             // Every include up to the first one is told again.
             let again = message.contains(TOO_MANY) && list.iter().any(|f| f.message.contains(TOO_MANY));
             if !list.contains(&found) && !again {
@@ -314,10 +316,36 @@ impl ShaderCompiler {
     }
 }
 
-/// Names before semicolons.
-fn members(text: &str) -> impl Iterator<Item = &str> {
-    let declared = text.lines().filter_map(|line| line.trim_end().strip_suffix(';'));
-    declared.filter_map(|line| line.split_whitespace().next_back()).map(|name| name.split('[').next().unwrap_or(name))
+/// The member in the compiler's words that a structure has none of that name.
+fn missing_member(message: &str) -> Option<&str> {
+    let (name, rest) = message.strip_prefix('\'')?.split_once('\'')?;
+    rest.contains("no such field").then_some(name)
+}
+
+/// Names of the members of the block of parameters in the generated include.
+fn params_members(text: &str) -> impl Iterator<Item = &str> {
+    let block = text.lines().skip_while(|l| !l.contains("uniform Params")).skip(1).take_while(|l| !l.starts_with('}'));
+    block.filter_map(|line| line.trim().strip_suffix(';')?.split_whitespace().nth(1))
+}
+
+/// A message without the members of the types that it writes out.
+fn shortened(message: &str) -> String {
+    let mut out = String::new();
+    let mut depth = 0_u32;
+    for c in message.chars() {
+        match c {
+            '{' => {
+                if depth == 0 {
+                    out.push_str("{...}");
+                }
+                depth += 1;
+            }
+            '}' => depth = depth.saturating_sub(1),
+            _ if depth == 0 => out.push(c),
+            _ => {}
+        }
+    }
+    out
 }
 
 /// The name in an `#include "name"` line.

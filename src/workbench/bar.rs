@@ -48,6 +48,10 @@ impl Workbench {
                 ui.selectable_value(&mut self.view.timers, Rows::Stages, "stages");
                 ui.selectable_value(&mut self.view.timers, Rows::Passes, "passes");
             }
+            let mut panels = !self.hidden;
+            if ui.toggle_value(&mut panels, "panels").on_hover_text("H").clicked() {
+                self.hidden = !panels;
+            }
             if ui.button("help").on_hover_text("F1").clicked() {
                 self.help = !self.help;
             }
@@ -105,7 +109,8 @@ impl Workbench {
 
     fn scenes_menu(&mut self, ui: &mut Ui) {
         let mut chosen = None;
-        ui.menu_button(format!("scene: {}", short(&self.desired.scene)), |ui| {
+        let name = if self.no_scene { "none".into() } else { short(&self.desired.scene) };
+        ui.menu_button(format!("scene: {name}"), |ui| {
             for (name, about) in crate::scene::builtin::list() {
                 if ui.button(name).on_hover_text(about).clicked() {
                     chosen = Some(name.to_string());
@@ -118,6 +123,11 @@ impl Workbench {
                     chosen = Some(path.to_string_lossy().into_owned());
                     ui.close();
                 }
+            }
+            ui.separator();
+            if let Some(spec) = self.models.menu(ui) {
+                chosen = Some(spec);
+                ui.close();
             }
             ui.weak("Models (.gltf, .glb, .obj) can be dropped on the window");
         });

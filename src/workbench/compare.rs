@@ -87,6 +87,28 @@ pub fn difference(a: &Shown, b: &Shown, gain: u32) -> Option<Map> {
     })
 }
 
+/// A and B in one picture: A left and B right of a line, side by side, or the one that is shown.
+pub fn joined(a: &Shown, b: &Shown, mode: Mode, split: f32, flipped: bool) -> Shown {
+    let row = |s: &Shown, y: u32| {
+        let width = 4 * s.size[0] as usize;
+        let start = y as usize * width;
+        s.bytes.get(start..start + width).unwrap_or(&[]).to_vec()
+    };
+    match mode {
+        Mode::Side if a.size[1] == b.size[1] => {
+            let bytes = (0..a.size[1]).flat_map(|y| [row(a, y), row(b, y)].concat()).collect();
+            Shown { size: [a.size[0] + b.size[0], a.size[1]], bytes: Arc::new(bytes) }
+        }
+        Mode::Split if a.size == b.size => {
+            let line = 4 * (split.clamp(0.0, 1.0) * a.size[0] as f32).round() as usize;
+            let bytes = (0..a.size[1]).flat_map(|y| [&row(a, y)[..line], &row(b, y)[line..]].concat()).collect();
+            Shown { size: a.size, bytes: Arc::new(bytes) }
+        }
+        Mode::Flip if flipped => b.clone(),
+        _ => a.clone(),
+    }
+}
+
 /// FLIP of the two pictures, A as the reference, in the colours of the magma map.
 pub fn flip(a: &Shown, b: &Shown) -> Option<Map> {
     if a.size != b.size || a.bytes.len() != b.bytes.len() || a.size.contains(&0) {
@@ -123,6 +145,16 @@ mod tests {
         assert_eq!((map.mean, map.max, map.differing), (0.0, 0.0, 0));
         let map = flip(&a, &a).unwrap();
         assert_eq!((map.mean, map.differing), (0.0, 0));
+    }
+
+    #[test]
+    fn pictures_are_joined_as_they_are_compared() {
+        let a = shown(&[[1; 4], [2; 4], [3; 4], [4; 4]]);
+        let b = shown(&[[5; 4], [6; 4], [7; 4], [8; 4]]);
+        let first = |s: Shown| (s.size, s.bytes.iter().step_by(4).copied().collect::<Vec<u8>>());
+        assert_eq!(first(joined(&a, &b, Mode::Split, 0.25, false)), ([4, 1], vec![1, 6, 7, 8]));
+        assert_eq!(first(joined(&a, &b, Mode::Side, 0.5, false)), ([8, 1], vec![1, 2, 3, 4, 5, 6, 7, 8]));
+        assert_eq!(first(joined(&a, &b, Mode::Flip, 0.5, true)), ([4, 1], vec![5, 6, 7, 8]));
     }
 
     #[test]

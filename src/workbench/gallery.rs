@@ -18,6 +18,9 @@ pub struct Gallery {
     name: String,
     /// A name that is taken, waiting for a second click.
     taken: Option<String>,
+    /// How saving and capturing ended: whether all is well, and in words.
+    saved: Option<(bool, String)>,
+    captured: Option<(bool, String)>,
     capture_name: String,
     resources: Vec<String>,
     captures: Option<Vec<Summary>>,
@@ -32,6 +35,8 @@ impl Default for Gallery {
         Gallery {
             name: String::new(),
             taken: None,
+            saved: None,
+            captured: None,
             capture_name: String::new(),
             resources: Vec::new(),
             captures: None,
@@ -44,6 +49,11 @@ impl Default for Gallery {
 }
 
 impl Gallery {
+    /// How a capture ended.
+    pub fn captured(&mut self, ok: bool, text: &str) {
+        self.captured = Some((ok, text.to_string()));
+    }
+
     /// The list of captures is out of date.
     pub fn forget(&mut self) {
         self.captures = None;
@@ -75,7 +85,7 @@ impl Workbench {
             let field = ui.add(edit).on_hover_text("Written to configs/NAME.ron: only what differs from the defaults");
             field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "experiment name"));
             if field.changed() {
-                self.gallery.taken = None;
+                (self.gallery.taken, self.gallery.saved) = (None, None);
             }
             let again = self.gallery.taken.is_some();
             if ui.button(if again { "replace it" } else { "save" }).on_hover_text("Ctrl S").clicked() {
@@ -85,6 +95,7 @@ impl Workbench {
         if let Some(taken) = &self.gallery.taken {
             ui.weak(format!("configs/{taken}.ron exists; replacing keeps its comments"));
         }
+        said(ui, self.gallery.saved.as_ref().filter(|_| self.gallery.taken.is_none()));
     }
 
     /// Saves what side A (or B, when the panel shows it) says. An existing file is only replaced when asked for.
@@ -95,15 +106,19 @@ impl Workbench {
         let result = self.save_as(&self.gallery.name.clone(), replace);
         match result {
             Ok(path) => {
-                self.gallery.taken = None;
                 self.name = short(&path.to_string_lossy());
+                // The name as it was corrected.
+                (self.gallery.taken, self.gallery.name) = (None, self.name.clone());
                 self.status = format!("saved {}", path.display());
+                self.gallery.saved = Some((true, self.status.clone()));
+                self.written = Some(path.clone());
                 self.event("saved", serde_json::json!({ "path": path.display().to_string() }));
             }
             Err(e) => {
                 let taken = checked_name(&self.gallery.name).ok().filter(|n| self.experiment_path(n).exists());
                 self.gallery.taken = taken.filter(|_| !replace);
                 self.status = e.to_string();
+                self.gallery.saved = Some((false, self.status.clone()));
                 self.event("not saved", serde_json::json!({ "why": e.to_string() }));
             }
         }
@@ -115,13 +130,17 @@ impl Workbench {
 
     fn save_as(&self, name: &str, replace: bool) -> Result<PathBuf, LabError> {
         let name = checked_name(name)?;
+        if let Some(missing) = self.missing_scene() {
+            return Err(LabError::Request(format!("not saved: {missing}")));
+        }
         let side = self.desired.sides[self.panel_side].as_ref().or(self.desired.sides[0].as_ref());
         let info = self.sides[self.panel_side].info.as_ref().or(self.sides[0].info.as_ref());
         let (Some(side), Some(info)) = (side, info) else {
             return Err(LabError::Request("there is nothing to save yet: no graph has been built".into()));
         };
         let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
-        let experiment = save::experiment(&self.desired, side, &name, time, self.scene.as_deref());
+        let side = save::without_pointer(side, info.graph.pointer.as_deref());
+        let experiment = save::experiment(&self.desired, &side, &name, time, self.scene.as_deref());
         let path = self.experiment_path(&name);
         crate::experiment::write(&experiment, &info.graph.params, &path, replace)?;
         Ok(path)
@@ -137,6 +156,7 @@ impl Workbench {
                 self.capture();
             }
         });
+        said(ui, self.gallery.captured.as_ref());
         let Some(info) = self.sides[0].info.clone() else { return };
         egui::CollapsingHeader::new(format!("resources ({})", self.gallery.resources.len())).show(ui, |ui| {
             ui.weak("kept as EXR beside the picture");
@@ -158,12 +178,24 @@ impl Workbench {
             "" => self.name.clone(),
             name => name.to_string(),
         };
-        match checked_name(&name) {
+        let checked = checked_name(&name).and_then(|name| match self.missing_scene() {
+            Some(missing) => Err(LabError::Request(format!("not captured: {missing}"))),
+            None => Ok(name),
+        });
+        match checked {
             Ok(name) => {
                 self.status = format!("capturing {name}");
+                if !self.gallery.capture_name.trim().is_empty() {
+                    self.gallery.capture_name.clone_from(&name);
+                }
+                self.gallery.captured = Some((true, self.status.clone()));
                 self.engine.order(Order::Capture(self.panel_side, name, self.gallery.resources.clone()));
             }
-            Err(e) => self.status = e.to_string(),
+            Err(e) => {
+                self.status = e.to_string();
+                self.gallery.captured = Some((false, self.status.clone()));
+                self.event("captured", serde_json::json!({ "ok": false, "text": self.status }));
+            }
         }
     }
 
@@ -289,6 +321,15 @@ impl Workbench {
             let _ = out.send(text.trim().to_string());
             wake();
         });
+    }
+}
+
+/// How something ended, beside what began it.
+fn said(ui: &mut Ui, result: Option<&(bool, String)>) {
+    match result {
+        Some((true, text)) => drop(ui.weak(text)),
+        Some((false, text)) => drop(ui.colored_label(super::messages::RED, text)),
+        None => {}
     }
 }
 

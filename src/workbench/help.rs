@@ -7,6 +7,7 @@ use egui::{Key, KeyboardShortcut, Modifiers, Ui};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     Help,
+    Find,
     Undo,
     Redo,
     Play,
@@ -17,50 +18,65 @@ pub enum Action {
     Save,
     Capture,
     RenderDoc,
+    Panels,
+    FullScreen,
+    WholePicture,
 }
 
-/// Longer combinations first: Ctrl Z is also pressed when Ctrl Shift Z is.
-const KEYS: [(Action, KeyboardShortcut, &str); 12] = [
-    (Action::Help, KeyboardShortcut::new(Modifiers::NONE, Key::F1), "these keys"),
-    (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), "redo"),
+const NONE: Modifiers = Modifiers::NONE;
+
+/// In the order in which they are explained.
+const KEYS: [(Action, KeyboardShortcut, &str); 16] = [
+    (Action::Help, KeyboardShortcut::new(NONE, Key::F1), "these keys"),
     (Action::Undo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Z), "undo the last edit of parameters or lights"),
+    (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), "redo"),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Y), "redo"),
-    (Action::Play, KeyboardShortcut::new(Modifiers::NONE, Key::Space), "play and pause time"),
-    (Action::Step, KeyboardShortcut::new(Modifiers::NONE, Key::Period), "one frame on"),
-    (Action::Flip, KeyboardShortcut::new(Modifiers::NONE, Key::X), "A or B, when comparing by flipping"),
-    (Action::Timers, KeyboardShortcut::new(Modifiers::NONE, Key::T), "times on the picture: stages, passes, none"),
-    (Action::Unpoint, KeyboardShortcut::new(Modifiers::NONE, Key::Escape), "forget the point clicked on"),
+    (Action::Find, KeyboardShortcut::new(Modifiers::COMMAND, Key::F), "search the parameters"),
     (
         Action::Save,
         KeyboardShortcut::new(Modifiers::COMMAND, Key::S),
         "save the experiment, under its name on the Save tab",
     ),
-    (Action::Capture, KeyboardShortcut::new(Modifiers::NONE, Key::F12), "capture what is shown to captures/"),
-    (Action::RenderDoc, KeyboardShortcut::new(Modifiers::NONE, Key::F11), "capture a frame with RenderDoc"),
+    (Action::Capture, KeyboardShortcut::new(NONE, Key::F12), "capture what is shown to captures/"),
+    (Action::Panels, KeyboardShortcut::new(NONE, Key::H), "hide and show the panels"),
+    (Action::FullScreen, KeyboardShortcut::new(NONE, Key::F11), "full screen"),
+    (Action::WholePicture, KeyboardShortcut::new(NONE, Key::Home), "the whole picture again, after zooming"),
+    (Action::Timers, KeyboardShortcut::new(NONE, Key::T), "times on the picture: stages, passes, none"),
+    (Action::Flip, KeyboardShortcut::new(NONE, Key::X), "A or B, when comparing by flipping"),
+    (Action::Unpoint, KeyboardShortcut::new(NONE, Key::Escape), "forget the point clicked on"),
+    (Action::Play, KeyboardShortcut::new(NONE, Key::Space), "play and pause time"),
+    (Action::Step, KeyboardShortcut::new(NONE, Key::Period), "one frame on"),
+    (Action::RenderDoc, KeyboardShortcut::new(NONE, Key::F10), "capture a frame with RenderDoc"),
 ];
 
-const MOUSE: [(&str, &str); 6] = [
+const MOUSE: [(&str, &str); 8] = [
     ("drag", "turn around the target, or look around when flying"),
     ("right drag", "look around"),
     ("middle drag", "move sideways"),
     ("wheel", "nearer and farther"),
+    ("Ctrl wheel", "zoom into the picture; the camera stays"),
+    ("Ctrl drag", "move the picture when zoomed; a double click shows all of it"),
     ("W A S D Q E", "move; with Shift faster"),
-    ("click", "show the cones of that point"),
+    ("click", "show what the graph shows of that point"),
 ];
 
 /// Actions whose keys were pressed; keys without Ctrl do nothing while text is typed.
 pub fn pressed(ui: &Ui, typing: bool) -> Vec<Action> {
     let allowed = |shortcut: &KeyboardShortcut| {
-        !typing || shortcut.modifiers.any() || matches!(shortcut.logical_key, Key::F1 | Key::F11 | Key::F12)
+        !typing || shortcut.modifiers.any() || matches!(shortcut.logical_key, Key::F1 | Key::F10 | Key::F11 | Key::F12)
     };
-    let list = KEYS.iter().filter(|k| allowed(&k.1));
-    list.filter(|k| ui.ctx().input_mut(|i| i.consume_shortcut(&k.1))).map(|k| k.0).collect()
+    let mut list: Vec<_> = KEYS.iter().filter(|k| allowed(&k.1)).collect();
+    // Longer combinations first: Ctrl Z is also pressed when Ctrl Shift Z is.
+    list.sort_by_key(|k| !k.1.modifiers.shift);
+    list.into_iter().filter(|k| ui.ctx().input_mut(|i| i.consume_shortcut(&k.1))).map(|k| k.0).collect()
 }
 
 impl Workbench {
-    pub(super) fn help_window(&mut self, ui: &mut Ui) {
+    /// The window of keys, over the picture and not over the parameters.
+    pub(super) fn help_window(&mut self, ui: &mut Ui, place: egui::Rect) {
         let mut open = self.help;
-        egui::Window::new("Keys").open(&mut open).collapsible(false).show(ui.ctx(), |ui| {
+        let window = egui::Window::new("Help").open(&mut open).collapsible(false).resizable(false);
+        window.default_pos(place.left_top() + egui::vec2(12.0, 12.0)).show(ui.ctx(), |ui| {
             egui::Grid::new("keys").striped(true).show(ui, |ui| {
                 for (_, shortcut, text) in &KEYS {
                     ui.monospace(ui.ctx().format_shortcut(shortcut));
@@ -72,6 +88,13 @@ impl Workbench {
                     ui.label(text);
                     ui.end_row();
                 }
+            });
+            ui.separator();
+            let docs = self.root.join("docs");
+            let pages = "workbench.md: this window; method.md: the method and its parameters; graph.md: graphs; tour.md: a tour";
+            ui.horizontal_wrapped(|ui| {
+                ui.label(format!("More in {}.", docs.display())).on_hover_text(pages);
+                ui.weak(pages);
             });
         });
         self.help = open;

@@ -81,8 +81,54 @@ impl History {
     }
 }
 
+impl History {
+    /// Forgets a scene that could not be loaded: its states take the scene of `before`, to which the session returns.
+    fn forget_scene(&mut self, failed: (&str, &str), before: &State) {
+        let settled = self.settled.iter_mut();
+        let states = self.past.iter_mut().chain(&mut self.future).map(|s| &mut s.0).chain(settled);
+        for state in states {
+            if (state.desired.scene.as_str(), state.desired.environment.as_str()) == failed {
+                state.take_scene(before);
+            }
+        }
+        self.settled = Some(before.clone());
+        while self.past.last().is_some_and(|(last, opened)| last.same(before, *opened)) {
+            self.past.pop();
+        }
+        self.opened = false;
+    }
+}
+
+impl State {
+    fn take_scene(&mut self, other: &State) {
+        self.desired.scene.clone_from(&other.desired.scene);
+        self.desired.environment.clone_from(&other.desired.environment);
+        self.desired.lights.clone_from(&other.desired.lights);
+        self.desired.camera = other.desired.camera;
+    }
+}
+
 impl Workbench {
-    fn state(&self) -> State {
+    /// Returns to the scene that is shown, and to all that was asked for before another one was, because that one could
+    /// not be loaded.
+    pub(super) fn return_to_scene(&mut self) {
+        let Some(before) = self.before_loading.take() else { return };
+        let failed = (self.desired.scene.clone(), self.desired.environment.clone());
+        let (number, revision, scene_revision) =
+            (self.desired.number, self.desired.revision, self.desired.scene_revision);
+        let (clock, continuous, redo) = (self.desired.clock, self.desired.continuous, self.desired.redo);
+        self.desired = before.desired.clone();
+        (self.desired.number, self.desired.revision, self.desired.scene_revision) = (number, revision, scene_revision);
+        (self.desired.clock, self.desired.continuous, self.desired.redo) = (clock, continuous, redo);
+        self.name.clone_from(&before.name);
+        self.fixed_size = before.fixed_size;
+        (self.experiment, self.returning) = (None, false);
+        self.view.picture.clone_from(&self.desired.environment);
+        self.watch.scene(&self.desired.scene);
+        self.history.forget_scene((&failed.0, &failed.1), &before);
+    }
+
+    pub(super) fn state(&self) -> State {
         let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
         State { desired: self.desired.clone(), name: self.name.clone(), fixed_size: self.fixed_size, time }
     }

@@ -1,40 +1,80 @@
 //! Errors with the place and the source line, over the picture's foot; they go when they are mended.
 
-use super::Workbench;
 use super::engine::Order;
+use super::{Workbench, editor};
 use crate::graph::source::{Diagnostic, Severity};
-use egui::{Color32, RichText, Ui};
+use egui::{Align2, Color32, Rect, RichText, Ui};
+
+/// What the words of an engine end with whose device is to be opened anew.
+const RESTART: &str = "Restart device";
 
 impl Workbench {
-    pub(super) fn has_messages(&self) -> bool {
-        self.trouble.is_some() || self.sides.iter().any(|s| !s.errors.is_empty() || !s.checks.is_empty())
+    fn has_messages(&self) -> bool {
+        self.trouble.is_some() || self.warned || self.sides.iter().any(|s| !s.errors.is_empty() || !s.checks.is_empty())
     }
 
-    pub(super) fn messages(&mut self, ui: &mut Ui) {
-        let height = 160.0_f32.min(0.4 * ui.ctx().content_rect().height());
-        egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
-            for (side, name) in self.sides.iter().zip(["A", "B"]) {
-                if !side.errors.is_empty() {
-                    let count = side.errors.len();
-                    ui.colored_label(RED, format!("{name} shows the last good picture: {count} to mend in the files"));
-                }
-                for error in &side.errors {
-                    diagnostic(ui, error);
-                }
-                for check in &side.checks {
-                    ui.colored_label(AMBER, check);
-                }
-            }
-            let mut done = false;
-            if let Some(trouble) = &self.trouble {
+    /// The messages over the lower edge of `place`: the picture under them keeps its place and size.
+    pub(super) fn messages(&mut self, ui: &mut Ui, place: Rect) {
+        if !self.has_messages() {
+            return;
+        }
+        let area = egui::Area::new("messages".into()).pivot(Align2::LEFT_BOTTOM).fixed_pos(place.left_bottom());
+        area.constrain(false).show(ui.ctx(), |ui| {
+            egui::Frame::side_top_panel(ui.style()).show(ui, |ui| {
+                ui.set_width((place.width() - 16.0).max(40.0));
+                let height = 160.0_f32.min(0.4 * ui.ctx().content_rect().height());
+                let scroll = egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]);
+                scroll.show(ui, |ui| self.message_rows(ui));
+            });
+        });
+    }
+
+    fn message_rows(&mut self, ui: &mut Ui) {
+        let mut open = None;
+        for (side, name) in self.sides.iter().zip(["A", "B"]) {
+            if !side.errors.is_empty() {
+                let count = side.errors.len();
                 ui.horizontal_wrapped(|ui| {
-                    ui.colored_label(AMBER, trouble);
-                    done = ui.small_button("dismiss").clicked();
-                    if ui.small_button("Restart device").clicked() {
-                        self.engine.order(Order::Restart);
-                        done = true;
+                    ui.colored_label(RED, format!("{name} shows the last good picture: {count} to mend in the files"));
+                    if ui.small_button("copy").on_hover_text("All of these messages").clicked() {
+                        let texts: Vec<String> = side.errors.iter().map(ToString::to_string).collect();
+                        ui.ctx().copy_text(texts.join("\n"));
                     }
                 });
+            }
+            for error in &side.errors {
+                if diagnostic(ui, error) {
+                    open = Some((error.place.file.clone(), error.place.line));
+                }
+            }
+            for check in &side.checks {
+                ui.colored_label(AMBER, check);
+            }
+        }
+        if let Some((file, line)) = open {
+            let file = if file.is_absolute() || file.exists() { file } else { self.root.join(file) };
+            self.status = editor::open(&file, line);
+            self.event("editor", serde_json::json!({ "text": self.status }));
+        }
+        if self.warned {
+            ui.horizontal_wrapped(|ui| {
+                let warnings = self.scene_warnings();
+                let first = warnings.first().cloned().unwrap_or_default();
+                let more = match warnings.len() {
+                    0 | 1 => String::new(),
+                    n => format!(" (and {} more on the Scene tab)", n - 1),
+                };
+                ui.colored_label(AMBER, format!("scene: {first}{more}"));
+                self.warned = !ui.small_button("dismiss").on_hover_text("It stays on the Scene tab").clicked();
+            });
+        }
+        let Some(trouble) = self.trouble.clone() else { return };
+        ui.horizontal_wrapped(|ui| {
+            ui.colored_label(AMBER, &trouble);
+            let mut done = ui.small_button("dismiss").clicked();
+            if trouble.contains(RESTART) && ui.small_button(RESTART).clicked() {
+                self.engine.order(Order::Restart);
+                done = true;
             }
             if done {
                 self.trouble = None;
@@ -43,10 +83,11 @@ impl Workbench {
     }
 }
 
-const RED: Color32 = Color32::from_rgb(255, 110, 90);
-const AMBER: Color32 = Color32::from_rgb(255, 196, 84);
+pub(super) const RED: Color32 = Color32::from_rgb(255, 110, 90);
+pub(super) const AMBER: Color32 = Color32::from_rgb(255, 196, 84);
 
-fn diagnostic(ui: &mut Ui, d: &Diagnostic) {
+/// Shows an error; whether its place was clicked on.
+fn diagnostic(ui: &mut Ui, d: &Diagnostic) -> bool {
     let place = &d.place;
     let mut at = place.file.display().to_string();
     if place.line > 0 {
@@ -56,11 +97,19 @@ fn diagnostic(ui: &mut Ui, d: &Diagnostic) {
         }
     }
     let colour = if d.severity == Severity::Error { RED } else { AMBER };
-    ui.label(RichText::new(format!("{at}: {}", d.message)).color(colour).monospace());
+    let text = RichText::new(format!("{at}: {}", d.message)).color(colour).monospace();
+    let mut clicked = false;
+    if place.line > 0 {
+        let label = ui.add(egui::Label::new(text).sense(egui::Sense::click()));
+        clicked = label.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text("Opens the editor").clicked();
+    } else {
+        ui.label(text);
+    }
     if let Some(source) = &d.source {
         ui.label(RichText::new(format!("    | {}", source.trim_end())).monospace());
     }
     if let Some(help) = &d.help {
         ui.weak(format!("    {help}"));
     }
+    clicked
 }

@@ -3,11 +3,15 @@
 //! Nothing here knows a window system: [`crate::window`] and offscreen screenshots are two hosts of the same interface.
 
 mod bar;
+mod bookmarks;
 mod builder;
 mod chart;
 pub mod compare;
+mod control;
 mod difference;
 pub mod edit;
+mod editor;
+mod effects;
 pub mod engine;
 pub mod error_worker;
 pub mod events;
@@ -18,6 +22,7 @@ mod history;
 mod host;
 mod inspector;
 mod messages;
+mod models;
 mod motion;
 mod nodes;
 mod opening;
@@ -29,11 +34,13 @@ mod renderdoc;
 pub mod report;
 pub mod request;
 mod save;
+mod sequence;
 mod surroundings;
 mod tables;
 mod times;
 mod view;
 mod watch;
+mod zoom;
 
 use crate::experiment::Experiment;
 use crate::graph::run::Redo;
@@ -139,6 +146,13 @@ pub struct Workbench {
     name: String,
     sides: [Side; 2],
     scene: Option<Arc<Scene>>,
+    /// Name of the loaded scene, its sky's picture, and how it was seen before another was asked for.
+    loaded_scene: Option<(String, String)>,
+    before_loading: Option<history::State>,
+    /// Whether the scene that was asked for last could not be loaded.
+    no_scene: bool,
+    /// What is to be known about the scene, until it is dismissed.
+    warned: bool,
     /// Diagonal of the scene's bounds, m; asking for the bounds walks through all vertices.
     diagonal: f32,
     experiment: Option<Experiment>,
@@ -149,6 +163,7 @@ pub struct Workbench {
     returning: bool,
     panel: panel::Panel,
     panel_side: usize,
+    effects: effects::Effects,
     view: view::View,
     tab: Tab,
     times: times::Times,
@@ -157,8 +172,15 @@ pub struct Workbench {
     inspector: inspector::Inspector,
     tables: tables::Tables,
     paths: paths::Paths,
+    bookmarks: bookmarks::Bookmarks,
+    models: models::Models,
     gallery: gallery::Gallery,
     help: bool,
+    /// Whether the panels at the sides are hidden, and the window fills the screen.
+    hidden: bool,
+    full_screen: bool,
+    /// The experiment's file as it was written last from here: its change is no news.
+    written: Option<PathBuf>,
     /// The last message of the status line.
     status: String,
     trouble: Option<String>,
@@ -214,6 +236,10 @@ impl Workbench {
             name: experiment.name.clone(),
             sides: Default::default(),
             scene: None,
+            loaded_scene: None,
+            before_loading: None,
+            no_scene: false,
+            warned: false,
             diagonal: 1.0,
             experiment: Some(experiment),
             loading: None,
@@ -222,6 +248,7 @@ impl Workbench {
             returning: false,
             panel: panel::Panel::default(),
             panel_side: 0,
+            effects: effects::Effects::default(),
             view: view::View::default(),
             tab: Tab::Surroundings,
             times: times::Times::default(),
@@ -230,8 +257,13 @@ impl Workbench {
             inspector: inspector::Inspector::default(),
             tables: tables::Tables::default(),
             paths: paths::Paths::default(),
+            bookmarks: bookmarks::Bookmarks::default(),
+            models: models::Models::default(),
             gallery: gallery::Gallery::default(),
             help: false,
+            hidden: false,
+            full_screen: false,
+            written: None,
             status: String::new(),
             trouble,
             pixels: Vec::new(),
@@ -271,6 +303,7 @@ impl Workbench {
     fn waiting_text(&self) -> String {
         match &self.loading {
             Some((what, part)) => format!("loading {what}: {:.0} %", 100.0 * part),
+            None if self.no_scene => "no scene".into(),
             None if self.device.is_none() => "opening the device".into(),
             None => "building the passes".into(),
         }
@@ -321,33 +354,40 @@ impl Workbench {
                     .as_ref()
                     .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.sides[i].info.is_some())
         };
-        shown(0) && shown(1) && self.loading.is_none() && !self.comparing && !self.chart_awaits()
+        shown(0)
+            && shown(1)
+            && self.loading.is_none()
+            && !self.comparing
+            && !self.chart_awaits()
+            && !self.effects.awaits()
     }
 
     /// The interface of one frame.
     pub fn ui(&mut self, ui: &mut Ui, textures: &[TextureId]) {
+        release_focus(ui);
         self.shortcuts(ui);
         egui::Panel::top("bar").show(ui, |ui| self.bar(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
-        if self.has_messages() {
-            egui::Panel::bottom("messages").resizable(true).show(ui, |ui| self.messages(ui));
+        if !self.hidden {
+            egui::Panel::left("parameters")
+                .default_size(340.0)
+                .size_range(180.0..=640.0)
+                .show(ui, |ui| self.parameters(ui));
+            egui::Panel::right("right")
+                .default_size(320.0)
+                .size_range(180.0..=760.0)
+                .show(ui, |ui| self.right(ui, textures));
         }
-        egui::Panel::left("parameters")
-            .default_size(340.0)
-            .size_range(180.0..=640.0)
-            .show(ui, |ui| self.parameters(ui));
-        egui::Panel::right("right")
-            .default_size(320.0)
-            .size_range(180.0..=760.0)
-            .show(ui, |ui| self.right(ui, textures));
         let inspecting = self.tab == Tab::Inspector && self.inspector.fills_viewport();
-        egui::CentralPanel::no_frame().show(ui, |ui| match (inspecting, self.tab) {
+        let central = egui::CentralPanel::no_frame().show(ui, |ui| match (inspecting, self.tab) {
             (true, _) => self.inspected(ui, textures),
             (false, Tab::Graph) => self.graph_view(ui),
             (false, _) => self.picture(ui, textures),
         });
+        let place = central.response.rect;
+        self.messages(ui, place);
         if self.help {
-            self.help_window(ui);
+            self.help_window(ui, place);
         }
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
@@ -360,6 +400,7 @@ impl Workbench {
         // Comparisons are made, and events say what pictures hold, in main memory.
         let maps = matches!(self.view.mode, Mode::Difference | Mode::Perceived) && self.desired.sides[1].is_some();
         self.desired.bytes = maps || self.events.is_some();
+        self.find_effects(ui);
         self.send_request();
         self.request_errors(ui);
     }
@@ -410,12 +451,15 @@ impl Workbench {
         };
         let other = self.desired.sides[1 - number].clone();
         if let Some(side) = &mut self.desired.sides[number] {
-            self.panel.show(ui, &info.graph.params, side, other.as_ref());
+            self.panel.show(ui, &info.graph, side, other.as_ref(), self.effects.of(number));
         }
     }
 
     fn right(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         ui.horizontal_wrapped(|ui| {
+            // All of them in one row.
+            ui.spacing_mut().item_spacing.x = 1.0;
+            ui.spacing_mut().button_padding.x = 3.0;
             for (tab, name) in [
                 (Tab::Surroundings, "Scene"),
                 (Tab::Times, "Time"),
@@ -426,7 +470,7 @@ impl Workbench {
                 (Tab::Paths, "Motion"),
                 (Tab::Gallery, "Save"),
             ] {
-                ui.selectable_value(&mut self.tab, tab, name);
+                ui.selectable_value(&mut self.tab, tab, egui::RichText::new(name).size(12.0));
             }
         });
         ui.separator();
@@ -448,6 +492,10 @@ impl Workbench {
         let typing = ui.ctx().egui_wants_keyboard_input();
         for action in help::pressed(ui, typing) {
             match action {
+                help::Action::Find => {
+                    self.hidden = false;
+                    panel::Panel::find(ui);
+                }
                 help::Action::Help => self.help = !self.help,
                 help::Action::Undo => self.go(true),
                 help::Action::Redo => self.go(false),
@@ -458,9 +506,16 @@ impl Workbench {
                 }
                 help::Action::Timers => self.view.timers = self.view.timers.next(),
                 help::Action::Flip => self.view.flipped = !self.view.flipped,
+                help::Action::Unpoint if std::mem::take(&mut self.panel.typing) => self.panel.search.clear(),
                 help::Action::Unpoint => self.point_at(None),
                 help::Action::Save => self.save(false),
                 help::Action::Capture => self.capture(),
+                help::Action::Panels => self.hidden = !self.hidden,
+                help::Action::FullScreen => {
+                    self.full_screen = !self.full_screen;
+                    ui.ctx().send_viewport_cmd(egui::ViewportCommand::Fullscreen(self.full_screen));
+                }
+                help::Action::WholePicture => self.view.zoom = zoom::Zoom::default(),
                 help::Action::RenderDoc => self.engine.order(Order::RenderDoc),
             }
         }
@@ -471,6 +526,19 @@ impl Workbench {
         let mut messages = self.chart.close(Duration::from_secs(5));
         messages.extend(self.engine.stop(Duration::from_secs(20)));
         messages
+    }
+}
+
+/// A press of the mouse elsewhere takes the keys away from a text field: a drag on a slider would leave them there, and
+/// with them what Ctrl Z means.
+fn release_focus(ui: &Ui) {
+    let Some(focused) = ui.ctx().memory(egui::Memory::focused) else { return };
+    let pressed = ui.input(|i| if i.pointer.any_pressed() { i.pointer.interact_pos() } else { None });
+    let rect = ui.ctx().read_response(focused).map(|r| r.rect);
+    if let (Some(at), Some(rect)) = (pressed, rect)
+        && !rect.contains(at)
+    {
+        ui.ctx().memory_mut(|m| m.surrender_focus(focused));
     }
 }
 

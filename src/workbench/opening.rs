@@ -29,10 +29,14 @@ impl Workbench {
         if path.file_stem().is_none_or(|s| s.to_string_lossy() != self.name.as_str()) {
             return;
         }
+        let own = self.written.take().is_some_and(|w| w.file_name() == path.file_name());
         match Experiment::read(path) {
+            Ok(_) if own => {}
             Ok(experiment) => {
                 self.sides[0].errors.clear();
-                if side_of(&experiment) != self.desired.sides[0].clone().unwrap_or_default()
+                let pointer = self.sides[0].info.as_ref().and_then(|i| i.graph.pointer.as_deref());
+                let shown = self.desired.sides[0].clone().unwrap_or_default();
+                if sorted(side_of(&experiment)) != sorted(save::without_pointer(&shown, pointer))
                     || experiment.scene != self.desired.scene
                     || picture_of(&experiment) != self.desired.environment
                 {
@@ -46,6 +50,7 @@ impl Workbench {
 
     /// Shows an experiment in side A.
     pub(super) fn open(&mut self, experiment: &Experiment) {
+        let before = self.missing_scene().is_none().then(|| self.state());
         self.history.opens();
         self.name.clone_from(&experiment.name);
         self.desired.sides[0] = Some(side_of(experiment));
@@ -56,6 +61,7 @@ impl Workbench {
             }
         } else {
             self.open_scene(&experiment.scene);
+            self.before_loading = before.or(self.before_loading.take());
             self.desired.environment = picture_of(experiment);
             self.view.picture.clone_from(&self.desired.environment);
         }
@@ -64,7 +70,28 @@ impl Workbench {
         self.desired.clock.jumps += 1;
     }
 
+    /// The scene that is asked for, if it is another than the loaded one, with the words that it is not there.
+    pub(super) fn missing_scene(&self) -> Option<String> {
+        let asked = (&self.desired.scene, &self.desired.environment);
+        match &self.loaded_scene {
+            Some(loaded) if asked == (&loaded.0, &loaded.1) => None,
+            _ if self.no_scene => Some(format!("scene '{}' could not be loaded; choose another one", asked.0)),
+            _ => Some(format!("scene '{}' is still being loaded", asked.0)),
+        }
+    }
+
+    /// What is to be known about the loaded scene.
+    pub(super) fn scene_warnings(&self) -> Vec<String> {
+        let Some(scene) = &self.scene else { return Vec::new() };
+        let empty = (scene.triangle_count() == 0).then(|| format!("scene '{}' has no triangles", scene.name));
+        scene.warnings.iter().cloned().chain(empty).collect()
+    }
+
     pub(super) fn open_scene(&mut self, spec: &str) {
+        self.no_scene = false;
+        if self.missing_scene().is_none() {
+            self.before_loading = Some(self.state());
+        }
         self.desired.scene = spec.to_string();
         self.desired.environment.clear();
         self.view.picture.clear();
@@ -92,6 +119,12 @@ impl Workbench {
         let side = self.desired.sides[0].clone().unwrap_or_default();
         Experiment { name: self.name.clone(), ..self.desired.experiment(&side) }
     }
+}
+
+/// A side with its parameters in order: what a file says does not depend on theirs.
+fn sorted(mut side: SideRequest) -> SideRequest {
+    side.params.sort();
+    side
 }
 
 /// The file of the picture that an experiment gives the sky.

@@ -1,10 +1,10 @@
 //! Camera paths: keys recorded, edited, played, saved; and image sequences.
 
+use super::sequence::Sequence;
 use super::{Workbench, ron_files, short};
 use crate::camera_path::{self, CameraPath, Key};
 use crate::experiment::{PlacedCamera, checked_name};
 use crate::lab::{LabError, Viewpoint};
-use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{DragValue, Ui};
 use std::path::PathBuf;
 
@@ -16,10 +16,8 @@ pub struct Paths {
     /// Whether the camera follows the path.
     pub follow: bool,
     taken: bool,
-    frames: usize,
-    rate: f64,
-    sequence: String,
-    made: (Sender<String>, Receiver<String>),
+    /// Image sequences.
+    pub sequence: Sequence,
 }
 
 impl Default for Paths {
@@ -29,10 +27,7 @@ impl Default for Paths {
             name: "path".into(),
             follow: false,
             taken: false,
-            frames: 60,
-            rate: 30.0,
-            sequence: "captures/sequence".into(),
-            made: unbounded(),
+            sequence: Sequence::default(),
         }
     }
 }
@@ -40,16 +35,12 @@ impl Default for Paths {
 impl Workbench {
     /// The tab.
     pub(super) fn paths_tab(&mut self, ui: &mut Ui) {
-        while let Ok(text) = self.paths.made.1.try_recv() {
-            self.event("sequence", serde_json::json!({ "text": text }));
-            self.status = text;
-        }
         ui.strong("Camera path");
         self.path_files(ui);
         self.path_keys(ui);
         ui.separator();
         ui.strong("Image sequence");
-        self.sequence(ui);
+        self.sequence_rows(ui);
     }
 
     fn path_files(&mut self, ui: &mut Ui) {
@@ -154,62 +145,5 @@ impl Workbench {
             self.desired.camera = Some(Viewpoint::placed(&placed, scene).camera);
         }
         self.desired.path = (self.paths.follow && !self.paths.path.keys.is_empty()).then(|| self.paths.path.clone());
-    }
-
-    fn sequence(&mut self, ui: &mut Ui) {
-        ui.horizontal(|ui| {
-            ui.add(DragValue::new(&mut self.paths.frames).range(1..=100_000).suffix(" frames"));
-            ui.add(DragValue::new(&mut self.paths.rate).range(1.0..=240.0).suffix(" a second"));
-        });
-        ui.horizontal(|ui| {
-            ui.add(egui::TextEdit::singleline(&mut self.paths.sequence).desired_width(160.0))
-                .on_hover_text("Folder for frame-00000.png and so on");
-            if ui.button("render").clicked() {
-                match self.start_sequence() {
-                    Ok(()) => self.status = "rendering the sequence".into(),
-                    Err(e) => self.status = e.to_string(),
-                }
-            }
-        });
-    }
-
-    /// Renders the sequence by the program's own command, in a process of its own, from files of its own.
-    fn start_sequence(&mut self) -> Result<(), LabError> {
-        let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
-            return Err(LabError::Request("no graph has been built yet".into()));
-        };
-        let failed = |e: std::io::Error| LabError::Request(format!("cannot write the sequence's settings: {e}"));
-        let folder = tempfile::Builder::new().prefix("conelab-sequence-").tempdir().map_err(failed)?;
-        let mut experiment = super::save::experiment(&self.desired, side, "sequence", 0.0, self.scene.as_deref());
-        let scene = PathBuf::from(&experiment.scene);
-        if scene.is_file() {
-            experiment.scene = scene.canonicalize().map_err(failed)?.to_string_lossy().into_owned();
-        }
-        let file = folder.path().join("sequence.ron");
-        crate::experiment::write(&experiment, &info.graph.params, &file, false)?;
-        let mut command = std::process::Command::new(std::env::current_exe().map_err(failed)?);
-        command.current_dir(&self.root).env("CONELAB_HOME", &self.root);
-        command.arg("render").arg(&file).arg("--sequence").arg(&self.paths.sequence);
-        command.args(["--frames", &self.paths.frames.to_string(), "--step", &(1.0 / self.paths.rate).to_string()]);
-        if !self.paths.path.keys.is_empty() {
-            let path = folder.path().join("path.ron");
-            camera_path::write(&self.paths.path, &path, false)?;
-            command.arg("--path").arg(path);
-        }
-        if let Some(device) = &self.device {
-            command.arg("--device").arg(&device.name);
-        }
-        let (out, wake) = (self.paths.made.0.clone(), self.wake.clone());
-        std::thread::spawn(move || {
-            let text = match command.output() {
-                Ok(o) if o.status.success() => String::from_utf8_lossy(&o.stdout).trim().to_string(),
-                Ok(o) => String::from_utf8_lossy(&o.stderr).trim().to_string(),
-                Err(e) => format!("cannot render the sequence: {e}"),
-            };
-            drop(folder);
-            let _ = out.send(text.lines().last().unwrap_or_default().to_string());
-            wake();
-        });
-        Ok(())
     }
 }

@@ -43,6 +43,7 @@ impl Workbench {
             self.show(pixels);
         }
         self.poll_chart();
+        self.poll_sequence();
         let wait = match self.watch.take() {
             Ok(changed) => {
                 self.files_changed(&changed);
@@ -108,10 +109,18 @@ impl Workbench {
             Report::Loaded(scene) => self.loaded(scene),
             Report::LoadFailed(why) => {
                 self.loading = None;
-                self.event("load failed", json!({ "why": why }));
+                self.event("load failed", json!({ "why": why, "scene": self.desired.scene }));
+                self.no_scene = self.scene.is_none();
                 self.trouble = Some(why);
+                self.return_to_scene();
+                self.send_request();
             }
-            Report::Texels(target, texels) => self.inspector.note(target, *texels, &self.wake),
+            Report::Texels(target, texels) => {
+                let info = self.sides[target.side.min(1)].info.as_ref();
+                let number = info.and_then(|i| i.graph.textures.iter().position(|t| t.0 == target.texture));
+                let volume = info.zip(number).is_some_and(|(i, n)| i.textures.get(n).is_some_and(|t| t.volume));
+                self.inspector.note(target, *texels, volume, &self.wake);
+            }
             Report::Table(number, table, bytes) => self.tables.note(number, table, bytes),
             Report::Checks(side, failed) => self.sides[side].checks = failed,
             Report::Captured(result) => {
@@ -124,6 +133,7 @@ impl Workbench {
                     Err(why) => format!("not captured: {why}"),
                 };
                 self.event("captured", json!({ "ok": ok, "text": text }));
+                self.gallery.captured(ok, &text);
                 self.status = text;
             }
             Report::Error(result) => self.error_came(result),
@@ -180,7 +190,8 @@ impl Workbench {
     fn loaded(&mut self, scene: Arc<Scene>) {
         self.loading = None;
         self.trouble = None;
-        self.event("loaded", json!({ "scene": scene.name, "triangles": scene.triangle_count() }));
+        self.loaded_scene = Some((self.desired.scene.clone(), self.desired.environment.clone()));
+        (self.before_loading, self.no_scene) = (None, false);
         let same = self.scene.as_ref().is_some_and(|s| s.name == scene.name) && self.desired.camera.is_some();
         if !std::mem::take(&mut self.returning) && (!same || self.experiment.is_some()) {
             let fallback = Experiment { camera: CameraChoice::Named("default".into()), ..self.bare() };
@@ -199,7 +210,11 @@ impl Workbench {
         }
         let (low, high) = scene.bounds();
         self.diagonal = (high - low).length().max(1e-3);
+        let (name, triangles) = (scene.name.clone(), scene.triangle_count());
         self.scene = Some(scene);
+        let warnings = self.scene_warnings();
+        self.warned = !warnings.is_empty();
+        self.event("loaded", json!({ "scene": name, "triangles": triangles, "warnings": warnings }));
         self.send_request();
     }
 }

@@ -1,6 +1,8 @@
 //! Messages from the engine to the window.
 
+use crate::graph::expr::Env;
 use crate::graph::hot_reload::Change;
+use crate::graph::link::Linked;
 use crate::graph::load::Graph;
 use crate::graph::param::Params;
 use crate::graph::plan::TexturePlan;
@@ -40,6 +42,10 @@ pub struct PassUses {
 pub struct GraphInfo {
     /// The graph.
     pub graph: Arc<Graph>,
+    /// Its passes with their shaders.
+    pub linked: Arc<Vec<Linked>>,
+    /// Scene, size and device, as its expressions see them.
+    pub variables: Env,
     /// Its parameters with the values they were built with.
     pub params: Params,
     /// The textures as they were made, in the graph's order.

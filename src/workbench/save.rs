@@ -35,6 +35,13 @@ pub fn experiment(
     experiment
 }
 
+/// A side without where the pointer is: that is a state of the window.
+pub fn without_pointer(side: &SideRequest, pointer: Option<&str>) -> SideRequest {
+    let mut side = side.clone();
+    side.params.retain(|(name, _)| Some(name.as_str()) != pointer);
+    side
+}
+
 /// Like [`experiment`], seen from where the camera's path is at that time.
 pub fn still(desired: &RenderRequest, side: &SideRequest, name: &str, time: f64, scene: &Scene) -> Experiment {
     let mut still = experiment(desired, side, name, time, Some(scene));

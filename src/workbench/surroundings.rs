@@ -1,17 +1,21 @@
 //! Camera, lights, sky and time: what is around the method.
 
 use super::Workbench;
+use super::control::spin;
+use super::messages::AMBER;
 use super::motion;
 use super::request::LightState;
 use crate::lab::Viewpoint;
 use crate::scene::{Light, LightKind};
-use egui::{DragValue, Ui};
+use egui::{DragValue, RichText, Ui};
 use glam::Vec3;
+
+const RGB: [&str; 3] = ["red", "green", "blue"];
 
 fn metres(ui: &mut Ui, label: &str, v: &mut Vec3) {
     ui.horizontal(|ui| {
-        for x in [&mut v.x, &mut v.y, &mut v.z] {
-            ui.add(DragValue::new(x).speed(0.02).max_decimals(3));
+        for (x, axis) in [&mut v.x, &mut v.y, &mut v.z].into_iter().zip(["x", "y", "z"]) {
+            spin(ui, DragValue::new(x).speed(0.02).max_decimals(3), &format!("{label} {axis}"));
         }
         ui.label(label);
     });
@@ -21,10 +25,20 @@ impl Workbench {
     /// The section.
     pub(super) fn surroundings(&mut self, ui: &mut Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let warnings = self.scene_warnings();
+            if !warnings.is_empty() {
+                let title = RichText::new(format!("Warnings ({})", warnings.len())).color(AMBER);
+                egui::CollapsingHeader::new(title).id_salt("warnings").default_open(true).show(ui, |ui| {
+                    for warning in &warnings {
+                        ui.label(warning);
+                    }
+                });
+                ui.separator();
+            }
             ui.strong("Camera");
             self.camera(ui);
             ui.separator();
-            ui.strong("Time");
+            ui.strong("Clock");
             self.time(ui);
             ui.separator();
             ui.strong("Lights and sky");
@@ -38,7 +52,8 @@ impl Workbench {
                 .on_hover_text("Drag turns around the target, the wheel comes nearer");
             ui.selectable_value(&mut self.view.steering, motion::Mode::Fly, "fly")
                 .on_hover_text("Drag looks around, W A S D Q E move");
-            ui.add(DragValue::new(&mut self.view.speed).range(0.01..=100.0).speed(0.05).prefix("speed x "));
+            let speed = DragValue::new(&mut self.view.speed).range(0.01..=100.0).speed(0.05).prefix("speed x ");
+            spin(ui, speed, "speed");
         });
         let names: Vec<String> = self.scene.as_ref().map_or(Vec::new(), |s| s.cameras.keys().cloned().collect());
         if let Some(scene) = self.scene.clone() {
@@ -54,6 +69,7 @@ impl Workbench {
                 }
             });
         }
+        self.bookmark_rows(ui);
         if let Some(camera) = &mut self.desired.camera {
             metres(ui, "eye, m", &mut camera.eye);
             metres(ui, "target, m", &mut camera.target);
@@ -87,7 +103,7 @@ impl Workbench {
                 (false, _) => None,
             };
             if let Some(step) = &mut clock.step {
-                ui.add(DragValue::new(step).range(0.0001..=10.0).speed(0.001).suffix(" s"));
+                spin(ui, DragValue::new(step).range(0.0001..=10.0).speed(0.001).suffix(" s"), "step");
             }
         });
     }
@@ -98,8 +114,8 @@ impl Workbench {
         let mut now = self.desired.lights.clone().unwrap_or_else(|| own.clone());
         let LightState { lights, sky, rotation } = &mut now;
         ui.horizontal(|ui| {
-            for x in [&mut sky.x, &mut sky.y, &mut sky.z] {
-                ui.add(DragValue::new(x).range(0.0..=1e6).speed(0.01));
+            for (x, c) in [&mut sky.x, &mut sky.y, &mut sky.z].into_iter().zip(RGB) {
+                spin(ui, DragValue::new(x).range(0.0..=1e6).speed(0.01), &format!("sky {c}"));
             }
             match scene.environment {
                 None => ui.label("sky radiance").on_hover_text("Linear RGB, W/(m² sr)"),
@@ -131,6 +147,9 @@ impl Workbench {
             let done = ui.add(field.desired_width(180.0)).lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let clicked = ui.button("load").on_hover_text("A picture of the sky; empty: the scene's own").clicked();
             if (done || clicked) && self.view.picture.trim() != self.desired.environment {
+                if self.missing_scene().is_none() {
+                    self.before_loading = Some(self.state());
+                }
                 self.desired.environment = self.view.picture.trim().into();
                 self.desired.lights = None;
             }
@@ -143,7 +162,7 @@ fn intensity(ui: &mut Ui, sky: &mut Vec3) {
     let before = sky.max_element();
     let mut now = before;
     ui.horizontal(|ui| {
-        ui.add(DragValue::new(&mut now).range(0.0..=1e6).speed(0.01));
+        spin(ui, DragValue::new(&mut now).range(0.0..=1e6).speed(0.01), "sky intensity");
         ui.label("intensity");
     });
     if now != before {
@@ -153,8 +172,8 @@ fn intensity(ui: &mut Ui, sky: &mut Vec3) {
 
 fn one(ui: &mut Ui, light: &mut Light) {
     ui.horizontal(|ui| {
-        for x in [&mut light.color.x, &mut light.color.y, &mut light.color.z] {
-            ui.add(DragValue::new(x).range(0.0..=1e7).speed(0.02));
+        for (x, c) in [&mut light.color.x, &mut light.color.y, &mut light.color.z].into_iter().zip(RGB) {
+            spin(ui, DragValue::new(x).range(0.0..=1e7).speed(0.02), &format!("light {c}"));
         }
         ui.label(match light.kind {
             LightKind::Directional => "irradiance",

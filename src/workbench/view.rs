@@ -3,6 +3,7 @@
 use super::compare::{MODES, Mode};
 use super::motion;
 use super::overlay::Rows;
+use super::zoom::{Zoom, foot, pixel_at, pixel_text};
 use super::{COMPARISON, Workbench};
 use egui::{Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
@@ -25,6 +26,8 @@ pub struct View {
     /// Speed of keys, 1 crosses the scene in ten seconds.
     pub speed: f32,
     dragging_split: bool,
+    /// Zoom and pan on the screen.
+    pub zoom: Zoom,
     /// Where picture A is, in points.
     pub place: Option<Rect>,
 }
@@ -41,10 +44,14 @@ impl Default for View {
             steering: motion::Mode::Orbit,
             speed: 1.0,
             dragging_split: false,
+            zoom: Zoom::default(),
             place: None,
         }
     }
 }
+
+/// What is around the picture.
+const GROUND: Color32 = Color32::from_gray(38);
 
 const WHOLE: Rect = Rect { min: Pos2::ZERO, max: Pos2 { x: 1.0, y: 1.0 } };
 
@@ -80,12 +87,18 @@ impl Workbench {
         if let Some(text) = self.comparison_text() {
             ui.label(text);
         }
+        let about = "The pictures as they are compared here, into captures/";
+        if ui.small_button("save picture").on_hover_text(about).clicked() {
+            self.save_comparison();
+        }
     }
 
     /// Shows the picture and steers the camera.
     pub(super) fn picture(&mut self, ui: &mut Ui, textures: &[TextureId]) {
         let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
+        // Another ground than a picture's black: its edge is seen.
+        painter.rect_filled(area, 0.0, GROUND);
         let scale = ui.ctx().pixels_per_point();
         self.area = [(area.width() * scale) as u32, (area.height() * scale) as u32];
         let Some(a) = self.sides[0].picture.as_ref().map(|p| p.size) else {
@@ -99,7 +112,9 @@ impl Workbench {
             return;
         };
         let both = self.desired.sides[1].is_some() && self.sides[1].picture.is_some();
-        let mut shown = fit(area, a, scale);
+        let zoom = self.view.zoom;
+        let fit = |area: Rect| zoom.place(fit(area, a, scale), a[0], scale);
+        let mut shown = fit(area);
         let draw = |number: usize, rect: Rect, clip: Rect| {
             painter.with_clip_rect(clip.intersect(area)).image(textures[number], rect, WHOLE, Color32::WHITE);
         };
@@ -120,11 +135,11 @@ impl Workbench {
             }
             Mode::Side => {
                 let (left, right) = area.split_left_right_at_fraction(0.5);
-                shown = fit(left, a, scale);
+                shown = fit(left);
                 draw(0, shown, left);
-                draw(1, fit(right, a, scale), right);
+                draw(1, fit(right), right);
                 badge(&painter, shown.left_top() + Vec2::new(14.0, 10.0), "A");
-                badge(&painter, fit(right, a, scale).left_top() + Vec2::new(14.0, 10.0), "B");
+                badge(&painter, fit(right).left_top() + Vec2::new(14.0, 10.0), "B");
             }
             Mode::Difference | Mode::Perceived => {
                 if self.comparison.as_ref().is_some_and(|(mode, _)| *mode == self.view.mode) {
@@ -138,12 +153,29 @@ impl Workbench {
             painter.rect_stroke(shown, 0.0, Stroke::new(2.0, Color32::from_rgb(220, 80, 60)), egui::StrokeKind::Inside);
         }
         let b = match self.view.mode {
-            Mode::Side => fit(area.split_left_right_at_fraction(0.5).1, a, scale),
+            Mode::Side => fit(area.split_left_right_at_fraction(0.5).1),
             _ => shown,
         };
-        self.timers(&painter.with_clip_rect(area), shown, both.then_some(b));
+        self.timers(&painter, shown.intersect(area), both.then_some(b.intersect(area)));
         self.view.place = Some(shown);
+        self.read_out(&painter, &response, shown, both);
         self.mouse(ui, &response, shown, a, both);
+    }
+
+    /// The pixel under the pointer: of B where B is shown.
+    fn read_out(&self, painter: &egui::Painter, response: &egui::Response, shown: Rect, both: bool) {
+        let Some(at) = response.hover_pos().filter(|p| shown.contains(*p)) else { return };
+        let line = shown.left() + shown.width() * self.view.split;
+        let second = both
+            && match self.view.mode {
+                Mode::Split => at.x > line,
+                Mode::Flip => self.view.flipped,
+                _ => false,
+            };
+        let Some(picture) = &self.sides[usize::from(second)].picture else { return };
+        if let Some(text) = pixel_text(picture, pixel_at(shown, picture.size, at)) {
+            foot(painter, response.rect, format!("{} {text}", ["A", "B"][usize::from(second)]));
+        }
     }
 
     fn mouse(&mut self, ui: &Ui, response: &egui::Response, shown: Rect, size: [u32; 2], both: bool) {
@@ -167,11 +199,13 @@ impl Workbench {
             }
             return;
         }
+        if self.view.zoom.steer(ui, response, shown) {
+            return;
+        }
         if response.clicked()
             && let Some(p) = response.interact_pointer_pos().filter(|p| shown.contains(*p))
         {
-            let at = (p - shown.min) / shown.size() * Vec2::new(size[0] as f32, size[1] as f32);
-            self.point_at(Some(at));
+            self.point_at(Some(pixel_at(shown, size, p)));
             self.show_tables();
         }
         if let Some(camera) = &mut self.desired.camera {

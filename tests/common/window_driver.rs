@@ -103,6 +103,12 @@ impl WindowDriver {
     /// The program on a copy of passes, shaders and configs, with an experiment (RON) that is opened, and arguments.
     #[track_caller]
     pub fn open(experiment: &str, args: &[&str]) -> WindowDriver {
+        WindowDriver::open_with(experiment, args, &[])
+    }
+
+    /// The same, with variables of the environment.
+    #[track_caller]
+    pub fn open_with(experiment: &str, args: &[&str], variables: &[(&str, &str)]) -> WindowDriver {
         let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         let home = tempfile::tempdir().unwrap();
         for folder in ["passes", "shaders", "configs"] {
@@ -119,6 +125,7 @@ impl WindowDriver {
             .env("DISPLAY", &display)
             .env("CONELAB_CACHE", home.path().join("cache"))
             .env("WINIT_X11_SCALE_FACTOR", "1")
+            .envs(variables.iter().copied())
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("WAYLAND_SOCKET")
             .stdout(Stdio::null())
@@ -313,6 +320,19 @@ impl WindowDriver {
         }
     }
 
+    /// The place of the first widget for which `is` holds.
+    #[track_caller]
+    pub fn widget(&mut self, is: impl Fn(&Value) -> bool) -> Rect {
+        let until = Instant::now() + Duration::from_secs(5);
+        loop {
+            if let Some(found) = self.widgets().iter().find(|w| is(w)) {
+                return [0, 1, 2, 3].map(|i| found["rect"][i].as_f64().unwrap());
+            }
+            assert!(Instant::now() < until, "no such widget: {:?}", self.texts());
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+
     #[track_caller]
     pub fn click(&mut self, role: &str, label: &str) {
         let at = centre(self.find(role, label));
@@ -351,6 +371,20 @@ impl WindowDriver {
         self.fake(5, 1, to);
     }
 
+    /// Turns the wheel up by so many notches, while keys are held.
+    pub fn wheel(&self, at: (f64, f64), notches: usize, held: &[u32]) {
+        let key = |kind: u8, symbol: &u32| {
+            self.x.xtest_fake_input(kind, self.code(*symbol), 0, self.root, 0, 0, 0).unwrap().check().unwrap();
+        };
+        self.fake(6, 0, at);
+        held.iter().for_each(|s| key(2, s));
+        for _ in 0..notches {
+            self.fake(4, 4, at);
+            self.fake(5, 4, at);
+        }
+        held.iter().for_each(|s| key(3, s));
+    }
+
     /// Presses keys together, the last one after the others, and releases them.
     pub fn keys(&self, symbols: &[u32]) {
         let codes: Vec<u8> = symbols.iter().map(|s| self.code(*s)).collect();
@@ -387,6 +421,12 @@ impl WindowDriver {
     pub fn resize(&self, width: u32, height: u32) {
         let size = ConfigureWindowAux::new().width(width).height(height);
         self.x.configure_window(self.window, &size).unwrap().check().unwrap();
+    }
+
+    /// Its size, pixels.
+    pub fn size(&self) -> (u32, u32) {
+        let size = self.x.get_geometry(self.window).unwrap().reply().unwrap();
+        (size.width.into(), size.height.into())
     }
 
     pub fn unmap(&self) {
@@ -431,6 +471,16 @@ impl WindowDriver {
         self.now();
         let last = self.events.iter().rev().find(|e| e["event"] == "place").expect("a picture");
         [0, 1, 2, 3].map(|i| last["rect"][i].as_f64().unwrap())
+    }
+
+    /// Waits until `holds` of where picture A is.
+    #[track_caller]
+    pub fn wait_place(&mut self, what: &str, holds: impl Fn(Rect) -> bool) {
+        let until = Instant::now() + Duration::from_secs(5);
+        while !holds(self.place()) {
+            assert!(Instant::now() < until, "{what}: {:?}", self.place());
+            std::thread::sleep(Duration::from_millis(10));
+        }
     }
 
     /// The picture on the screen, at one point a texel.

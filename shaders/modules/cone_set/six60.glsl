@@ -1,4 +1,4 @@
 // Six cones of 60 degrees (Crassin et al. 2011).
 ConeSet diffuseConeSet() {
-    return makeConeSet(6, 0.25, 60.0, 60.0);
+    return makeConeSet(6, 0.25, 60.0);
 }

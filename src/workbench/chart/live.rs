@@ -72,6 +72,14 @@ impl State {
         self.sides[0].error.as_ref()?.result.as_ref().ok().map(|v| &v.subject)
     }
 
+    /// Samples of the sweep's reference and of A's, if they are not the same.
+    pub fn reference_differs(&self, swept: &[(u32, u64)]) -> Option<String> {
+        let result = self.sides[0].error.as_ref()?;
+        let now = result.result.as_ref().ok()?.error?.samples;
+        let (_, there) = swept.iter().find(|(bounces, _)| *bounces == result.query.bounces)?;
+        (now != *there).then(|| format!("reference ({there} / {now} samples)"))
+    }
+
     /// Whether the error worker has not answered yet.
     pub fn awaits(&self) -> bool {
         self.sides.iter().any(|s| s.asked.as_ref().is_some_and(|a| !s.answers(a)))
@@ -234,5 +242,30 @@ impl Workbench {
         };
         let (samples, why) = (result.as_ref().ok(), result.as_ref().err().map(ToString::to_string));
         self.event("gathered", json!({ "samples": samples, "why": why }));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::error_worker::{PictureError, ReferenceError};
+    use super::*;
+
+    #[test]
+    fn errors_against_another_reference_are_told() {
+        let subject = Subject {
+            scene: "cornell".into(),
+            sha256: String::new(),
+            camera: String::new(),
+            size: (96, 72),
+            time: String::new(),
+        };
+        let error = Some(ReferenceError { error: 0.1, noise: 0.0, samples: 256 });
+        let query = ErrorQuery { bounces: 2, ..ErrorQuery::default() };
+        let mut state = State::default();
+        assert_eq!(state.reference_differs(&[(2, 32)]), None, "nothing is measured yet");
+        let result = Ok(PictureError { subject, error });
+        state.sides[0].error = Some(ErrorResult { side: 0, request: 1, query, result });
+        assert_eq!(state.reference_differs(&[(2, 32)]).as_deref(), Some("reference (32 / 256 samples)"));
+        assert_eq!(state.reference_differs(&[(1, 32), (2, 256)]), None);
     }
 }

@@ -51,10 +51,14 @@ impl Workbench {
         let subject = data.as_ref().and_then(|d| d.keys.get(self.chart.choice.subject));
         let now = self.chart.live.subject();
         let device = self.device.as_ref().map_or("", |d| d.name.as_str());
-        let differences = match (now, subject) {
-            (Some(now), Some(subject)) => folder::differences(now, device, subject),
+        let mut differences: Vec<String> = match (now, subject) {
+            (Some(now), Some(subject)) => {
+                folder::differences(now, device, subject).into_iter().map(String::from).collect()
+            }
             _ => Vec::new(),
         };
+        let swept = data.as_ref().and_then(|d| d.samples.get(self.chart.choice.subject));
+        differences.extend(swept.and_then(|swept| self.chart.live.reference_differs(swept)));
         let title = axis_title(self.chart.choice.metric);
         let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent.number));
         let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
@@ -67,7 +71,7 @@ impl Workbench {
         let name = format!("{:?} {:?}", self.chart.folder.as_ref().map(|f| &f.path), self.chart.choice);
         let drawn = plot::show(ui, &name, height, &shown);
         if !differences.is_empty() {
-            let text = format!("the sweep's picture differs in {}", differences.join(", "));
+            let text = format!("the sweep differs: {}", differences.join(", "));
             ui.weak(text)
                 .on_hover_text("Errors of different pictures cannot be compared. A click on a dot goes there.");
         }
@@ -179,7 +183,7 @@ impl Workbench {
     }
 
     /// Logs where the dots are, in points, for scripts.
-    fn log_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[&str]) {
+    fn log_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[String]) {
         if self.events.is_none() {
             return;
         }

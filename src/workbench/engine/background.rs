@@ -36,6 +36,8 @@ impl Run<'_> {
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
     pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
         let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone()) else { return };
+        let pointer = self.sides[number].loaded.as_ref().and_then(|l| l.graph.pointer.as_deref());
+        let desired = save::without_pointer(&desired, pointer);
         let experiment = save::experiment(&self.desired, &desired, &name, self.clock.now, Some(&scene));
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");

@@ -194,6 +194,8 @@ struct Run<'a> {
     scene: Option<Arc<Scene>>,
     /// What was loaded: name, revision; and how many scenes were.
     scene_key: Option<(String, String, u64)>,
+    /// The same of the scene that is there.
+    loaded_key: Option<(String, String, u64)>,
     scene_number: u64,
     loading: Option<Arc<AtomicBool>>,
     loaded: Sender<Result<Arc<Scene>, SceneError>>,
@@ -280,6 +282,7 @@ fn session(
         error_requests,
         scene: None,
         scene_key: None,
+        loaded_key: None,
         scene_number: 0,
         loading: None,
         loaded: loaded_out,
@@ -407,7 +410,14 @@ impl Run<'_> {
         }
         // Files, parameters and sizes ask for frames when what they lead to has been built.
         let view = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.redo, w.inspect.clone(), w.table);
-        if view(&self.desired) != view(&old) || self.desired.lights != old.lights || self.desired.path != old.path {
+        // While another scene is loaded, and when it cannot be, the one before answers.
+        let scene = |w: &RenderRequest| (w.scene.clone(), w.environment.clone());
+        let same = scene(&self.desired) == scene(&old);
+        if !same
+            || view(&self.desired) != view(&old)
+            || self.desired.lights != old.lights
+            || self.desired.path != old.path
+        {
             self.request_frames(1);
         }
         for i in 0..2 {

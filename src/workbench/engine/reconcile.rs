@@ -6,8 +6,8 @@ use super::super::request::SideRequest;
 use super::Run;
 use crate::graph::source::{Diagnostic, Place};
 use crate::graph::usage::Res;
-use crate::lab::{LabError, Loaded, Session, params_of};
-use crate::vulkan::VulkanError;
+use crate::lab::{LabError, Loaded, Session, environment, params_of};
+use crate::vulkan::{DeviceInfo, VulkanError};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -119,7 +119,7 @@ impl Run<'_> {
                 side.lights = true;
                 side.inspected = None;
                 side.failed = None;
-                let info = info(&session, &loaded);
+                let info = info(&session, &loaded, &self.lab.gpu.info);
                 let change = session.program.change;
                 side.session = Some(session);
                 side.loaded = Some(loaded);
@@ -171,7 +171,7 @@ impl Run<'_> {
     }
 }
 
-fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
+fn info(session: &Session, loaded: &Loaded, device: &DeviceInfo) -> GraphInfo {
     let plan = &session.program.plan;
     let mut uses: Vec<PassUses> = Vec::new();
     for step in &plan.steps {
@@ -193,6 +193,8 @@ fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
     }
     GraphInfo {
         graph: loaded.graph.clone(),
+        linked: session.linked.clone(),
+        variables: environment(&session.scene, session.size(), device),
         params: session.params.clone(),
         textures: plan.textures.clone(),
         memory: session.program.memory(&session.graph),

@@ -54,6 +54,7 @@ impl Run<'_> {
         match scene {
             Ok(scene) => {
                 self.loading = None;
+                self.loaded_key.clone_from(&self.scene_key);
                 self.scene = Some(scene.clone());
                 self.scene_number += 1;
                 self.out.send(Report::Loaded(scene));
@@ -65,14 +66,24 @@ impl Run<'_> {
                 // Cancelled for another scene, the other is being loaded by now.
                 if self.loading.as_ref().is_some_and(|c| c.load(Ordering::Relaxed)) {
                     self.loading = None;
+                    self.stay();
                     self.out.send(Report::LoadFailed("loading was cancelled".into()));
                 }
             }
             Err(e) => {
                 self.loading = None;
+                self.stay();
                 self.out.send(Report::LoadFailed(e.to_string()));
             }
         }
         Ok(())
+    }
+
+    /// The scene before stays: the window will ask for it again, and it need not be loaded.
+    fn stay(&mut self) {
+        let name = |key: &Option<(String, String, u64)>| key.as_ref().map(|k| (k.0.clone(), k.1.clone()));
+        if self.loaded_key.is_some() && name(&self.loaded_key) != name(&self.scene_key) {
+            self.scene_key.clone_from(&self.loaded_key);
+        }
     }
 }

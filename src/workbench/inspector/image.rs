@@ -108,13 +108,33 @@ impl Decoded {
     }
 }
 
-/// Position in the texture of a texel of the picture: two numbers, three for a volume.
-pub fn texel(target: &InspectTarget, volume: bool, x: u32, y: u32) -> Vec<u32> {
+/// The texels of a slice as the world has them: y, where it lies in the slice, goes up. Seen along x, z goes to the right.
+pub fn upright(texels: Texels, axis: usize) -> Texels {
+    let [width, height, _] = texels.extent.map(|n| n as usize);
+    let size = texels.format.bytes as usize;
+    let (out_width, out_height) = if axis == 0 { (height, width) } else { (width, height) };
+    if axis == 1 || texels.bytes.len() != width * height * size {
+        return texels;
+    }
+    let mut bytes = Vec::with_capacity(texels.bytes.len());
+    for row in 0..out_height {
+        let y = out_height - 1 - row;
+        for column in 0..out_width {
+            let index = if axis == 0 { column * width + y } else { y * width + column };
+            bytes.extend_from_slice(&texels.bytes[index * size..(index + 1) * size]);
+        }
+    }
+    Texels { extent: [out_width as u32, out_height as u32, 1], bytes, ..texels }
+}
+
+/// Position in the texture of a texel of the picture, which is `height` texels high: two numbers, three for a volume.
+pub fn texel(target: &InspectTarget, volume: bool, height: u32, x: u32, y: u32) -> Vec<u32> {
+    let up = height.saturating_sub(y + 1);
     match (volume, target.axis) {
         (false, _) => vec![x, y],
-        (true, 0) => vec![target.slice, x, y],
+        (true, 0) => vec![target.slice, up, x],
         (true, 1) => vec![x, target.slice, y],
-        (true, _) => vec![x, y, target.slice],
+        (true, _) => vec![x, up, target.slice],
     }
 }
 
@@ -211,9 +231,22 @@ pub(super) mod tests {
     #[test]
     fn a_slice_knows_where_it_lies() {
         let target = |axis| InspectTarget { side: 0, texture: "t".into(), mip: 0, layer: 0, axis, slice: 9 };
-        assert_eq!(texel(&target(0), true, 1, 2), [9, 1, 2]);
-        assert_eq!(texel(&target(1), true, 1, 2), [1, 9, 2]);
-        assert_eq!(texel(&target(2), true, 1, 2), [1, 2, 9]);
-        assert_eq!(texel(&target(0), false, 1, 2), [1, 2]);
+        assert_eq!(texel(&target(0), true, 8, 1, 2), [9, 5, 1]);
+        assert_eq!(texel(&target(1), true, 8, 1, 2), [1, 9, 2]);
+        assert_eq!(texel(&target(2), true, 8, 1, 2), [1, 5, 9]);
+        assert_eq!(texel(&target(0), false, 8, 1, 2), [1, 2]);
+    }
+
+    #[test]
+    fn slices_stand_upright() {
+        let format = Format::named("r8").unwrap();
+        // Two wide, three high: the value is 10 times the row, and the column.
+        let slice = || Texels { extent: [2, 3, 1], format, bytes: vec![0, 1, 10, 11, 20, 21] };
+        let front = upright(slice(), 2);
+        assert_eq!((front.extent, front.bytes), ([2, 3, 1], vec![20, 21, 10, 11, 0, 1]));
+        // Along x columns were y and rows z: the largest y is on top, z goes to the right.
+        let side = upright(slice(), 0);
+        assert_eq!((side.extent, side.bytes), ([3, 2, 1], vec![1, 11, 21, 0, 10, 20]));
+        assert_eq!(upright(slice(), 1).bytes, slice().bytes);
     }
 }

@@ -59,7 +59,9 @@ impl Inspector {
     }
 
     /// Takes in the texels that were asked for.
-    pub fn note(&mut self, target: InspectTarget, texels: Texels, wake: &Arc<dyn Fn() + Send + Sync>) {
+    /// Those of a volume are a slice.
+    pub fn note(&mut self, target: InspectTarget, texels: Texels, volume: bool, wake: &Arc<dyn Fn() + Send + Sync>) {
+        let texels = if volume { image::upright(texels, target.axis) } else { texels };
         // What was asked for before the user chose anew would only hold up what is to come.
         if target.texture != self.target.texture || target.side != self.target.side {
             return;

@@ -97,7 +97,8 @@ impl Workbench {
         let info = self.sides[target.side.min(1)].info.as_ref();
         let index = info.and_then(|o| o.graph.textures.iter().position(|t| t.0 == target.texture));
         let volume = info.zip(index).is_some_and(|(o, i)| o.textures.get(i).is_some_and(|t| t.volume));
-        let place: Vec<String> = image::texel(target, volume, x, y).iter().map(ToString::to_string).collect();
+        let place: Vec<String> =
+            image::texel(target, volume, done.decoded.size[1], x, y).iter().map(ToString::to_string).collect();
         let channels: Vec<String> = ["R", "G", "B", "A"].iter().zip(values).map(|(n, v)| format!("{n} {v}")).collect();
         let text = format!("({})\n{}", place.join(", "), channels.join("\n"));
         note(painter, painter.clip_rect(), at + Vec2::new(14.0, 14.0), &text);

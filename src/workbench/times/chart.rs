@@ -3,7 +3,7 @@
 use super::history::{History, KEPT};
 use egui::epaint::{Mesh, Vertex, WHITE_UV, ecolor::Hsva};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Ui, Vec2};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A chart's mesh, kept while nothing changes.
 #[derive(Default)]
@@ -21,16 +21,19 @@ struct Key {
     hovered: Option<String>,
 }
 
-/// The colour of a pass: the same for the same name, in every graph and side.
+/// Names of passes in the order in which they were first drawn.
+static NAMES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// The colour of a pass: the same for the same name, in every graph and side, and another for every other one.
 pub fn color(name: &str) -> Color32 {
-    // FNV-1a, 32 bits.
-    let hash = name.bytes().fold(0x811c_9dc5_u32, |h, b| (h ^ u32::from(b)).wrapping_mul(0x0100_0193));
-    // The last step of MurmurHash3, so that names which differ little differ much in colour.
-    let mixed = (hash ^ (hash >> 16)).wrapping_mul(0x85eb_ca6b);
-    let mixed = (mixed ^ (mixed >> 13)).wrapping_mul(0xc2b2_ae35);
-    let mixed = mixed ^ (mixed >> 16);
-    let part = |shift: u32, n: u32| ((mixed >> shift) % n) as f32 / (n - 1) as f32;
-    Hsva::new(part(0, 360), 0.45 + 0.45 * part(11, 3), 0.45 + 0.5 * part(17, 4), 1.0).into()
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    let number = names.iter().position(|n| n == name).unwrap_or_else(|| {
+        names.push(name.to_string());
+        names.len() - 1
+    });
+    // Steps of the golden ratio never meet again; neighbours differ in brightness too.
+    let hue = (number as f32 * 0.618_034).fract();
+    Hsva::new(hue, [0.75, 0.45, 0.9, 0.6, 0.35][number % 5], [0.95, 0.75, 0.6, 0.85, 0.55][number % 5], 1.0).into()
 }
 
 impl Chart {
@@ -62,20 +65,28 @@ impl Chart {
         }
         painter.add(Shape::Mesh(self.mesh.clone()));
         let weak = ui.visuals().weak_text_color();
-        let line = rect.bottom() - rect.height() / 1.15;
+        // A round number on the axis is no measurement.
+        let tick = round_below(top / 1.05);
+        let line = rect.bottom() - (f64::from(rect.height()) * tick / top.max(1e-9)) as f32;
         painter.hline(rect.x_range(), line, (0.5, weak));
-        let label = format!("{}  {:.2} ms", ["A", "B"][side.min(1)], top / 1.15);
-        painter.text(
-            Pos2::new(rect.left() + 3.0, line + 1.0),
-            Align2::LEFT_TOP,
-            label,
-            FontId::proportional(11.0),
-            ui.visuals().text_color(),
-        );
+        let font = FontId::proportional(11.0);
+        let at = Pos2::new(rect.right() - 3.0, line + 1.0);
+        painter.text(at, Align2::RIGHT_TOP, format!("{tick} ms"), font.clone(), weak);
+        let name = ["A", "B"][side.min(1)];
+        painter.text(rect.left_top() + Vec2::splat(3.0), Align2::LEFT_TOP, name, font, ui.visuals().text_color());
         let at = response.hover_pos()?;
         let name = under(rect, history, top, at)?;
         Some((name, response))
     }
+}
+
+/// The greatest of 1, 2 and 5 times a power of ten that is not above a number.
+fn round_below(x: f64) -> f64 {
+    if x <= 0.0 || !x.is_finite() {
+        return 0.0;
+    }
+    let power = 10.0_f64.powi(x.log10().floor() as i32);
+    [5.0, 2.0, 1.0].into_iter().map(|n| n * power).find(|n| *n <= x * 1.000_001).unwrap_or(power)
 }
 
 /// Bottom left of the bar of frame `i`; the newest stands at the right edge.
@@ -162,7 +173,15 @@ mod tests {
 
     #[test]
     fn a_name_keeps_its_colour() {
-        assert_eq!(color("shade"), color("shade"));
-        assert_ne!(color("shade"), color("inject"));
+        let names: Vec<String> = (0..60).map(|i| format!("pass {i}")).collect();
+        let colours: Vec<Color32> = names.iter().map(|n| color(n)).collect();
+        assert_eq!(names.iter().map(|n| color(n)).collect::<Vec<_>>(), colours);
+        let far = |a: Color32, b: Color32| a.to_array().iter().zip(b.to_array()).any(|(a, b)| a.abs_diff(b) > 3);
+        assert!(colours.iter().enumerate().all(|(i, a)| colours[..i].iter().all(|b| far(*a, *b))));
+    }
+
+    #[test]
+    fn the_axis_has_round_numbers() {
+        assert_eq!([1032.67, 0.73, 2.0, 0.0].map(round_below), [1000.0, 0.5, 2.0, 0.0]);
     }
 }

@@ -136,6 +136,7 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
 /// A time with four digits, ms.
 fn digits(ms: f64) -> String {
     match ms {
+        _ if ms >= 999.95 => format!("{ms:.0}"),
         _ if ms >= 99.995 => format!("{ms:.1}"),
         _ if ms >= 9.9995 => format!("{ms:.2}"),
         _ => format!("{ms:.3}"),
@@ -191,7 +192,8 @@ mod tests {
 
     #[test]
     fn times_have_four_digits() {
-        assert_eq!([0.0123, 9.9996, 52.944, 511.644].map(digits), ["0.012", "10.00", "52.94", "511.6"]);
+        let list = [0.0123, 9.9996, 52.944, 511.644, 21212.28].map(digits);
+        assert_eq!(list, ["0.012", "10.00", "52.94", "511.6", "21212"]);
     }
 
     #[test]

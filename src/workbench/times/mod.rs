@@ -215,11 +215,11 @@ fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> std::io::R
 
 /// Right edges of the columns of numbers, as shares of the width.
 fn columns(both: bool) -> &'static [f32] {
-    if both { &[0.56, 0.71, 0.84, 1.0] } else { &[0.56, 0.71, 0.86, 1.0] }
+    if both { &[0.57, 0.73, 0.86, 1.0] } else { &[0.55, 0.70, 0.85, 1.0] }
 }
 
 fn head(ui: &mut Ui, both: bool) {
-    let names: [&str; 4] = if both { ["A ms", "B ms", "B/A", "share A"] } else { ["median", "p95", "share", "max"] };
+    let names: [&str; 4] = if both { ["A ms", "B ms", "B/A", "A %"] } else { ["med. ms", "p95 ms", "share", "max ms"] };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
     let color = ui.visuals().weak_text_color();
     for (x, name) in columns(both).iter().zip(names) {
@@ -228,7 +228,7 @@ fn head(ui: &mut Ui, both: bool) {
     response.on_hover_text(if both {
         "Medians of the last frames; A and B are measured in turns"
     } else {
-        "Milliseconds over the last frames; the share is that of the median in the GPU's total"
+        "Median, 95th percentile and maximum over the last frames; the share is that of the median in the GPU's total"
     });
 }
 
@@ -259,14 +259,11 @@ fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
     // Names give way to numbers.
     let right = rect.left() + rect.width() * columns(both).first().copied().unwrap_or(1.0) - NUMBER;
     let names = Rect::from_min_max(Pos2::new(left, rect.top()), Pos2::new(right, rect.bottom()));
-    let font = FontId::proportional(12.0);
-    ui.painter().with_clip_rect(names.intersect(ui.clip_rect())).text(
-        names.left_center(),
-        Align2::LEFT_CENTER,
-        &row.name,
-        font,
-        color,
-    );
+    let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), FontId::proportional(11.5), color);
+    job.wrap = egui::text::TextWrapping::truncate_at_width(names.width());
+    let galley = ui.painter().layout_job(job);
+    let at = Align2::LEFT_CENTER.anchor_size(names.left_center(), galley.size()).min;
+    ui.painter().galley(at, galley, color);
     for (i, (x, text)) in columns(both).iter().zip(&row.cells).enumerate() {
         let asleep = row.asleep.get(i).is_some_and(|asleep| *asleep) && (both || i == 0);
         put(ui, rect, *x, if asleep { "slept" } else { text }, color);

@@ -1,0 +1,258 @@
+//! What somebody at the window finds first: the panel of parameters, scenes that cannot be loaded, saving, the picture's
+//! size on the screen.
+
+mod common;
+#[path = "common/window_driver.rs"]
+mod window_driver;
+
+use std::time::Duration;
+use window_driver::{CONTROL, WindowDriver, centre, with};
+
+/// Cones in every pixel, so that the pinned parameters count; small enough for a software device.
+const CONES: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "trace": cones })"#;
+
+const ESCAPE: u32 = 0xff1b;
+const F12: u32 = 0xffc9;
+const HOME: u32 = 0xff50;
+
+fn small() -> WindowDriver {
+    WindowDriver::open(CONES, &["--size", "160x120"])
+}
+
+fn has(texts: &[String], text: &str) -> bool {
+    texts.iter().any(|t| t == text)
+}
+
+#[test]
+fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_written() {
+    let mut driver = small();
+    let first = driver.first_picture();
+    let titles = ["Cone count", "Aperture", "Steps", "Bias", "LOD offset", "Warp alpha", "Perspective warp"];
+    let tops: Vec<f64> = titles.iter().map(|title| driver.find("Label", title)[1]).collect();
+    assert!(tops.is_sorted(), "{tops:?}");
+    driver.texts_until("the set's own aperture", |texts| has(texts, "= 78 deg"));
+    let group = driver.find("", "Tracing (1)");
+
+    for typed in ["lod offset", "lodoffset"] {
+        driver.keys(&[CONTROL, u32::from(b'f')]);
+        driver.text(typed);
+        driver.texts_until("what was searched for", |texts| has(texts, "lod_offset") && !has(texts, "exposure"));
+        driver.keys(&[ESCAPE]);
+        driver.texts_until("the groups as they were", |texts| has(texts, "Cone count") && !has(texts, "lod_offset"));
+    }
+    assert_eq!(driver.find("", "Tracing (1)"), group, "the panel is as wide as it was, its groups folded");
+
+    // A drag takes the keys from the search: undo is of the parameter.
+    driver.keys(&[CONTROL, u32::from(b'f')]);
+    driver.text("lod");
+    let rect = driver.find("Slider", "lod_offset");
+    let (x, y) = centre(rect);
+    let mark = driver.now();
+    driver.drag((x, y), (x - 0.3 * (rect[2] - rect[0]), y));
+    driver.other_picture(mark, 0, &first);
+    driver.resting(0);
+    let mark = driver.now();
+    driver.keys(&[CONTROL, u32::from(b'z')]);
+    driver.picture(mark, 0, &first);
+    driver.keys(&[CONTROL, u32::from(b'f')]);
+    driver.text("zzz");
+    driver.texts_until("that nothing matches", |texts| has(texts, "nothing matches"));
+    driver.click("Button", "clear the search");
+    driver.texts_until("everything", |texts| has(texts, "Cone count"));
+
+    // What another graph has is a click away.
+    let mark = driver.now();
+    driver.click("Button", "use warps.ron for Perspective warp");
+    driver.wait(mark, "the other graph", |e| e["event"] == "built" && e["side"] == 0);
+    driver.texts_until("its parameters", |texts| !has(texts, "use warps.ron for Perspective warp"));
+    driver.close();
+}
+
+#[test]
+fn a_scene_that_cannot_be_loaded_leaves_everything_as_it_was() {
+    let mut driver = small();
+    let first = driver.first_picture();
+    let mark = driver.now();
+    driver.click("", "scene: cornell");
+    driver.click("", "sponza");
+    driver.event(mark, "load failed");
+    driver.texts_until("the scene that is shown", |texts| has(texts, "scene: cornell"));
+    assert!(!has(&driver.texts(), "Restart device"), "no device is at fault");
+    assert_eq!(driver.resting(0), first);
+
+    // A capture and an experiment name the scene that they show.
+    let mark = driver.now();
+    driver.keys(&[F12]);
+    let captured = driver.wait_at_most(Duration::from_secs(30), mark, "a capture", |e| e["event"] == "captured");
+    assert_eq!(captured["ok"], true, "{captured}");
+    assert!(driver.file("captures/opened/experiment.ron").contains("\"cornell\""));
+
+    // Undo does not lead to the scene that failed.
+    driver.click("", "Display");
+    let rect = driver.find("Slider", "exposure");
+    let (x, y) = centre(rect);
+    let mark = driver.now();
+    driver.drag((x, y), (x + 0.15 * (rect[2] - rect[0]), y));
+    driver.other_picture(mark, 0, &first);
+    driver.resting(0);
+    let mark = driver.now();
+    for _ in 0..3 {
+        driver.keys(&[CONTROL, u32::from(b'z')]);
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    driver.picture(mark, 0, &first);
+    std::thread::sleep(Duration::from_millis(300));
+    driver.now();
+    assert!(driver.events[mark..].iter().all(|e| e["event"] != "load failed" && e["event"] != "loaded"));
+    driver.close();
+}
+
+#[test]
+fn the_window_says_what_is_wrong_with_a_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = folder.path().join("one.obj");
+    std::fs::write(&model, "mtllib one.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    std::fs::write(folder.path().join("one.mtl"), "newmtl a\nmap_Kd gone.png\n").unwrap();
+    let mut driver = WindowDriver::open(CONES, &["--size", "160x120", "--scene", model.to_str().unwrap()]);
+    let loaded = driver.event(0, "loaded");
+    assert!(loaded["warnings"].to_string().contains("gone.png"), "{loaded}");
+    driver.texts_until("the warning", |texts| {
+        texts.iter().any(|t| t.starts_with("scene: ") && t.contains("gone.png")) && has(texts, "Warnings (1)")
+    });
+    driver.close();
+    drop(driver);
+
+    let mut driver = WindowDriver::open(CONES, &["--size", "160x120", "--scene", "gone.obj"]);
+    driver.event(0, "load failed");
+    driver.texts_until("that there is no scene", |texts| has(texts, "no scene") && has(texts, "scene: none"));
+    let mark = driver.now();
+    driver.click("", "scene: none");
+    driver.click("", "cornell");
+    driver.event(mark, "loaded");
+    driver.first_picture();
+    driver.close();
+}
+
+#[test]
+fn saving_says_beside_the_field_what_became_of_it() {
+    let mut driver = small();
+    driver.first_picture();
+    // Where somebody clicked is no part of an experiment.
+    let (x, y) = centre(driver.place());
+    let mark = driver.now();
+    driver.click_at((x, y + 40.0));
+    driver.event(mark, "picture");
+    driver.click("", "Save");
+    let name = |driver: &mut WindowDriver, typed: &str| {
+        driver.click("", "experiment name");
+        driver.keys(&[CONTROL, u32::from(b'a')]);
+        driver.text(typed);
+    };
+    name(&mut driver, "../x");
+    let mark = driver.now();
+    driver.click("Button", "save");
+    let why = driver.event(mark, "not saved")["why"].as_str().unwrap().to_string();
+    let field = driver.find("", "experiment name");
+    let said = driver.widget(|w| w["label"] == why.as_str() && w["rect"][0].as_f64() > Some(field[0] - 20.0));
+    assert!(said[1] - field[3] < 30.0, "{said:?} stands below {field:?}");
+
+    name(&mut driver, "con fig");
+    let mark = driver.now();
+    driver.click("Button", "save");
+    driver.event(mark, "saved");
+    let saved = driver.file("configs/con-fig.ron");
+    assert!(saved.contains("\"trace\"") && !saved.contains("probe"), "{saved}");
+    driver.texts_until("the corrected name", |texts| {
+        has(texts, "experiment: con-fig") && texts.iter().any(|t| t.starts_with("saved ") && t.ends_with("con-fig.ron"))
+    });
+    driver.close();
+}
+
+#[test]
+fn a_sequence_says_how_far_it_is_and_can_be_stopped() {
+    let mut driver = small();
+    driver.first_picture();
+    driver.click("", "Motion");
+    let mark = driver.now();
+    driver.click("Button", "render");
+    driver.event(mark, "sequence begun");
+    driver.texts_until("progress", |texts| has(texts, "cancel"));
+    let first = driver.home.path().join("captures/sequence/frame-00000.png");
+    let until = std::time::Instant::now() + Duration::from_secs(20);
+    while !first.is_file() && std::time::Instant::now() < until {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    driver.click("Button", "cancel");
+    let ended = driver.event(mark, "sequence");
+    assert!(ended["text"].as_str().unwrap().starts_with("cancelled after "), "{ended}");
+
+    // Its folder has frames now: that is said beside the button.
+    let mark = driver.now();
+    driver.click("Button", "render");
+    let ended = driver.event(mark, "sequence");
+    assert_eq!(ended["ok"], false, "{ended}");
+    driver.close();
+}
+
+#[test]
+fn a_place_in_a_message_opens_the_editor() {
+    let editor = [("CONELAB_EDITOR", "cp {file} opened-{line}")];
+    let mut driver = WindowDriver::open_with(CONES, &["--size", "160x120"], &editor);
+    let first = driver.first_picture();
+    let place = driver.place();
+    let display = driver.file("shaders/display/display.comp");
+    let mark = driver.now();
+    driver.rename_into("shaders/display/display.comp", &with(&display, "params.exposure", "params.exposre"));
+    let failed = driver.event(mark, "failed");
+    assert!(failed["errors"].to_string().contains("did you mean 'exposure'?"), "{failed}");
+    let label = |t: &&String| t.contains("display.comp:") && t.contains("exposre");
+    driver.texts_until("the message", |texts| texts.iter().any(|t| label(&t)));
+    assert_eq!(driver.place(), place, "the picture stays where it is");
+    let text = driver.texts().iter().find(label).unwrap().clone();
+    let mark = driver.now();
+    let rect = driver.find("", &text);
+    driver.click_at((rect[0] + 40.0, rect[1] + 6.0));
+    driver.event(mark, "editor");
+    let line = 1 + display.lines().position(|l| l.contains("params.exposure")).unwrap();
+    let until = std::time::Instant::now() + Duration::from_secs(5);
+    while !driver.home.path().join(format!("opened-{line}")).is_file() {
+        assert!(std::time::Instant::now() < until, "no editor was started");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert_eq!(driver.pictures(0).last(), Some(&first));
+    let failures = driver.events.iter().filter(|e| e["event"] == "failed").count();
+    assert_eq!(failures, 1, "the message does not change the picture's size");
+    driver.close();
+}
+
+#[test]
+fn the_picture_is_zoomed_into_and_the_panels_make_room_for_it() {
+    let mut driver = small();
+    let first = driver.first_picture();
+    let whole = driver.place();
+    let at = centre(whole);
+    driver.point_at(at);
+    driver.texts_until("a picture", |texts| has(texts, "Cone count"));
+    driver.wheel(at, 3, &[CONTROL]);
+    let width = |r: [f64; 4]| r[2] - r[0];
+    let mark = driver.now();
+    driver.wait_place("a larger picture", |place| width(place) > 1.2 * width(whole));
+    driver.keys(&[HOME]);
+    driver.wait_place("the whole picture", |place| place == whole);
+    driver.keys(&[u32::from(b'h')]);
+    driver.texts_until("no panels", |texts| !has(texts, "Cone count") && !has(texts, "Motion"));
+    driver.keys(&[u32::from(b'h')]);
+    driver.texts_until("panels", |texts| has(texts, "Cone count") && has(texts, "Motion"));
+    assert!(driver.events[mark..].iter().all(|e| e["event"] != "picture" || e["fingerprint"] == first.as_str()));
+    driver.close();
+}
+
+#[test]
+fn a_window_of_large_points_fits_its_screen() {
+    let scale = [("WINIT_X11_SCALE_FACTOR", "2")];
+    let mut driver = WindowDriver::open_with(CONES, &["--size", "160x120"], &scale);
+    driver.first_picture();
+    let (width, height) = driver.size();
+    assert!(width <= 1400 && height <= 900, "{width}x{height} on a screen of 1400x900");
+    driver.close();
+}
