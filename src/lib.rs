@@ -27,6 +27,7 @@ pub mod shader;
 pub mod stability;
 pub mod stats;
 pub mod sweep;
+pub mod timers;
 pub mod vulkan;
 pub mod window;
 pub mod workbench;

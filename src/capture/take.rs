@@ -13,6 +13,7 @@ use crate::lab::{Lab, LabError, camera_of, no_texture};
 use crate::picture;
 use crate::scene::Scene;
 use crate::shader::ShaderCompiler;
+use crate::timers::{Rows, Timers, stamped};
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
@@ -37,6 +38,8 @@ pub struct What {
     pub frames: Option<usize>,
     /// Time from frame to frame, s.
     pub step: f64,
+    /// Keep the picture with the GPU's times on it too, as timers.png.
+    pub timers: Option<Rows>,
 }
 
 /// The first of `name`, `name-2`, `name-3` and so on that no capture in `folder` has.
@@ -91,6 +94,18 @@ pub fn take(
         let file = path.join(&image.file);
         let bytes = if image.file.ends_with(".png") { picture::png(texels)? } else { picture::exr(texels)? };
         write(&file, &bytes)?;
+    }
+    if let Some(rows) = what.timers
+        && let Some((_, texels)) = images.iter().find(|i| i.0.file == "picture.png")
+    {
+        let medians = stats
+            .passes
+            .iter()
+            .filter_map(|p| Some((graph.passes.iter().position(|x| x.value.name.value == p.name)?, p.gpu_ms.median)));
+        let params = resolved.params_over(&graph.params)?;
+        let size = experiment.size.into();
+        let timers = Timers::new(rows, &graph, &params, &stats.device.name, size, &medians.collect::<Vec<_>>());
+        write(&path.join("timers.png"), &picture::png(&stamped(&lab.gpu, texels, &timers)?)?)?;
     }
     write(&path.join("stats.json"), &json(&stats)?)?;
     let mut files = BTreeMap::new();

@@ -5,6 +5,7 @@ use super::adapt::{self, ExperimentArgs, parse_resource};
 use crate::capture::{Resource, What, free_name, sweep_partials, take};
 use crate::experiment::checked_name;
 use crate::lab::{Lab, LabError, Workspace};
+use crate::timers::Rows;
 use clap::Args;
 use std::sync::Arc;
 
@@ -25,6 +26,9 @@ pub struct CaptureArgs {
     /// Time from frame to frame, s.
     #[arg(long, default_value_t = 0.0)]
     step: f64,
+    /// Keep the picture with the GPU's times on it too, of the graph's stages or of every pass.
+    #[arg(long, value_enum, value_name = "ROWS")]
+    timers: Option<Rows>,
     #[command(flatten)]
     device: DeviceArgs,
 }
@@ -37,7 +41,12 @@ pub fn run(args: &CaptureArgs) -> Result<(), LabError> {
         let (name, mip, layer) = parse_resource(text)?;
         Ok(Resource { name, mip, layer })
     });
-    let what = What { resources: resources.collect::<Result<_, LabError>>()?, frames: args.frames, step: args.step };
+    let what = What {
+        resources: resources.collect::<Result<_, LabError>>()?,
+        frames: args.frames,
+        step: args.step,
+        timers: args.timers,
+    };
     let home = Workspace::find()?;
     let folder = home.root.join("captures");
     let name = match &args.name {

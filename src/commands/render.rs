@@ -7,6 +7,7 @@ use crate::graph::load::Graph;
 use crate::graph::param::Value;
 use crate::graph::run::{FrameTimes, Redo};
 use crate::lab::{Lab, LabError, Session, Texels, Workspace};
+use crate::timers::{Rows, Timers, stamped};
 use crate::{picture, stats};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -44,6 +45,9 @@ pub struct RenderArgs {
     /// Output file, .png or .exr: the last frame.
     #[arg(short, long)]
     output: Option<PathBuf>,
+    /// Draw the GPU's times onto the pictures (.png): of the graph's stages, or of every pass.
+    #[arg(long, value_enum, value_name = "ROWS")]
+    timers: Option<Rows>,
     /// Write timings and settings to this JSON file; `-`: to standard output, and nothing else there.
     #[arg(long)]
     json: Option<PathBuf>,
@@ -104,7 +108,12 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         times.extend(session.frame(args.step)?);
         if let (Some((folder, shown)), Some(frame)) = (&frames_of, number.checked_sub(warmup)) {
             times.extend(session.finish()?);
-            write_texture(&mut session, &folder.join(format!("frame-{frame:05}.png")), shown)?;
+            let file = folder.join(format!("frame-{frame:05}.png"));
+            let timers = args
+                .timers
+                .zip(times.last())
+                .map(|(rows, times)| timers(rows, &lab, &session, std::slice::from_ref(times)));
+            write_texture(&lab, &mut session, &file, shown, timers)?;
         }
         bar.inc(1);
     }
@@ -119,7 +128,8 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         eprintln!("warning: {message}");
     }
     if let Some((path, shown)) = &shown {
-        write_texture(&mut session, path, shown)?;
+        let timers = args.timers.filter(|_| !exr).map(|rows| timers(rows, &lab, &session, &times));
+        write_texture(&lab, &mut session, path, shown, timers)?;
     }
     let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, warmup, failed);
     say_part!("{}", stats::table(&stats));
@@ -153,8 +163,28 @@ fn part_asked_for(session: &Session) -> Option<(String, String)> {
     session.graph.parts.iter().find(|(part, _)| set(part)).cloned()
 }
 
-fn write_texture(session: &mut Session, path: &Path, shown: &(String, u32, u32)) -> Result<(), LabError> {
-    picture::write(path, &session.texels(&shown.0, shown.1, shown.2)?)
+fn write_texture(
+    lab: &Lab,
+    session: &mut Session,
+    path: &Path,
+    shown: &(String, u32, u32),
+    timers: Option<Timers>,
+) -> Result<(), LabError> {
+    let texels = session.texels(&shown.0, shown.1, shown.2)?;
+    match timers {
+        Some(timers) => picture::write(path, &stamped(&lab.gpu, &texels, &timers)?),
+        None => picture::write(path, &texels),
+    }
+}
+
+/// The medians of frames' times, to be drawn onto a picture.
+fn timers(rows: Rows, lab: &Lab, session: &Session, times: &[FrameTimes]) -> Timers {
+    let passes = times.first().map_or(&[][..], |t| &t.passes).iter().enumerate().map(|(i, (number, _))| {
+        let of = times.iter().filter_map(|t| t.passes.get(i)).map(|p| p.1);
+        (*number, stats::spread(of.collect()).median)
+    });
+    let size = session.size().into();
+    Timers::new(rows, &session.graph, &session.params, &lab.gpu.info.name, size, &passes.collect::<Vec<_>>())
 }
 
 /// Makes the folder of a sequence, unless it has frames: two sequences in one would look like one.

@@ -1,11 +1,11 @@
 //! The bar at the top: experiments, scenes, undo, comparisons; and the line at the foot.
 
 use super::engine::Order;
-use super::overlay::Rows;
 use super::{Workbench, edit, ron_files, short, side_of};
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
 use crate::graph::source::Entries;
+use crate::timers::Rows;
 use egui::Ui;
 
 impl Workbench {

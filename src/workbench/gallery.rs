@@ -189,7 +189,12 @@ impl Workbench {
                     self.gallery.capture_name.clone_from(&name);
                 }
                 self.gallery.captured = Some((true, self.status.clone()));
-                self.engine.order(Order::Capture(self.panel_side, name, self.gallery.resources.clone()));
+                self.engine.order(Order::Capture(
+                    self.panel_side,
+                    name,
+                    self.gallery.resources.clone(),
+                    self.view.timers,
+                ));
             }
             Err(e) => {
                 self.status = e.to_string();

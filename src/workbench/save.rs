@@ -6,6 +6,7 @@ use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, LightChange
 use crate::graph::source::{At, Loc};
 use crate::lab::{Lab, LabError};
 use crate::scene::{Light, LightKind, Scene};
+use crate::timers::Rows;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -88,9 +89,10 @@ pub fn take(
     scene: Arc<Scene>,
     folder: &Path,
     resources: Vec<String>,
+    timers: Rows,
 ) -> Result<PathBuf, LabError> {
     let resources = resources.into_iter().map(|name| Resource { name, mip: 0, layer: 0 }).collect();
-    let what = What { resources, ..What::default() };
+    let what = What { resources, timers: Some(timers).filter(|t| *t != Rows::None), ..What::default() };
     let name = capture::free_name(folder, &experiment.name);
     capture::take(lab, experiment, scene, &what, folder, &name)
 }

@@ -2,9 +2,9 @@
 
 use super::compare::{MODES, Mode};
 use super::motion;
-use super::overlay::Rows;
 use super::zoom::{Zoom, foot, pixel_at, pixel_text};
 use super::{COMPARISON, Workbench};
+use crate::timers::Rows;
 use egui::{Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
 /// State of the viewport.

@@ -5,6 +5,7 @@ use super::super::guard::guarded;
 use super::super::report::Report;
 use super::super::save;
 use super::Run;
+use crate::timers::Rows;
 
 impl Run<'_> {
     /// Sends what a side shows to the error worker. A picture that is not there yet is asked for again.
@@ -34,7 +35,7 @@ impl Run<'_> {
     }
 
     /// Captures on a thread of its own, from a fresh start, so that a replay can give the same bits.
-    pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>) {
+    pub(super) fn capture(&mut self, number: usize, name: String, resources: Vec<String>, timers: Rows) {
         let (Some(desired), Some(scene)) = (self.desired.sides[number].clone(), self.scene.clone()) else { return };
         let pointer = self.sides[number].loaded.as_ref().and_then(|l| l.graph.pointer.as_deref());
         let desired = save::without_pointer(&desired, pointer);
@@ -42,7 +43,7 @@ impl Run<'_> {
         let (lab, out) = (self.lab.clone(), self.out.clone());
         let folder = lab.home.root.join("captures");
         std::thread::spawn(move || {
-            let take = || save::take(&lab, &experiment, scene, &folder, resources).map_err(|e| e.to_string());
+            let take = || save::take(&lab, &experiment, scene, &folder, resources, timers).map_err(|e| e.to_string());
             out.send(Report::Captured(guarded(take).flatten()));
         });
     }

@@ -18,6 +18,7 @@ use super::report::{DeviceReport, Report};
 use super::request::{InspectTarget, RenderRequest};
 use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
 use crate::scene::{Scene, SceneError};
+use crate::timers::Rows;
 use crate::vulkan::GpuOptions;
 use crossbeam_channel::{Receiver, Sender, select, unbounded};
 use pulse::Pulse;
@@ -30,8 +31,8 @@ use std::time::{Duration, Instant};
 pub enum Order {
     /// The desired state changed.
     Reconcile,
-    /// Save what side A or B shows, under a name; with these resources.
-    Capture(usize, String, Vec<String>),
+    /// Save what side A or B shows, under a name; with these resources, and with times on the picture.
+    Capture(usize, String, Vec<String>, Rows),
     /// Measure the error of what side A or B shows against its reference.
     MeasureError(usize, ErrorQuery),
     /// Render so many more frames of what is shown, to measure.
@@ -376,7 +377,7 @@ impl Run<'_> {
                         cancel.store(true, Ordering::Relaxed);
                     }
                 }
-                Order::Capture(side, name, resources) => self.capture(side, name, resources),
+                Order::Capture(side, name, resources, timers) => self.capture(side, name, resources, timers),
                 Order::MeasureError(side, query) => self.measure_error(side, query),
                 Order::Frames(count) => self.request_frames(count),
                 Order::RenderDoc => {

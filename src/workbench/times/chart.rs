@@ -1,9 +1,10 @@
 //! Stacked bars, one a frame, as one mesh.
 
 use super::history::{History, KEPT};
-use egui::epaint::{Mesh, Vertex, WHITE_UV, ecolor::Hsva};
+use crate::timers::color;
+use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Ui, Vec2};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// A chart's mesh, kept while nothing changes.
 #[derive(Default)]
@@ -19,21 +20,6 @@ struct Key {
     passes: usize,
     top: f64,
     hovered: Option<String>,
-}
-
-/// Names of passes in the order in which they were first drawn.
-static NAMES: Mutex<Vec<String>> = Mutex::new(Vec::new());
-
-/// The colour of a pass: the same for the same name, in every graph and side, and another for every other one.
-pub fn color(name: &str) -> Color32 {
-    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
-    let number = names.iter().position(|n| n == name).unwrap_or_else(|| {
-        names.push(name.to_string());
-        names.len() - 1
-    });
-    // Steps of the golden ratio never meet again; neighbours differ in brightness too.
-    let hue = (number as f32 * 0.618_034).fract();
-    Hsva::new(hue, [0.75, 0.45, 0.9, 0.6, 0.35][number % 5], [0.95, 0.75, 0.6, 0.85, 0.55][number % 5], 1.0).into()
 }
 
 impl Chart {

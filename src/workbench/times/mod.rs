@@ -4,12 +4,11 @@ mod chart;
 mod export;
 mod history;
 
-pub use chart::color;
-
 use super::report::{GraphInfo, PassUses, PictureReport};
 use super::{Tab, Workbench};
 use crate::graph::run::Redo;
 use crate::stats::spread;
+use crate::timers;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
 use history::{Frame, History, Row};
 use std::path::{Path, PathBuf};
@@ -253,7 +252,7 @@ fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
     let mut left = rect.left();
     if row.is_pass {
         let swatch = Rect::from_center_size(Pos2::new(left + 5.0, rect.center().y), Vec2::splat(8.0));
-        ui.painter().rect_filled(swatch, 1.0, chart::color(&row.name));
+        ui.painter().rect_filled(swatch, 1.0, timers::color(&row.name));
         left += 13.0;
     }
     // Names give way to numbers.

@@ -1,0 +1,208 @@
+//! Times on a picture: what the GPU spends on each stage or pass, drawn into its corner, in the window and in files.
+
+use crate::graph::load::Graph;
+use crate::graph::param::Params;
+use crate::lab::Texels;
+use crate::picture;
+use crate::vulkan::{Format, Gpu, Painter as GpuPainter, PixelSource, Pixels, Result};
+use egui::ecolor::Hsva;
+use egui::{Align2, Color32, FontId, Painter, Pos2, RawInput, Rect, Vec2};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What the overlay lists.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Rows {
+    /// Nothing: there is no overlay.
+    #[default]
+    #[value(skip)]
+    None,
+    /// The graph's stages.
+    Stages,
+    /// Every pass.
+    Passes,
+}
+
+impl Rows {
+    /// What the key goes on to.
+    pub fn next(self) -> Rows {
+        match self {
+            Rows::None => Rows::Stages,
+            Rows::Stages => Rows::Passes,
+            Rows::Passes => Rows::None,
+        }
+    }
+}
+
+/// Times to draw.
+#[derive(Clone, Debug, Default)]
+pub struct Timers {
+    /// What they are of, a line each.
+    pub title: Vec<String>,
+    /// Name and time, ms, in the graph's order.
+    pub rows: Vec<(String, f64)>,
+    /// First to last command on the GPU, ms.
+    pub total: f64,
+}
+
+const WIDTH: f32 = 226.0;
+const LINE: f32 = 14.0;
+const MARGIN: f32 = 6.0;
+
+impl Timers {
+    /// The times of a graph's passes, by their numbers, with the graph's own words for what it was made with.
+    pub fn new(
+        rows: Rows,
+        graph: &Graph,
+        params: &Params,
+        device: &str,
+        size: [u32; 2],
+        passes: &[(usize, f64)],
+    ) -> Timers {
+        let passes = passes.iter().filter_map(|(n, ms)| Some((&graph.passes.get(*n)?.value, *ms)));
+        let rows = match rows {
+            Rows::Passes => passes.map(|(pass, ms)| (pass.name.value.clone(), ms)).collect(),
+            Rows::Stages | Rows::None => by_stage(passes.map(|(pass, ms)| (pass.stage(), ms))),
+        };
+        let mut title = vec![device.to_string(), format!("{}x{}", size[0], size[1])];
+        if let Some(caption) = graph.caption(params) {
+            title[1] += &format!(", {caption}");
+        }
+        if !params.off.is_empty() {
+            title.push(format!("off: {}", params.off.join(", ")));
+        }
+        let total = rows.iter().map(|r: &(String, f64)| r.1).sum();
+        Timers { title, rows, total }
+    }
+
+    /// The longest of its times, ms: that of the longest bar.
+    pub fn longest(&self) -> f64 {
+        self.rows.iter().map(|r| r.1).fold(0.0, f64::max)
+    }
+}
+
+/// Draws times into the upper left or right corner of a picture. Bars are to the scale of `longest` ms, so that those of two sides
+/// can be compared. Rows that do not fit are left out, the shortest first, and summed in one.
+pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, longest: f64) {
+    let lines = timers.title.len() as f32 + 1.0;
+    let room = ((picture.height() - 2.0 * MARGIN) / LINE - lines - 1.0).max(0.0) as usize;
+    let rows = fitting(&timers.rows, room);
+    let size = Vec2::new(WIDTH.min(picture.width()), LINE * (lines + rows.len() as f32) + 2.0 * MARGIN);
+    let corner = if right { picture.right_top() - Vec2::new(size.x, 0.0) } else { picture.left_top() };
+    let panel = Rect::from_min_size(corner, size);
+    let painter = painter.with_clip_rect(panel.intersect(painter.clip_rect()));
+    painter.rect_filled(panel, 0.0, Color32::from_black_alpha(176));
+    let inner = panel.shrink(MARGIN);
+    let line = |n: f32| Rect::from_min_size(inner.min + Vec2::new(0.0, n * LINE), Vec2::new(inner.width(), LINE));
+    let (font, numbers) = (FontId::proportional(11.5), FontId::monospace(10.5));
+    for (i, text) in timers.title.iter().enumerate() {
+        painter.text(line(i as f32).left_center(), Align2::LEFT_CENTER, text, font.clone(), Color32::from_gray(210));
+    }
+    let number = |at: Rect, ms: f64, color: Color32| {
+        painter.text(at.right_center(), Align2::RIGHT_CENTER, format!("{ms:.3}"), numbers.clone(), color);
+    };
+    let total = line(timers.title.len() as f32);
+    painter.text(total.left_center(), Align2::LEFT_CENTER, "GPU ms", font.clone(), Color32::WHITE);
+    number(total, timers.total, Color32::WHITE);
+    for (i, (name, ms)) in rows.iter().enumerate() {
+        let at = line(lines + i as f32);
+        let part = if longest > 0.0 { (ms / longest).clamp(0.0, 1.0) as f32 } else { 0.0 };
+        let bar = Rect::from_min_size(at.min + Vec2::new(0.0, 1.0), Vec2::new(at.width() * part, LINE - 2.0));
+        painter.rect_filled(bar, 1.0, color(name).gamma_multiply(0.55));
+        let names = Rect::from_min_max(at.min, Pos2::new(at.right() - 44.0, at.bottom()));
+        painter.with_clip_rect(names.intersect(painter.clip_rect())).text(
+            at.left_center() + Vec2::new(3.0, 0.0),
+            Align2::LEFT_CENTER,
+            name,
+            font.clone(),
+            Color32::from_gray(235),
+        );
+        number(at, *ms, Color32::from_gray(235));
+    }
+}
+
+/// At most so many rows: the longest in their order, and the sum of the others.
+fn fitting(rows: &[(String, f64)], room: usize) -> Vec<(String, f64)> {
+    if rows.len() <= room {
+        return rows.to_vec();
+    }
+    let Some(kept) = room.checked_sub(1) else { return Vec::new() };
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    order.sort_by(|a, b| rows[*b].1.total_cmp(&rows[*a].1));
+    let (mut first, rest) = (order[..kept].to_vec(), &order[kept..]);
+    first.sort_unstable();
+    let others = (format!("{} others", rest.len()), rest.iter().map(|i| rows[*i].1).sum());
+    first.into_iter().map(|i| rows[i].clone()).chain([others]).collect()
+}
+
+/// Times of passes, in order, as those of stages.
+fn by_stage<'p>(passes: impl Iterator<Item = (&'p str, f64)>) -> Vec<(String, f64)> {
+    let mut stages: Vec<(String, f64)> = Vec::new();
+    for (stage, ms) in passes {
+        match stages.iter_mut().find(|s| s.0 == stage) {
+            Some(known) => known.1 += ms,
+            None => stages.push((stage.into(), ms)),
+        }
+    }
+    stages
+}
+
+/// Names of passes in the order in which they were first drawn.
+static NAMES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// The colour of a pass: the same for the same name, in every graph and side, and another for every other one.
+pub fn color(name: &str) -> Color32 {
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    let number = names.iter().position(|n| n == name).unwrap_or_else(|| {
+        names.push(name.to_string());
+        names.len() - 1
+    });
+    // Steps of the golden ratio never meet again; neighbours differ in brightness too.
+    let hue = (number as f32 * 0.618_034).fract();
+    Hsva::new(hue, [0.75, 0.45, 0.9, 0.6, 0.35][number % 5], [0.95, 0.75, 0.6, 0.85, 0.55][number % 5], 1.0).into()
+}
+
+/// A picture with times drawn onto it.
+///
+/// # Errors
+/// The device was lost, out of memory.
+pub fn stamped(gpu: &Arc<Gpu>, texels: &Texels, timers: &Timers) -> Result<Texels> {
+    let [width, height, _] = texels.extent;
+    let rgba: Vec<u8> = picture::rgb8(texels).chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect();
+    let mut painter = GpuPainter::offscreen(gpu, 1)?;
+    let texture = painter.picture(0);
+    let area = Rect::from_min_size(Pos2::ZERO, Vec2::new(width as f32, height as f32));
+    let input = RawInput { screen_rect: Some(area), ..RawInput::default() };
+    let context = egui::Context::default();
+    let output = context.run_ui(input, |ui| {
+        let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+        let onto = ui.painter().with_clip_rect(area);
+        onto.image(texture, area, whole, Color32::WHITE);
+        draw(&onto, area, false, timers, timers.longest());
+    });
+    let primitives = context.tessellate(output.shapes, 1.0);
+    let pixels = [Pixels { picture: 0, size: [width, height], source: PixelSource::Bytes(&rgba) }];
+    painter.paint((width, height), 1.0, output.textures_delta, &primitives, &pixels)?;
+    let (_, bytes) = painter.read()?;
+    Ok(Texels { extent: texels.extent, format: Format::named("rgba8").unwrap_or(texels.format), bytes })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{by_stage, fitting};
+
+    #[test]
+    fn what_does_not_fit_is_summed() {
+        let rows: Vec<(String, f64)> =
+            [("a", 1.0), ("b", 3.0), ("c", 0.5), ("d", 2.0)].map(|(n, ms)| (n.to_string(), ms)).to_vec();
+        assert_eq!(fitting(&rows, 4), rows);
+        let some = fitting(&rows, 3);
+        assert_eq!(some, [("b".into(), 3.0), ("d".into(), 2.0), ("2 others".to_string(), 1.5)]);
+        assert!(fitting(&rows, 0).is_empty());
+    }
+
+    #[test]
+    fn passes_of_a_stage_are_one_row() {
+        let stages = by_stage([("x", 1.0), ("y", 2.0), ("x", 3.0)].into_iter());
+        assert_eq!(stages, [("x".to_string(), 4.0), ("y".to_string(), 2.0)]);
+    }
+}
