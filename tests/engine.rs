@@ -128,3 +128,62 @@ fn an_engine_that_ends_by_a_fault_says_so_and_another_goes_on() {
     assert!(driver.picture().bytes == first.bytes);
     assert_eq!(driver.engine.stop(PATIENCE), Vec::<String>::new());
 }
+
+#[test]
+fn a_shader_that_hangs_is_left_behind() {
+    if common::on_software() {
+        eprintln!("skipped: the software device ends endless loops by itself");
+        return;
+    }
+    let home = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        std::fs::create_dir_all(home.path().join(name).parent().unwrap()).unwrap();
+        std::fs::write(home.path().join(name), text).unwrap();
+    };
+    write(
+        "passes/endless.ron",
+        r#"(
+            params: [Bool(name: "endless", default: false, help: "Whether the shader goes on for ever.")],
+            textures: { "display": (size: Screen, format: "rgba8") },
+            passes: [(name: "endless", shaders: ["endless.comp"], dispatch: Cover("display"))],
+            output: "display",
+        )"#,
+    );
+    write(
+        "shaders/endless.comp",
+        "#version 460
+        #extension GL_GOOGLE_include_directive : require
+        #include \"params.glsl\"
+        layout(local_size_x = 8, local_size_y = 8) in;
+        layout(rgba8) uniform writeonly image2D display;
+        void main() {
+            float turn = 0.5;
+            do {
+                imageStore(display, ivec2(gl_GlobalInvocationID.xy), vec4(turn));
+                turn = fract(turn + 0.25);
+            } while (params.endless);
+        }",
+    );
+    let mut driver = Driver::start();
+    let options = GpuOptions { patience: Some(Duration::from_secs(3)), ..driver.options.clone() };
+    driver.home.root = home.path().to_path_buf();
+    driver.engine = Engine::start(driver.home.clone(), options, Arc::new(|| {}));
+    let side = |endless: bool| {
+        let params = if endless { vec![("endless".into(), "true".into())] } else { Vec::new() };
+        Some(SideRequest { graph: "endless.ron".into(), params })
+    };
+    driver.request.sides[0] = side(false);
+    driver.ask();
+    let first = driver.picture();
+    driver.request.sides[0] = side(true);
+    driver.ask();
+    let begun = Instant::now();
+    let why = driver.failure();
+    assert!(why.contains("has not finished a frame within 3 s") || why.contains("the GPU was lost"), "{why}");
+    assert!(begun.elapsed() < Duration::from_secs(30), "noticed after {:?}", begun.elapsed());
+    // Another device of the same GPU renders, while the endless work is still there.
+    driver.request.sides[0] = side(false);
+    driver.ask();
+    assert!(driver.picture().bytes == first.bytes);
+    driver.engine.stop(Duration::from_secs(10));
+}

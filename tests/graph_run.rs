@@ -74,6 +74,77 @@ impl Bench {
     }
 }
 
+#[test]
+fn what_only_a_pass_that_is_off_writes_is_zeros() {
+    let bench = Bench::new(
+        r#"(
+            textures: {
+                "first": (size: (8, 8), format: "r32f", transient: true),
+                "second": (size: (8, 8), format: "r32f"),
+                "sum": (size: (8, 8), format: "r32f"),
+            },
+            passes: [
+                (name: "make first", shaders: ["first.comp"], dispatch: Cover("first")),
+                (name: "make second", shaders: ["second.comp"], dispatch: Cover("second")),
+                (name: "add", shaders: ["add.comp"], dispatch: Cover("sum")),
+            ],
+            outputs: ["sum"],
+        )"#,
+        &[
+            ("first.comp", &store("first", "3.0")),
+            ("second.comp", &store("second", "4.0")),
+            (
+                "add.comp",
+                "layout(local_size_x = 8, local_size_y = 8) in;
+                layout(r32f) uniform readonly image2D first;
+                layout(r32f) uniform readonly image2D second;
+                layout(r32f) uniform writeonly image2D sum;
+                void main() {
+                    ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+                    imageStore(sum, p, imageLoad(first, p) + imageLoad(second, p));
+                }",
+            ),
+        ],
+    );
+    let lab = bench.lab();
+    let sum = |off: &str| {
+        let params = if off.is_empty() { String::new() } else { format!(", params: {{ \"off\": {off} }}") };
+        bench
+            .write("configs/run.ron", &format!("(graph: \"graph.ron\", scene: \"triangles\", size: (32, 24){params})"));
+        let mut session = bench.run(&lab, &["sum"], 2);
+        let found = reds(&mut session, "sum", 0);
+        assert!(found.iter().all(|v| *v == found[0]), "{found:?}");
+        found[0]
+    };
+    assert_eq!(sum(""), 7.0);
+    assert_eq!(sum(r#"["make first"]"#), 4.0);
+    assert_eq!(sum(r#"["make second"]"#), 3.0);
+    assert_eq!(sum(r#"["make second", "make first"]"#), 0.0);
+    assert_eq!(sum("[]"), 7.0);
+
+    // The command line names what it does not know, and says what has no writer left.
+    let plan = |off: &str| {
+        let mut command = conelab(bench.0.path());
+        command.args(["graph", "passes/graph.ron", "--want", "sum", "--set"]).arg(format!("off={off}"));
+        command
+    };
+    assert!(succeeds(&mut plan(r#"["make first"]"#)).contains("make first"), "left out, with the reason");
+    let said = common::fails(&mut plan(r#"["make frist"]"#));
+    assert!(said.contains("no pass 'make frist'") && said.contains("make first"), "{said}");
+    let said = common::fails(&mut plan(r#"["add"]"#));
+    assert!(said.contains("nothing writes 'sum' when these passes are off: add"), "{said}");
+    assert!(common::fails(&mut plan("add")).contains("expected a list of passes"));
+}
+
+/// A shader that fills a texture of one channel.
+fn store(name: &str, value: &str) -> String {
+    format!(
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        layout(r32f) uniform writeonly image2D {name};
+        void main() {{ imageStore({name}, ivec2(gl_GlobalInvocationID.xy), vec4({value})); }}"
+    )
+}
+
 /// The 32-bit words of a buffer.
 fn words(session: &mut Session, name: &str) -> Vec<u32> {
     let index = session.graph.buffers.iter().position(|b| b.0 == name).unwrap();

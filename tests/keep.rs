@@ -829,3 +829,41 @@ fn the_walk_through_the_atrium_meets_no_wall() {
         }
     }
 }
+
+#[test]
+fn times_are_drawn_into_a_corner_of_pictures_and_nowhere_else() {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["passes", "shaders"] {
+        std::os::unix::fs::symlink(common::root().join(folder), home.path().join(folder)).unwrap();
+    }
+    let small = r#"(graph: "preview.ron", scene: "cornell", size: (320, 240))"#;
+    std::fs::create_dir(home.path().join("configs")).unwrap();
+    std::fs::write(home.path().join("configs/small.ron"), small).unwrap();
+    let open = |name: &str| image::open(home.path().join(name)).unwrap().to_rgb8();
+    let render = |name: &str, more: &[&str]| {
+        succeeds(conelab(home.path()).args(["render", "configs/small.ron", "-o", name]).args(more));
+        open(name)
+    };
+    let plain = render("plain.png", &[]);
+    let timed = render("timed.png", &["--timers", "passes"]);
+    assert_eq!(plain.dimensions(), timed.dimensions());
+    // A line for the device, one for the size, the total, two passes.
+    let panel = |x: u32, y: u32| x < 226 && y < 5 * 14 + 12;
+    let differs = plain.enumerate_pixels().filter(|(x, y, p)| timed.get_pixel(*x, *y) != *p);
+    let places: Vec<(u32, u32)> = differs.map(|(x, y, _)| (x, y)).collect();
+    assert!(places.len() > 1000, "{} pixels", places.len());
+    assert!(places.iter().all(|(x, y)| panel(*x, *y)), "{:?}", places.iter().find(|(x, y)| !panel(*x, *y)));
+
+    succeeds(conelab(home.path()).args(["capture", "configs/small.ron", "--name", "kept", "--timers", "stages"]));
+    let kept = open("captures/kept/timers.png");
+    assert_eq!(open("captures/kept/picture.png"), plain);
+    assert!(kept != plain && kept.get_pixel(300, 200) == plain.get_pixel(300, 200));
+    let said = succeeds(conelab(home.path()).args(["replay", "captures/kept"]));
+    assert!(said.contains("identical"), "{said}");
+    succeeds(
+        conelab(home.path())
+            .args(["render", "configs/small.ron", "--sequence", "frames", "--frames", "2"])
+            .args(["--timers", "stages"]),
+    );
+    assert!(open("frames/frame-00001.png") != plain);
+}

@@ -546,3 +546,43 @@ fn the_camera_follows_a_path_and_the_tabs_show_what_they_are_for() {
     driver.texts_until("statistics", |texts| texts.iter().any(|t| t == "NaN"));
     driver.close();
 }
+
+#[test]
+fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
+    let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
+    let mut driver = small();
+    let first = driver.first_picture();
+    let plain = driver.shows(&first);
+
+    // T puts the times of stages on the picture, then those of passes, then nothing.
+    driver.keys(&[u32::from(b't')]);
+    let stages = driver.screenshot_until("times of stages", |shot| shot.rgba != plain.rgba);
+    driver.keys(&[u32::from(b't')]);
+    driver.screenshot_until("times of passes", |shot| shot.rgba != plain.rgba && shot.rgba != stages.rgba);
+    driver.keys(&[u32::from(b't')]);
+    driver.screenshot_until("the picture alone", |shot| shot.rgba == plain.rgba);
+
+    // A pass that is off is left out of the picture and saved as such.
+    driver.click("", "Graph");
+    driver.click("Button", "pass shading");
+    let mark = driver.now();
+    driver.click("", "on");
+    let failed = driver.wait(mark, "an error or a picture", |e| e["event"] == "built" || e["event"] == "failed");
+    assert_eq!(failed["event"], "built", "{failed}");
+    driver.texts_until("what is off", |texts| texts.iter().any(|t| t == "off: shading"));
+    let dark = driver.other_picture(mark, 0, &first);
+    let mark = driver.now();
+    driver.click("Button", "all passes on");
+    driver.picture(mark, 0, &first);
+    let mark = driver.now();
+    driver.keys(&[CONTROL, u32::from(b'z')]);
+    driver.picture(mark, 0, &dark);
+    let mark = driver.now();
+    driver.keys(&[CONTROL, u32::from(b'z')]);
+    driver.picture(mark, 0, &first);
+
+    // What a pass writes is inspected by a click.
+    driver.click("Button", "shading writes radiance");
+    driver.texts_until("the inspected texture", |texts| texts.iter().any(|t| t.contains("radiance")));
+    driver.close();
+}

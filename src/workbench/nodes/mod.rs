@@ -48,7 +48,7 @@ impl Workbench {
         let area = ui.available_size();
         // Not smaller than can be read: what does not fit is reached by dragging.
         let bounds = layout.bounds();
-        let zoom = (area.x / bounds.width()).min(area.y / bounds.height()).clamp(0.62, 1.0);
+        let zoom = (area.x / bounds.width()).min(area.y / bounds.height()).clamp(0.8, 1.0);
         let mut rect = seen.unwrap_or(Rect::from_min_size(bounds.min, area / zoom));
         let mut asked = None;
         let response = egui::Scene::new().zoom_range(0.2..=2.0).show(ui, &mut rect, |ui| {
@@ -242,7 +242,7 @@ fn draw(
             hit.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::WidgetType::Button, texture, format!("{} writes {resource}", node.name))
             });
-            let color = if hit.hovered() && texture { text_color } else { weak };
+            let color = if hit.hovered() && texture { text_color } else { Color32::from_gray(150) };
             let at = row.left_center() + Vec2::new(12.0, 0.0);
             let shown = ui.painter().with_clip_rect(row.intersect(ui.clip_rect()));
             shown.text(at, Align2::LEFT_CENTER, resource, FontId::proportional(10.5), color);
