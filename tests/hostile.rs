@@ -231,3 +231,31 @@ fn some_vertices_may_have_colours() {
     let scene = open(write(&folder, "a.obj", text)).unwrap();
     assert_eq!((scene.triangle_count(), scene.bounds().1.x), (1, 1.0));
 }
+
+#[test]
+fn light_that_the_picture_cannot_hold_is_counted() {
+    let folder = folder();
+    write(&folder, "a.mtl", "newmtl a\nKe 1e11 1e11 1e11\n");
+    write(&folder, "a.obj", format!("mtllib a.mtl\n{TRIANGLE}"));
+    let scene = "(models: [(file: \"a.obj\")], sky: (1, 1, 1), \
+                 cameras: {\"default\": (eye: (0.3, 0.3, 2), target: (0.3, 0.3, 0), fov_y: 50)})";
+    let scene = write(&folder, "s.ron", scene);
+    let render = |view: &str| {
+        let mut command = conelab(root());
+        command
+            .args(["render", "configs/default.ron", "--scene"])
+            .arg(&scene)
+            .arg("-o")
+            .arg(folder.path().join("x.png"));
+        command.args(["--size", "48x32", "--frames", "1", "--set", "voxel_dim=32", "--set", "shadow_dim=512"]);
+        command.args(["--set", view, "--json", "-"]).output().unwrap()
+    };
+    let output = render("view=shaded");
+    let told = String::from_utf8(output.stderr).unwrap();
+    tells(&told, &["warning: texels of the picture are NaN, or light that its format cannot hold ("]);
+    let stats: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(stats["warnings"].as_array().unwrap().len(), 1, "{stats}");
+    let normals = render("view=normal");
+    let stats: serde_json::Value = serde_json::from_slice(&normals.stdout).unwrap();
+    assert_eq!(stats["warnings"], serde_json::json!([]), "{stats}");
+}
