@@ -233,29 +233,30 @@ fn some_vertices_may_have_colours() {
 }
 
 #[test]
-fn light_that_the_picture_cannot_hold_is_counted() {
-    let folder = folder();
-    write(&folder, "a.mtl", "newmtl a\nKe 1e11 1e11 1e11\n");
-    write(&folder, "a.obj", format!("mtllib a.mtl\n{TRIANGLE}"));
-    let scene = "(models: [(file: \"a.obj\")], sky: (1, 1, 1), \
-                 cameras: {\"default\": (eye: (0.3, 0.3, 2), target: (0.3, 0.3, 0), fov_y: 50)})";
-    let scene = write(&folder, "s.ron", scene);
-    let render = |view: &str| {
-        let mut command = conelab(root());
-        command
-            .args(["render", "configs/default.ron", "--scene"])
-            .arg(&scene)
-            .arg("-o")
-            .arg(folder.path().join("x.png"));
-        command.args(["--size", "48x32", "--frames", "1", "--set", "voxel_dim=32", "--set", "shadow_dim=512"]);
-        command.args(["--set", view, "--json", "-"]).output().unwrap()
+fn texels_of_the_picture_that_are_no_numbers_are_counted() {
+    let home = home();
+    let shader = home.path().join("shaders/shade/shade.comp");
+    let text = std::fs::read_to_string(&shader).unwrap();
+    // A mistake in a shader, in one row of the picture.
+    let wrong = "if (pixel.y == 5) total.g = uintBitsToFloat(pixel.x < 10 ? 0x7fc00000u : 0x7f800000u);\n    ";
+    let store = "imageStore(radiance, pixel, vec4(total, 1.0));";
+    assert!(text.contains(store));
+    std::fs::write(&shader, text.replace(store, &format!("{wrong}{store}"))).unwrap();
+    let render = |more: &[&str]| {
+        let mut command = conelab(home.path());
+        command.args(["render", "configs/default.ron", "--scene", "cornell", "--size", "48x32", "--frames", "1"]);
+        command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=512", "--json", "-"]).args(more).output().unwrap()
     };
-    let output = render("view=shaded");
-    let told = String::from_utf8(output.stderr).unwrap();
-    tells(&told, &["warning: texels of the picture are NaN, or light that its format cannot hold ("]);
-    let stats: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(stats["warnings"].as_array().unwrap().len(), 1, "{stats}");
-    let normals = render("view=normal");
+    for (output, told) in [
+        ("x.png", "texels of the picture are NaN, or light that its format cannot hold (48)"),
+        ("x.exr", "'radiance' has 48 texels that are NaN or infinite"),
+    ] {
+        let rendered = render(&["-o", output]);
+        tells(&String::from_utf8(rendered.stderr).unwrap(), &[&format!("warning: {told}\n")]);
+        let stats: serde_json::Value = serde_json::from_slice(&rendered.stdout).unwrap();
+        assert_eq!(stats["warnings"], serde_json::json!([told]));
+    }
+    let normals = render(&["-o", "n.png", "--set", "view=normal"]);
     let stats: serde_json::Value = serde_json::from_slice(&normals.stdout).unwrap();
-    assert_eq!(stats["warnings"], serde_json::json!([]), "{stats}");
+    assert_eq!(stats["warnings"], serde_json::json!([]));
 }

@@ -127,7 +127,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         say!("wrote {} frames to {}", frames, folder.display());
     }
     if let Some((path, (name, ..))) = &shown {
-        let what = if exr { format!(" ('{name}', linear)") } else { String::new() };
+        let what = if exr && resource.is_none() { format!(" ('{name}', linear)") } else { String::new() };
         say!("wrote {}{what}", path.display());
         if let Some(part) = part_asked_for(&session).filter(|(_, texture)| exr && resource.is_none() && texture != name)
         {
