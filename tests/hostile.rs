@@ -134,7 +134,7 @@ fn gltf_with_buffer(uri: &str) -> String {
 fn absurd_sizes_are_told_before_work_begins() {
     let folder = folder();
     let far = TRIANGLE.replace('1', "3e38");
-    error(write(&folder, "far.obj", &far.replace("f 3e38", "f 1")), &["far.obj", "units and scale"]);
+    error(write(&folder, "far.obj", far.replace("f 3e38", "f 1")), &["far.obj", "units and scale"]);
     write(&folder, "a.obj", TRIANGLE);
     for (entry, pieces) in [
         ("models: [(file: \"a.obj\", transform: (scale: (1e18, 1, 1)))]", &["s.ron:1:", "1e9"][..]),
