@@ -90,7 +90,9 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         eprintln!("{warning}");
     }
     if shown.is_none() && frames_of.is_none() {
-        return Err(LabError::Request("nothing to write: name the picture with -o, for example -o picture.png".into()));
+        return Err(LabError::Request(
+            "nothing to write: name the picture with --output, for example -o picture.png".into(),
+        ));
     }
     session.set_redo(args.redo);
     let mut times = Vec::new();
