@@ -154,6 +154,16 @@ fn absurd_sizes_are_told_before_work_begins() {
 }
 
 #[test]
+fn scenes_too_small_for_light_are_told() {
+    let folder = folder();
+    for (scale, warnings) in [("1e-3", 0), ("1e-6", 1)] {
+        let text = format!("(models: [(builtin: \"cornell\", transform: (scale: ({scale}, {scale}, {scale})))])");
+        let scene = open(write(&folder, "small.ron", text)).unwrap();
+        assert_eq!(scene.warnings.iter().filter(|w| w.contains("light is lost")).count(), warnings, "{scale}");
+    }
+}
+
+#[test]
 fn messages_quote_a_short_part_of_a_line() {
     let folder = folder();
     let long = "x".repeat(200_000);

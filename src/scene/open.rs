@@ -9,7 +9,7 @@ use glam::Mat4;
 
 use crate::panics::caught;
 
-use super::limits::check_extent;
+use super::limits::{check_extent, with_size_told};
 use super::progress::{Progress, Watch};
 use super::{Material, Scene, SceneError, builtin, defaults, file, gltf, obj};
 
@@ -38,7 +38,7 @@ impl Scene {
                 return Err(SceneError::Cancelled);
             }
             match result.recv_timeout(ASK) {
-                Ok(loaded) => return loaded.map(Scene::with_seen_distance),
+                Ok(loaded) => return loaded.map(with_size_told).map(Scene::with_seen_distance),
                 Err(mpsc::RecvTimeoutError::Timeout) => {}
                 Err(mpsc::RecvTimeoutError::Disconnected) => break,
             }
