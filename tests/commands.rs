@@ -281,7 +281,7 @@ fn what_is_wrong_is_told_before_what_is_missing() {
     let without = |more: &[&str]| fails(conelab(root()).args(["render", "configs/default.ron"]).args(SMALL).args(more));
     assert_snapshot!(without(&["--scene", "cornell", "--set", "bais=1"]), @"--set bais=1: error: no parameter 'bais' (did you mean 'bias'?)");
     assert_snapshot!(without(&["--scene", "gone.obj"]), @"error: cannot read gone.obj: No such file or directory (os error 2). Check the path and its permissions");
-    assert_snapshot!(without(&["--scene", "cornell"]), @"error: nothing to write: name the picture with -o, for example -o picture.png");
+    assert_snapshot!(without(&["--scene", "cornell"]), @"error: nothing to write: name the picture with --output, for example -o picture.png");
 }
 
 #[test]

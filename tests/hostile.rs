@@ -134,7 +134,7 @@ fn gltf_with_buffer(uri: &str) -> String {
 fn absurd_sizes_are_told_before_work_begins() {
     let folder = folder();
     let far = TRIANGLE.replace('1', "3e38");
-    error(write(&folder, "far.obj", &far.replace("f 3e38", "f 1")), &["far.obj", "units and scale"]);
+    error(write(&folder, "far.obj", far.replace("f 3e38", "f 1")), &["far.obj", "units and scale"]);
     write(&folder, "a.obj", TRIANGLE);
     for (entry, pieces) in [
         ("models: [(file: \"a.obj\", transform: (scale: (1e18, 1, 1)))]", &["s.ron:1:", "1e9"][..]),
@@ -150,6 +150,16 @@ fn absurd_sizes_are_told_before_work_begins() {
         ("lights: [Point(color: (1, 1, 1), position: (1e20, 0, 0), shadow: true)]", &["s.ron:1:", "origin"]),
     ] {
         error(write(&folder, "s.ron", format!("({entry})")), pieces);
+    }
+}
+
+#[test]
+fn scenes_too_small_for_light_are_told() {
+    let folder = folder();
+    for (scale, warnings) in [("1e-3", 0), ("1e-6", 1)] {
+        let text = format!("(models: [(builtin: \"cornell\", transform: (scale: ({scale}, {scale}, {scale})))])");
+        let scene = open(write(&folder, "small.ron", text)).unwrap();
+        assert_eq!(scene.warnings.iter().filter(|w| w.contains("light is lost")).count(), warnings, "{scale}");
     }
 }
 
@@ -230,4 +240,33 @@ fn some_vertices_may_have_colours() {
     let text = TRIANGLE.replacen("v 1 0 0\n", "v 1 0 0 1.0 0.5 0.2\n", 1);
     let scene = open(write(&folder, "a.obj", text)).unwrap();
     assert_eq!((scene.triangle_count(), scene.bounds().1.x), (1, 1.0));
+}
+
+#[test]
+fn texels_of_the_picture_that_are_no_numbers_are_counted() {
+    let home = home();
+    let shader = home.path().join("shaders/shade/shade.comp");
+    let text = std::fs::read_to_string(&shader).unwrap();
+    // A mistake in a shader, in one row of the picture.
+    let wrong = "if (pixel.y == 5) total.g = uintBitsToFloat(pixel.x < 10 ? 0x7fc00000u : 0x7f800000u);\n    ";
+    let store = "imageStore(radiance, pixel, vec4(total, 1.0));";
+    assert!(text.contains(store));
+    std::fs::write(&shader, text.replace(store, &format!("{wrong}{store}"))).unwrap();
+    let render = |more: &[&str]| {
+        let mut command = conelab(home.path());
+        command.args(["render", "configs/default.ron", "--scene", "cornell", "--size", "48x32", "--frames", "1"]);
+        command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=512", "--json", "-"]).args(more).output().unwrap()
+    };
+    for (output, told) in [
+        ("x.png", "texels of the picture are NaN, or light that its format cannot hold (48)"),
+        ("x.exr", "'radiance' has 48 texels that are NaN or infinite"),
+    ] {
+        let rendered = render(&["-o", output]);
+        tells(&String::from_utf8(rendered.stderr).unwrap(), &[&format!("warning: {told}\n")]);
+        let stats: serde_json::Value = serde_json::from_slice(&rendered.stdout).unwrap();
+        assert_eq!(stats["warnings"], serde_json::json!([told]));
+    }
+    let normals = render(&["-o", "n.png", "--set", "view=normal"]);
+    let stats: serde_json::Value = serde_json::from_slice(&normals.stdout).unwrap();
+    assert_eq!(stats["warnings"], serde_json::json!([]));
 }

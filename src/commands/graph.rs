@@ -92,7 +92,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         let hint = nearest(name, known()).map_or(String::new(), |h| format!(" ({h})"));
         return Err(LabError::Request(format!("no resource '{name}'{hint}")));
     }
-    wanted.extend(graph.checks.iter().map(|c| c.buffer().to_string()));
+    wanted.extend(graph.checked_with(&wanted));
     let linked = home.linked(&graph, &params).map_err(LabError::Input)?;
     let input = PlanInput { params: &params, env, wanted, device: &device };
     let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;

@@ -94,7 +94,9 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         eprintln!("{warning}");
     }
     if shown.is_none() && frames_of.is_none() {
-        return Err(LabError::Request("nothing to write: name the picture with -o, for example -o picture.png".into()));
+        return Err(LabError::Request(
+            "nothing to write: name the picture with --output, for example -o picture.png".into(),
+        ));
     }
     session.set_redo(args.redo);
     let mut times = Vec::new();
@@ -137,7 +139,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         say!("wrote {} frames to {}", frames, folder.display());
     }
     if let Some((path, (name, ..))) = &shown {
-        let what = if exr { format!(" ('{name}', linear)") } else { String::new() };
+        let what = if exr && resource.is_none() { format!(" ('{name}', linear)") } else { String::new() };
         say!("wrote {}{what}", path.display());
         if let Some(part) = part_asked_for(&session).filter(|(_, texture)| exr && resource.is_none() && texture != name)
         {

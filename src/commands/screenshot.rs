@@ -95,7 +95,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         }),
         patience: Duration::from_secs(args.patience),
     };
-    let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
+    let experiment = args.experiment.as_deref().map_or_else(|| home.root.join("configs/default.ron"), super::found);
     let size = args.size.as_deref().map(parse_size).transpose()?;
     let (scene, events) = (args.scene.clone(), args.events.clone());
     let options = Options { home, gpu: gpu.clone(), experiment, scene, size, redo: Redo::All, events };

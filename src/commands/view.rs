@@ -45,7 +45,7 @@ pub fn run(args: &ViewArgs) -> Result<(), LabError> {
         gpu: GpuOptions { device: args.window_device.clone().or(gpu.device.clone()), ..gpu.clone() },
         size: super::adapt::parse_size(&args.window)?,
     };
-    let experiment = args.experiment.clone().unwrap_or_else(|| home.root.join("configs/default.ron"));
+    let experiment = args.experiment.as_deref().map_or_else(|| home.root.join("configs/default.ron"), super::found);
     let (scene, events) = (args.scene.clone(), args.events.clone());
     let options = Options { home, gpu, experiment, scene, size, redo: args.redo, events };
     window::run(options, window)

@@ -260,6 +260,9 @@ impl Check<'_> {
             (None, Some(buffer), Some(_)) => drop(self.buffer_name(buffer)),
             _ => self.error(at, String::from("a check needs either field, or buffer and word")),
         }
+        if let Some(texture) = &check.with {
+            self.texture_name(texture);
+        }
     }
 
     /// The buffer of a path, and that a member is named.

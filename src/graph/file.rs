@@ -99,6 +99,8 @@ pub struct CheckDecl {
     pub buffer: Option<Loc<String>>,
     /// Index of the 32-bit word.
     pub word: Option<u32>,
+    /// A texture: the check is made where it is wanted. Always where nothing is said.
+    pub with: Option<Loc<String>>,
     /// What it means when it is not zero, and what to do.
     pub message: String,
 }

@@ -81,6 +81,14 @@ pub struct Graph {
     pub sources: Sources,
 }
 
+impl Graph {
+    /// Buffers of the checks that are made where these resources are wanted.
+    pub fn checked_with(&self, wanted: &[String]) -> Vec<String> {
+        let made = |c: &&CheckDecl| c.with.as_ref().is_none_or(|texture| wanted.contains(&texture.value));
+        self.checks.iter().filter(made).map(|c| c.buffer().to_string()).collect()
+    }
+}
+
 /// Variables that every expression may use beside parameters.
 pub const BUILTIN_VARIABLES: &[&str] = &[
     "width",

@@ -157,7 +157,7 @@ impl Lab {
         let params = params_of(&loaded.graph, experiment)?;
         let Loaded { graph, linked, .. } =
             self.home.complete(loaded, experiment, &scene, &self.gpu.info).map_err(LabError::Input)?;
-        wanted.extend(graph.checks.iter().map(|c| c.buffer().to_string()));
+        wanted.extend(graph.checked_with(&wanted));
         let viewpoint = viewpoint_of(experiment, &scene)?;
         let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
         let rays = traces_rays(&linked, &plan);

@@ -7,6 +7,22 @@ use super::Scene;
 /// Farthest that anything may be from the origin, m: products of four coordinates are still 32-bit numbers.
 pub const MAX_COORDINATE: f32 = 1e9;
 
+/// A smaller scene loses its light: offsets against rounding are as large as it is.
+const MIN_DIAGONAL: f32 = 1e-4;
+
+/// Tells a scene that it is too small.
+pub(super) fn with_size_told(mut scene: Scene) -> Scene {
+    let (low, high) = scene.bounds();
+    let diagonal = (high - low).length();
+    if diagonal < MIN_DIAGONAL && scene.triangle_count() > 0 {
+        scene.warnings.push(format!(
+            "{}: it is {diagonal:.1e} m across, and below {MIN_DIAGONAL:e} m light is lost. Check its units, or scale it up",
+            scene.name
+        ));
+    }
+    scene
+}
+
 /// What of a scene is farther away, moved by a frame.
 pub(super) fn check_extent(scene: &Scene, frame: Mat4) -> Result<(), String> {
     let fits = |point: Vec3| frame.transform_point3(point).abs().max_element() <= MAX_COORDINATE;

@@ -9,9 +9,9 @@ use glam::Mat4;
 
 use crate::panics::caught;
 
-use super::limits::check_extent;
+use super::limits::{check_extent, with_size_told};
 use super::progress::{Progress, Watch};
-use super::{Scene, SceneError, builtin, defaults, file, gltf, obj};
+use super::{Material, Scene, SceneError, builtin, defaults, file, gltf, obj};
 
 /// How often the callback is asked while a scene loads.
 const ASK: Duration = Duration::from_millis(20);
@@ -38,7 +38,7 @@ impl Scene {
                 return Err(SceneError::Cancelled);
             }
             match result.recv_timeout(ASK) {
-                Ok(loaded) => return loaded.map(Scene::with_seen_distance),
+                Ok(loaded) => return loaded.map(with_size_told).map(Scene::with_seen_distance),
                 Err(mpsc::RecvTimeoutError::Timeout) => {}
                 Err(mpsc::RecvTimeoutError::Disconnected) => break,
             }
@@ -92,7 +92,8 @@ pub(super) fn load_model(path: &Path, progress: Progress) -> Result<Scene, Scene
         Err(SceneError::Model { path: path.into(), message })
     })?;
     check_extent(&scene, Mat4::IDENTITY).map_err(|message| SceneError::Model { path: path.into(), message })?;
-    if scene.triangle_count() == 0 {
+    // What its materials leave out was told.
+    if scene.triangle_count() == 0 && !scene.materials.iter().any(Material::is_left_out) {
         scene.warnings.push(format!("{}: no triangles: there is nothing to see", path.display()));
     }
     scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

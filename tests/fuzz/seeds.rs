@@ -54,7 +54,7 @@ const FILES: [(Kind, &str, &str); 34] = [
     (Kind::Scene, "sky.ron", "sky.hdr"),
     (Kind::Scene, "sky2.ron", "sky.exr"),
     (Kind::Graph, "vct.ron", "vct.ron"),
-    (Kind::Graph, "display.ron", "display.ron"),
+    (Kind::Graph, "thesis.ron", "thesis.ron"),
     (Kind::Graph, "reference.ron", "reference.ron"),
     (Kind::Graph, "warps.ron", "warps.ron"),
     (Kind::Experiment, "default.ron", "default.ron"),
@@ -111,7 +111,7 @@ pub fn write(folder: &Path) {
     );
     for (name, from) in [
         ("vct.ron", "passes/vct.ron"),
-        ("display.ron", "passes/parts/display.ron"),
+        ("thesis.ron", "passes/thesis.ron"),
         ("reference.ron", "passes/reference.ron"),
         ("warps.ron", "passes/warps.ron"),
         ("default.ron", "configs/default.ron"),

@@ -310,7 +310,8 @@ impl TryFrom<CameraFields> for CameraEntry {
 
     fn try_from(camera: CameraFields) -> Result<Self, String> {
         let forward = camera.target - camera.eye;
-        if !(camera.eye.abs().max(camera.target.abs()).max_element() <= MAX_COORDINATE) {
+        let near = [camera.eye, camera.target].map(|p| p.abs().max_element() <= MAX_COORDINATE);
+        if near != [true; 2] {
             return Err(format!("a camera must be within {MAX_COORDINATE:e} m of the origin"));
         }
         if forward == Vec3::ZERO {

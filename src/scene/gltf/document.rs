@@ -101,10 +101,10 @@ fn write_out(value: &mut Value, warnings: &mut Vec<String>) {
         });
         texture.insert("source".into(), source);
     }
-    if !absent.is_empty() {
-        if let Some(list) = root.entry("images").or_insert(json!([])).as_array_mut() {
-            list.append(&mut absent);
-        }
+    if !absent.is_empty()
+        && let Some(list) = root.entry("images").or_insert(json!([])).as_array_mut()
+    {
+        list.append(&mut absent);
     }
 }
 
