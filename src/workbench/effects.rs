@@ -28,20 +28,20 @@ type Made = (usize, Of, Found);
 /// What is known of sides A and B.
 pub struct Effects {
     known: [Option<(Of, Found)>; 2],
-    /// Since when a side waits.
-    since: Option<Instant>,
+    /// A side that waits, for what, and since when that has not changed.
+    waiting: Option<(usize, Of, Instant)>,
     working: bool,
     made: (Sender<Made>, Receiver<Made>),
 }
 
 impl Default for Effects {
     fn default() -> Effects {
-        Effects { known: [None, None], since: None, working: false, made: unbounded() }
+        Effects { known: [None, None], waiting: None, working: false, made: unbounded() }
     }
 }
 
 /// How long nothing must change: it must not keep a frame waiting.
-const QUIET: Duration = Duration::from_millis(200);
+const QUIET: Duration = Duration::from_millis(400);
 
 impl Effects {
     /// What is known of a side, be it of the values before.
@@ -51,7 +51,7 @@ impl Effects {
 
     /// Whether something is about to come.
     pub fn awaits(&self) -> bool {
-        self.working || self.since.is_some()
+        self.working || self.waiting.is_some()
     }
 }
 
@@ -62,22 +62,23 @@ impl Workbench {
             self.effects.working = false;
             self.effects.known[side] = Some((of, found));
         }
+        let same = |a: &Of, b: &Of| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1;
         let outdated = (0..2).find_map(|side| {
             let of = (self.sides[side].info.clone()?, self.desired.sides[side].as_ref()?.params.clone());
-            let is_known = |k: &(Of, Found)| Arc::ptr_eq(&k.0.0, &of.0) && k.0.1 == of.1;
-            (!self.effects.known[side].as_ref().is_some_and(is_known)).then_some((side, of))
+            let is_known = self.effects.known[side].as_ref().is_some_and(|k| same(&k.0, &of));
+            (!is_known).then_some((side, of))
         });
         let Some((side, of)) = outdated else {
-            self.effects.since = None;
+            self.effects.waiting = None;
             return;
         };
-        let since = *self.effects.since.get_or_insert_with(Instant::now);
+        let waiting = self.effects.waiting.take().filter(|w| w.0 == side && same(&w.1, &of));
+        let (.., since) = *self.effects.waiting.insert(waiting.unwrap_or((side, of.clone(), Instant::now())));
         if self.effects.working || since.elapsed() < QUIET {
             ui.ctx().request_repaint_after(QUIET);
             return;
         }
-        self.effects.working = true;
-        self.effects.since = None;
+        (self.effects.working, self.effects.waiting) = (true, None);
         let (out, wake) = (self.effects.made.0.clone(), self.wake.clone());
         let (folder, cache) = (self.home.folders().shaders, self.home.cache.clone());
         std::thread::spawn(move || {

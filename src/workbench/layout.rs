@@ -1,0 +1,118 @@
+//! The panels at the sides, and what keys do.
+
+use super::engine::Order;
+use super::{Tab, Workbench, help, panel, zoom};
+use egui::{TextureId, Ui};
+
+impl Workbench {
+    pub(super) fn parameters(&mut self, ui: &mut Ui) {
+        // A panel that shrinks to what is in it stays small.
+        ui.take_available_width();
+        if self.desired.sides[1].is_some() {
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut self.panel_side, 0, "A");
+                ui.selectable_value(&mut self.panel_side, 1, "B");
+                if ui.small_button("A to B").clicked() {
+                    self.desired.sides[1] = self.desired.sides[0].clone();
+                }
+                if ui.small_button("B to A").clicked() {
+                    self.desired.sides[0] = self.desired.sides[1].clone();
+                }
+                if ui.small_button("swap").clicked() {
+                    self.desired.sides.swap(0, 1);
+                }
+            });
+        } else {
+            self.panel_side = 0;
+        }
+        let number = self.panel_side;
+        let info = self.sides[number].info.clone().or(self.sides[0].info.clone());
+        let Some(info) = info else {
+            ui.weak(self.waiting_text());
+            return;
+        };
+        let other = self.desired.sides[1 - number].clone();
+        if let Some(side) = &mut self.desired.sides[number] {
+            self.panel.show(ui, &info.graph, side, other.as_ref(), self.effects.of(number));
+        }
+    }
+
+    pub(super) fn right(&mut self, ui: &mut Ui, textures: &[TextureId]) {
+        ui.horizontal_wrapped(|ui| {
+            // All of them in one row.
+            ui.spacing_mut().item_spacing.x = 1.0;
+            ui.spacing_mut().button_padding.x = 3.0;
+            for (tab, name) in [
+                (Tab::Surroundings, "Scene"),
+                (Tab::Times, "Time"),
+                (Tab::Chart, "Chart"),
+                (Tab::Graph, "Graph"),
+                (Tab::Inspector, "Inspect"),
+                (Tab::Tables, "Tables"),
+                (Tab::Paths, "Motion"),
+                (Tab::Gallery, "Save"),
+            ] {
+                ui.selectable_value(&mut self.tab, tab, egui::RichText::new(name).size(12.0));
+            }
+        });
+        ui.separator();
+        // What no tab shows need not be made.
+        (self.desired.inspect, self.desired.table) = (None, None);
+        match self.tab {
+            Tab::Surroundings => self.surroundings(ui),
+            Tab::Times => self.times_tab(ui),
+            Tab::Chart => self.chart_tab(ui),
+            Tab::Graph => self.graph_tab(ui),
+            Tab::Inspector => self.inspector_tab(ui, textures),
+            Tab::Tables => self.tables_tab(ui),
+            Tab::Paths => self.paths_tab(ui),
+            Tab::Gallery => self.gallery_tab(ui),
+        }
+    }
+
+    pub(super) fn shortcuts(&mut self, ui: &Ui) {
+        let typing = ui.ctx().egui_wants_keyboard_input();
+        for action in help::pressed(ui, typing) {
+            match action {
+                help::Action::Find => {
+                    self.hidden = false;
+                    panel::Panel::find(ui);
+                }
+                help::Action::Help => self.help = !self.help,
+                help::Action::Undo => self.go(true),
+                help::Action::Redo => self.go(false),
+                help::Action::Play => self.desired.clock.playing = !self.desired.clock.playing,
+                help::Action::Step => {
+                    self.desired.clock.playing = false;
+                    self.desired.clock.steps += 1;
+                }
+                help::Action::Timers => self.view.timers = self.view.timers.next(),
+                help::Action::Flip => self.view.flipped = !self.view.flipped,
+                help::Action::Unpoint if std::mem::take(&mut self.panel.typing) => self.panel.search.clear(),
+                help::Action::Unpoint => self.point_at(None),
+                help::Action::Save => self.save(false),
+                help::Action::Capture => self.capture(),
+                help::Action::Panels => self.hidden = !self.hidden,
+                help::Action::FullScreen => {
+                    self.full_screen = !self.full_screen;
+                    ui.ctx().send_viewport_cmd(egui::ViewportCommand::Fullscreen(self.full_screen));
+                }
+                help::Action::WholePicture => self.view.zoom = zoom::Zoom::default(),
+                help::Action::RenderDoc => self.engine.order(Order::RenderDoc),
+            }
+        }
+    }
+}
+
+/// A press of the mouse elsewhere takes the keys away from a text field: a drag on a slider would leave them there, and
+/// with them what Ctrl Z means.
+pub(super) fn release_focus(ui: &Ui) {
+    let Some(focused) = ui.ctx().memory(egui::Memory::focused) else { return };
+    let pressed = ui.input(|i| if i.pointer.any_pressed() { i.pointer.interact_pos() } else { None });
+    let rect = ui.ctx().read_response(focused).map(|r| r.rect);
+    if let (Some(at), Some(rect)) = (pressed, rect)
+        && !rect.contains(at)
+    {
+        ui.ctx().memory_mut(|m| m.surrender_focus(focused));
+    }
+}
