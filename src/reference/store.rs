@@ -4,7 +4,7 @@
 use super::{Noise, Reference, ReferencePart};
 use crate::capture::hex;
 use crate::experiment::Experiment;
-use crate::files::read_input;
+use crate::files::{check_input, read_input};
 use crate::graph::load::Graph;
 use crate::lab::LabError;
 use crate::metrics::{Linear, MetricError, relmse, structure_noise};
@@ -267,6 +267,11 @@ const MAX_JSON: u64 = 16 << 20;
 /// A file that is no larger than the sums of so many parts can be.
 fn read_bounded(file: &Path, size: (u32, u32), parts: usize) -> Result<Vec<u8>, String> {
     let texels = u64::from(size.0) * u64::from(size.1) * 2 * parts as u64;
+    let length = check_input(file, u64::MAX).map_err(|e| e.to_string())?;
     // Compression may make noise a little larger.
-    read_input(file, texels * 32 + (1 << 20)).map_err(|e| e.to_string())
+    let most = texels * 32 + (1 << 20);
+    if length > most {
+        return Err(format!("it has {length} bytes, more than its samples take"));
+    }
+    read_input(file, most).map_err(|e| e.to_string())
 }
