@@ -141,6 +141,10 @@ impl Host {
             }
             self.settle()?;
         }
+        if self.script.measure > 0 || self.script.pace.is_some() {
+            // A window without a screen reader does not describe its widgets either.
+            self.context.disable_accesskit();
+        }
         let mut cpu = Vec::new();
         let (mut gpu, mut copies) = (Vec::new(), Vec::new());
         for _ in 0..self.script.measure {

@@ -564,12 +564,12 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
 
     // A pass that is off is left out of the picture and saved as such.
     driver.click("", "Graph");
-    driver.click("Button", "pass shading");
+    driver.click("Button", "pass shadow map");
     let mark = driver.now();
     driver.click("", "on");
     let failed = driver.wait(mark, "an error or a picture", |e| e["event"] == "built" || e["event"] == "failed");
     assert_eq!(failed["event"], "built", "{failed}");
-    driver.texts_until("what is off", |texts| texts.iter().any(|t| t == "off: shading"));
+    driver.texts_until("what is off", |texts| texts.iter().any(|t| t == "off: shadow map"));
     let dark = driver.other_picture(mark, 0, &first);
     let mark = driver.now();
     driver.click("Button", "all passes on");
@@ -582,7 +582,7 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.picture(mark, 0, &first);
 
     // What a pass writes is inspected by a click.
-    driver.click("Button", "shading writes radiance");
-    driver.texts_until("the inspected texture", |texts| texts.iter().any(|t| t.contains("radiance")));
+    driver.click("Button", "shadow map writes shadowMap");
+    driver.texts_until("the inspected texture", |texts| texts.iter().any(|t| t.contains("shadowMap")));
     driver.close();
 }

@@ -375,7 +375,7 @@ impl Workbench {
                 .size_range(180.0..=640.0)
                 .show(ui, |ui| self.parameters(ui));
             egui::Panel::right("right")
-                .default_size(320.0)
+                .default_size(350.0)
                 .size_range(180.0..=760.0)
                 .show(ui, |ui| self.right(ui, textures));
         }

@@ -14,9 +14,18 @@ pub struct Nodes {
     side: usize,
     /// Name of the pass that was clicked on.
     chosen: Option<String>,
-    /// The part of the layout that is seen; all that fits when it has no area.
-    seen: Option<Rect>,
+    /// The part of the layout that is seen; its beginning, large enough to be read, when absent.
+    seen: Option<Seen>,
     made: Option<(Arc<GraphInfo>, Layout)>,
+}
+
+/// A part of the layout.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// Points of the screen a point of the layout.
+    zoom: f32,
+    /// What is at the upper left.
+    corner: Pos2,
 }
 
 /// What was asked for with a pass.
@@ -43,23 +52,32 @@ impl Workbench {
         };
         let times = self.times.medians(side);
         let chosen = self.nodes.chosen.clone();
+        let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
+        let area = response.rect;
+        ui.painter().rect_filled(area, 0.0, Color32::from_gray(12));
         let mut seen = self.nodes.seen;
         let layout = self.nodes.layout(&info);
-        let area = ui.available_size();
-        // Not smaller than can be read: what does not fit is reached by dragging.
         let bounds = layout.bounds();
-        let zoom = (area.x / bounds.width()).min(area.y / bounds.height()).clamp(0.8, 1.0);
-        let mut rect = seen.unwrap_or(Rect::from_min_size(bounds.min, area / zoom));
-        let mut asked = None;
-        let response = egui::Scene::new().zoom_range(0.2..=2.0).show(ui, &mut rect, |ui| {
-            draw(ui, &info, layout, &times, chosen.as_deref(), &mut asked);
-        });
-        if seen.is_some() || response.response.changed() || response.response.dragged() {
-            seen = Some(rect);
+        let fit = (area.width() / bounds.width()).min(area.height() / bounds.height());
+        let mut now = seen.unwrap_or(Seen { zoom: stepped(fit).clamp(0.8, 1.0), corner: bounds.min });
+        if response.dragged() {
+            now.corner -= response.drag_delta() / now.zoom;
+            seen = Some(now);
         }
-        if response.response.double_clicked() {
-            seen = None;
+        let wheel = if response.contains_pointer() { ui.input(|i| i.smooth_scroll_delta().y) } else { 0.0 };
+        if let (Some(at), true) = (response.hover_pos(), wheel != 0.0) {
+            let zoom = stepped(now.zoom * (wheel * 0.01).exp()).clamp(0.2, 2.0);
+            now.corner += (at - area.min) * (1.0 / now.zoom - 1.0 / zoom);
+            now.zoom = zoom;
+            seen = Some(now);
         }
+        if response.double_clicked() {
+            now = Seen { zoom: fit.clamp(0.1, 1.0), corner: bounds.min };
+            seen = Some(now);
+        }
+        let mut canvas = Canvas { ui, area, seen: now, asked: None };
+        canvas.draw(&info, layout, &times, chosen.as_deref());
+        let asked = canvas.asked;
         self.nodes.seen = seen;
         match asked {
             Some(Asked::Choose(name)) => self.nodes.chosen = Some(name),
@@ -175,87 +193,127 @@ fn of(info: &GraphInfo, texture: usize) -> String {
     format!("{format} {}x{}{depth}", plan.extent[0], plan.extent[1])
 }
 
-fn draw(
-    ui: &mut Ui,
-    info: &GraphInfo,
-    layout: &Layout,
-    times: &[(usize, f64)],
-    chosen: Option<&str>,
-    asked: &mut Option<Asked>,
-) {
-    ui.expand_to_include_rect(layout.bounds());
-    let ms = |pass: usize| times.iter().find(|t| t.0 == pass).map(|t| t.1);
-    let most = times.iter().map(|t| t.1).fold(0.0, f64::max);
-    let text_color = ui.visuals().text_color();
-    let weak = ui.visuals().weak_text_color();
-    let font = FontId::proportional(11.5);
-    for column in &layout.columns {
-        let total: f64 = column.passes.iter().filter_map(|p| ms(*p)).sum();
-        let top = column.rect.left_top();
-        let painter = ui.painter();
-        painter.text(top, Align2::LEFT_TOP, &column.stage, FontId::proportional(14.0), text_color);
-        let text = format!("{total:.3} ms");
-        painter.text(top + Vec2::new(0.0, 17.0), Align2::LEFT_TOP, text, font.clone(), weak);
-        painter.hline(column.rect.x_range(), top.y + TITLE, Stroke::new(1.0, weak.gamma_multiply(0.4)));
+/// Zooms in steps, so that letters are not made anew in every size between.
+fn stepped(zoom: f32) -> f32 {
+    2f32.powf((zoom.max(1e-3).log2() * 6.0).round() / 6.0)
+}
+
+/// The part of the viewport that the graph is drawn in.
+struct Canvas<'u> {
+    ui: &'u mut Ui,
+    area: Rect,
+    seen: Seen,
+    asked: Option<Asked>,
+}
+
+impl Canvas<'_> {
+    fn at(&self, point: Pos2) -> Pos2 {
+        self.area.min + (point - self.seen.corner) * self.seen.zoom
     }
-    let touches = |i: usize| chosen.is_some_and(|c| layout.nodes[i].name == c);
-    for edge in &layout.edges {
-        let bright = touches(edge.from.0) || touches(edge.to);
-        let color = match (bright, edge.of_last_frame) {
-            (true, _) => Color32::from_rgb(240, 190, 90),
-            (false, true) => Color32::from_rgba_unmultiplied(150, 110, 190, 70),
-            (false, false) => Color32::from_rgba_unmultiplied(130, 150, 180, 55),
-        };
-        ui.painter().add(curve(layout, edge, Stroke::new(if bright { 1.8 } else { 1.0 }, color)));
+
+    fn place(&self, rect: Rect) -> Rect {
+        Rect::from_min_max(self.at(rect.min), self.at(rect.max))
     }
-    for node in &layout.nodes {
-        let response = ui.interact(node.rect, ui.id().with(node.pass), Sense::click());
-        response
-            .widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("pass {}", node.name)));
-        let is_chosen = chosen == Some(node.name.as_str());
-        let time = ms(node.pass).unwrap_or(0.0);
-        // The longer a pass takes, the warmer it is.
-        let heat = if most > 0.0 { (time / most).sqrt() as f32 } else { 0.0 };
+
+    fn painter(&self, clip: Rect) -> egui::Painter {
+        self.ui.painter().with_clip_rect(clip.intersect(self.area))
+    }
+
+    fn text(&self, clip: Rect, at: Pos2, anchor: Align2, text: &str, points: f32, color: Color32) {
+        let font = FontId::proportional(points * self.seen.zoom);
+        self.painter(clip).text(self.at(at), anchor, text, font, color);
+    }
+
+    /// A part that can be clicked on, with a name for scripts and screen readers.
+    fn button(&self, rect: Rect, id: impl egui::AsIdSalt, enabled: bool, name: String) -> Option<egui::Response> {
+        let rect = self.place(rect).intersect(self.area);
+        if !rect.is_positive() {
+            return None;
+        }
+        let response = self.ui.interact(rect, self.ui.id().with(id), Sense::click());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, enabled, &name));
+        Some(response)
+    }
+
+    fn draw(&mut self, info: &GraphInfo, layout: &Layout, times: &[(usize, f64)], chosen: Option<&str>) {
+        let ms = |pass: usize| times.iter().find(|t| t.0 == pass).map(|t| t.1);
+        let most = times.iter().map(|t| t.1).fold(0.0, f64::max);
+        let (strong, weak) = (self.ui.visuals().text_color(), self.ui.visuals().weak_text_color());
+        for column in &layout.columns {
+            let total: f64 = column.passes.iter().filter_map(|p| ms(*p)).sum();
+            let top = column.rect.left_top();
+            self.text(self.area, top, Align2::LEFT_TOP, &column.stage, 14.0, strong);
+            let below = top + Vec2::new(0.0, 17.0);
+            self.text(self.area, below, Align2::LEFT_TOP, &format!("{total:.3} ms"), 11.5, weak);
+            let line = self.place(Rect::from_min_max(top + Vec2::new(0.0, TITLE), column.rect.right_top()));
+            self.painter(self.area).hline(line.x_range(), line.top(), Stroke::new(1.0, weak.gamma_multiply(0.4)));
+        }
+        let touches = |i: usize| chosen.is_some_and(|c| layout.nodes[i].name == c);
+        for edge in &layout.edges {
+            let bright = touches(edge.from.0) || touches(edge.to);
+            let color = match (bright, edge.of_last_frame) {
+                (true, _) => Color32::from_rgb(240, 190, 90),
+                (false, true) => Color32::from_rgba_unmultiplied(150, 110, 190, 80),
+                (false, false) => Color32::from_rgba_unmultiplied(130, 150, 180, 64),
+            };
+            let stroke = Stroke::new(if bright { 1.8 } else { 1.0 }, color);
+            self.painter(self.area).add(self.curve(layout, edge, stroke));
+        }
+        for node in &layout.nodes {
+            let time = ms(node.pass).unwrap_or(0.0);
+            // The longer a pass takes, the warmer it is.
+            let heat = if most > 0.0 { (time / most).sqrt() as f32 } else { 0.0 };
+            self.node(info, node, time, heat, chosen == Some(node.name.as_str()));
+        }
+    }
+
+    fn node(&mut self, info: &GraphInfo, node: &layout::Node, time: f64, heat: f32, is_chosen: bool) {
+        let (strong, weak) = (self.ui.visuals().text_color(), self.ui.visuals().weak_text_color());
+        let Some(response) = self.button(node.rect, node.pass, true, format!("pass {}", node.name)) else { return };
         let fill = Color32::from_gray(38).lerp_to_gamma(Color32::from_rgb(140, 66, 40), heat);
         let fill = if node.runs { fill } else { Color32::from_gray(24) };
         let edge = match (is_chosen, response.hovered()) {
             (true, _) => Stroke::new(2.0, Color32::from_rgb(240, 190, 90)),
-            (_, true) => Stroke::new(1.5, text_color),
+            (_, true) => Stroke::new(1.5, strong),
             _ => Stroke::new(1.0, Color32::from_gray(80)),
         };
-        let painter = ui.painter();
-        painter.rect(node.rect, 4.0, fill, edge, egui::StrokeKind::Inside);
-        let clipped = painter.with_clip_rect(node.rect.shrink2(Vec2::new(5.0, 0.0)).intersect(ui.clip_rect()));
+        let rect = self.place(node.rect);
+        self.painter(self.area).rect(rect, 4.0 * self.seen.zoom, fill, edge, egui::StrokeKind::Inside);
         let first = node.rect.left_top() + Vec2::new(6.0, ROW * 0.75);
-        let color = if node.runs { text_color } else { weak };
-        clipped.text(first, Align2::LEFT_CENTER, &node.name, font.clone(), color);
         let right = Pos2::new(node.rect.right() - 6.0, first.y);
+        let color = if node.runs { strong } else { weak };
         let said = if node.runs { format!("{time:.3}") } else { "off".into() };
-        let behind = painter.layout_no_wrap(said, FontId::monospace(10.0), color);
-        let place = Align2::RIGHT_CENTER.anchor_size(right, behind.size());
-        painter.rect_filled(place.expand2(Vec2::new(3.0, 0.0)), 0.0, fill);
-        painter.galley(place.min, behind, color);
+        // Names give way to times.
+        let mut names = node.rect;
+        names.max.x = right.x - 34.0;
+        self.text(self.place(names), first, Align2::LEFT_CENTER, &node.name, 11.5, color);
+        self.text(rect, right, Align2::RIGHT_CENTER, &said, 10.5, color);
         for (i, resource) in node.writes.iter().enumerate() {
             let row = row_of(node.rect, i);
             let texture = info.graph.textures.iter().any(|t| t.0 == *resource);
-            let hit = ui.interact(row, ui.id().with((node.pass, i)), Sense::click());
-            hit.widget_info(|| {
-                egui::WidgetInfo::labeled(egui::WidgetType::Button, texture, format!("{} writes {resource}", node.name))
-            });
-            let color = if hit.hovered() && texture { text_color } else { Color32::from_gray(150) };
+            let name = format!("{} writes {resource}", node.name);
+            let Some(hit) = self.button(row, (node.pass, i), texture, name) else { continue };
+            let color = if hit.hovered() && texture { strong } else { Color32::from_gray(150) };
             let at = row.left_center() + Vec2::new(12.0, 0.0);
-            let shown = ui.painter().with_clip_rect(row.intersect(ui.clip_rect()));
-            shown.text(at, Align2::LEFT_CENTER, resource, FontId::proportional(10.5), color);
+            self.text(self.place(row), at, Align2::LEFT_CENTER, resource, 10.5, color);
             if hit.clicked() {
-                *asked = Some(match texture {
+                self.asked = Some(match texture {
                     true => Asked::Inspect(resource.clone()),
                     false => Asked::Choose(node.name.clone()),
                 });
             }
         }
         if response.clicked() {
-            *asked = Some(Asked::Choose(node.name.clone()));
+            self.asked = Some(Asked::Choose(node.name.clone()));
         }
+    }
+
+    fn curve(&self, layout: &Layout, edge: &layout::Edge, stroke: Stroke) -> Shape {
+        let from = self.at(row_of(layout.nodes[edge.from.0].rect, edge.from.1).right_center());
+        let to = self.at(layout.nodes[edge.to].rect.left_top() + Vec2::new(0.0, ROW * 0.75));
+        let bend = Vec2::new(((to.x - from.x).abs() * 0.5).clamp(28.0, 160.0), 0.0);
+        let points = [from, from + bend, to - bend, to];
+        CubicBezierShape::from_points_stroke(points, false, Color32::TRANSPARENT, stroke).into()
     }
 }
 
@@ -263,12 +321,4 @@ fn draw(
 fn row_of(node: Rect, number: usize) -> Rect {
     let top = node.top() + ROW * (1.35 + number as f32);
     Rect::from_min_size(Pos2::new(node.left(), top), Vec2::new(WIDTH, ROW))
-}
-
-fn curve(layout: &Layout, edge: &layout::Edge, stroke: Stroke) -> Shape {
-    let from = row_of(layout.nodes[edge.from.0].rect, edge.from.1).right_center();
-    let to = layout.nodes[edge.to].rect.left_top() + Vec2::new(0.0, ROW * 0.75);
-    let bend = Vec2::new(((to.x - from.x).abs() * 0.5).clamp(28.0, 160.0), 0.0);
-    let points = [from, from + bend, to - bend, to];
-    CubicBezierShape::from_points_stroke(points, false, Color32::TRANSPARENT, stroke).into()
 }
