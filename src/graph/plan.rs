@@ -174,6 +174,8 @@ pub struct Plan {
     pub settling: Vec<Settling>,
     /// What shares memory.
     pub transients: Vec<Transient>,
+    /// What passes write that are off: it begins with zeros, whatever another program left in it.
+    pub missing: Vec<Res>,
     /// Passes left out, and why.
     pub dropped: Vec<(usize, String)>,
     /// Edge length above which triangles must be split, if needed.
@@ -271,7 +273,8 @@ pub fn plan(graph: &Graph, linked: &[Linked], input: &PlanInput<'_>) -> Result<P
     }
     let mut errors = Vec::new();
     let (textures, buffers) = (planner.textures, planner.buffers);
-    let mut plan = Plan { textures, buffers, steps, settling: Vec::new(), transients: Vec::new(), dropped, max_edge };
+    let (settling, transients) = (Vec::new(), Vec::new());
+    let mut plan = Plan { textures, buffers, steps, settling, transients, missing, dropped, max_edge };
     super::live::prune(graph, linked, &mut plan, &input.wanted);
     super::usage::layouts(graph, &mut plan, &mut errors);
     match super::settle::find(graph, &plan.steps, (&plan.textures, &plan.buffers), &settles) {

@@ -51,7 +51,7 @@ pub(super) fn make(
             *slot = Some(
                 match parts
                     .image(name, c, &desc)
-                    .filter(|_| is_written(plan, |r| matches!(r, Res::Texture(n, _) if n == t)))
+                    .filter(|_| is_kept(plan, |r| matches!(r, Res::Texture(n, _) if n == t)))
                 {
                     Some(kept) => kept,
                     None => {
@@ -70,7 +70,7 @@ pub(super) fn make(
             *slot = Some(
                 match parts
                     .buffer(name, c, b.size)
-                    .filter(|_| is_written(plan, |r| matches!(r, Res::Buffer(m, _) if m == n)))
+                    .filter(|_| is_kept(plan, |r| matches!(r, Res::Buffer(m, _) if m == n)))
                 {
                     Some(kept) => kept,
                     None => {
@@ -90,9 +90,9 @@ pub(super) fn make(
     Ok(made)
 }
 
-/// Whether a step writes it. What none does is zeros, and not what another program left.
-fn is_written(plan: &Plan, is: impl Fn(Res) -> bool) -> bool {
-    plan.steps.iter().flat_map(|s| &s.uses).any(|u| u.write && is(u.res))
+/// Whether what another program left in it may stay: somebody writes it, and nobody who would is off.
+fn is_kept(plan: &Plan, is: impl Fn(Res) -> bool) -> bool {
+    plan.steps.iter().flat_map(|s| &s.uses).any(|u| u.write && is(u.res)) && !plan.missing.iter().any(|r| is(*r))
 }
 
 fn image_desc(graph: &Graph, plan: &Plan, t: usize, copy: usize) -> ImageDesc {
