@@ -20,6 +20,11 @@ for tab in Scene Time; do
         --click "keep rendering" \
         --measure 300 -o "$home/shot.png"
 done
+echo "pictures painted as they come, and sixty times a second"
+for every in "" "--every 16.667"; do
+    # shellcheck disable=SC2086 # an option and its value, or nothing
+    "$conelab" screenshot --scene "$scene" --size "$size" --click "keep rendering" --pace 300 $every -o "$home/shot.png"
+done
 echo "an edit of the cone shader"
 "$conelab" screenshot --scene "$scene" --size "$size" -o "$home/shot.png" --times 25 \
     --edit "$home/shaders/cones/cone.glsl" --from 'params.cone_height * first_cell' --to 'params.cone_height * first_cell * 1.01'

@@ -156,6 +156,11 @@ pub fn color(name: &str) -> Color32 {
         names.push(name.to_string());
         names.len() - 1
     });
+    numbered(number)
+}
+
+/// The colour of the name that came so many names after the first.
+fn numbered(number: usize) -> Color32 {
     // Steps of the golden ratio never meet again; neighbours differ in brightness too.
     let hue = (number as f32 * 0.618_034).fract();
     Hsva::new(hue, [0.75, 0.45, 0.9, 0.6, 0.35][number % 5], [0.95, 0.75, 0.6, 0.85, 0.55][number % 5], 1.0).into()
@@ -188,7 +193,8 @@ pub fn stamped(gpu: &Arc<Gpu>, texels: &Texels, timers: &Timers) -> Result<Texel
 
 #[cfg(test)]
 mod tests {
-    use super::{by_stage, fitting};
+    use super::{by_stage, color, fitting, numbered};
+    use egui::Color32;
 
     #[test]
     fn what_does_not_fit_is_summed() {
@@ -198,6 +204,17 @@ mod tests {
         let some = fitting(&rows, 3);
         assert_eq!(some, [("b".into(), 3.0), ("d".into(), 2.0), ("2 others".to_string(), 1.5)]);
         assert!(fitting(&rows, 0).is_empty());
+    }
+
+    #[test]
+    fn a_name_keeps_its_colour_and_no_two_look_alike() {
+        let names: Vec<String> = (0..60).map(|i| format!("pass {i}")).collect();
+        let colours: Vec<Color32> = names.iter().map(|n| color(n)).collect();
+        assert_eq!(names.iter().map(|n| color(n)).collect::<Vec<_>>(), colours);
+        // Of the first fifty: later ones come nearer.
+        let first: Vec<Color32> = (0..50).map(numbered).collect();
+        let far = |a: Color32, b: Color32| a.to_array().iter().zip(b.to_array()).any(|(a, b)| a.abs_diff(b) > 3);
+        assert!(first.iter().enumerate().all(|(i, a)| first[..i].iter().all(|b| far(*a, *b))));
     }
 
     #[test]

@@ -158,15 +158,6 @@ mod tests {
     }
 
     #[test]
-    fn a_name_keeps_its_colour() {
-        let names: Vec<String> = (0..60).map(|i| format!("pass {i}")).collect();
-        let colours: Vec<Color32> = names.iter().map(|n| color(n)).collect();
-        assert_eq!(names.iter().map(|n| color(n)).collect::<Vec<_>>(), colours);
-        let far = |a: Color32, b: Color32| a.to_array().iter().zip(b.to_array()).any(|(a, b)| a.abs_diff(b) > 3);
-        assert!(colours.iter().enumerate().all(|(i, a)| colours[..i].iter().all(|b| far(*a, *b))));
-    }
-
-    #[test]
     fn the_axis_has_round_numbers() {
         assert_eq!([1032.67, 0.73, 2.0, 0.0].map(round_below), [1000.0, 0.5, 2.0, 0.0]);
     }
