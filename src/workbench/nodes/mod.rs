@@ -187,8 +187,8 @@ impl Workbench {
 
 /// A texture's format and size.
 fn of(info: &GraphInfo, texture: usize) -> String {
-    let format = &info.graph.textures[texture].1.value.format.value;
     let plan = &info.textures[texture];
+    let format = plan.format.name;
     let depth = if plan.volume { format!("x{}", plan.extent[2]) } else { String::new() };
     format!("{format} {}x{}{depth}", plan.extent[0], plan.extent[1])
 }
