@@ -1,4 +1,4 @@
-//! Panics of other people's readers as errors.
+//! Panics as errors: those of other people's readers, and what any of them said.
 
 use crate::excerpt::excerpt;
 use std::any::Any;
@@ -37,9 +37,14 @@ pub fn caught<T>(read: impl FnOnce() -> T) -> Result<T, String> {
     result.map_err(|panic| message(&*panic))
 }
 
+/// What a panic said.
+pub fn said(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message")
+}
+
 fn message(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-    let first = text.and_then(|t| t.lines().next()).unwrap_or("no message");
+    let first = said(panic).lines().next().unwrap_or_default();
     format!("its reader gave up ({} at {})", excerpt(first, 200), PLACE.take())
 }
 

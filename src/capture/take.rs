@@ -38,8 +38,8 @@ pub struct What {
     pub frames: Option<usize>,
     /// Time from frame to frame, s.
     pub step: f64,
-    /// Keep the picture with the GPU's times on it too, as timers.png.
-    pub timers: Option<Rows>,
+    /// The GPU's times to keep on a second picture, timers.png.
+    pub timers: Rows,
 }
 
 /// The first of `name`, `name-2`, `name-3` and so on that no capture in `folder` has.
@@ -95,7 +95,7 @@ pub fn take(
         let bytes = if image.file.ends_with(".png") { picture::png(texels)? } else { picture::exr(texels)? };
         write(&file, &bytes)?;
     }
-    if let Some(rows) = what.timers
+    if what.timers != Rows::None
         && let Some((_, texels)) = images.iter().find(|i| i.0.file == "picture.png")
     {
         let medians = stats
@@ -104,7 +104,7 @@ pub fn take(
             .filter_map(|p| Some((graph.passes.iter().position(|x| x.value.name.value == p.name)?, p.gpu_ms.median)));
         let params = resolved.params_over(&graph.params)?;
         let size = experiment.size.into();
-        let timers = Timers::new(rows, &graph, &params, &stats.device.name, size, &medians.collect::<Vec<_>>());
+        let timers = Timers::new(what.timers, &graph, &params, &stats.device.name, size, &medians.collect::<Vec<_>>());
         write(&path.join("timers.png"), &picture::png(&stamped(&lab.gpu, texels, &timers)?)?)?;
     }
     write(&path.join("stats.json"), &json(&stats)?)?;

@@ -45,7 +45,7 @@ pub fn run(args: &CaptureArgs) -> Result<(), LabError> {
         resources: resources.collect::<Result<_, LabError>>()?,
         frames: args.frames,
         step: args.step,
-        timers: args.timers,
+        timers: args.timers.unwrap_or_default(),
     };
     let home = Workspace::find()?;
     let folder = home.root.join("captures");

@@ -82,6 +82,15 @@ pub struct Graph {
 }
 
 impl Graph {
+    /// What a picture is said to be made with, with these values of the parameters.
+    pub fn caption(&self, params: &Params) -> Option<String> {
+        let mut text = self.caption.as_ref()?.value.clone();
+        for (param, value) in params.list.iter().zip(&params.values) {
+            text = text.replace(&format!("{{{}}}", param.name), &value.to_string());
+        }
+        Some(text)
+    }
+
     /// Buffers of the checks that are made where these resources are wanted.
     pub fn checked_with(&self, wanted: &[String]) -> Vec<String> {
         let made = |c: &&CheckDecl| c.with.as_ref().is_none_or(|texture| wanted.contains(&texture.value));
@@ -273,17 +282,6 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         return Err(errors);
     }
     Ok(graph)
-}
-
-impl Graph {
-    /// What a picture is said to be made with, with these values of the parameters.
-    pub fn caption(&self, params: &Params) -> Option<String> {
-        let mut text = self.caption.as_ref()?.value.clone();
-        for (param, value) in params.list.iter().zip(&params.values) {
-            text = text.replace(&format!("{{{}}}", param.name), &value.to_string());
-        }
-        Some(text)
-    }
 }
 
 /// Files that a graph may have.

@@ -1,17 +1,12 @@
 //! Work on other threads that must answer: a panic in it becomes an answer too.
 
+use crate::panics::said;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The work's result, or what it said when it panicked. What it had in hand is dropped; nothing shared is left half done, as
 /// workers own what they change.
 pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| format!("a fault in the program: {}", said(panic.as_ref())))
-}
-
-/// What a panic said.
-pub fn said(panic: &(dyn std::any::Any + Send)) -> &str {
-    let text = panic.downcast_ref::<&str>().copied();
-    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("it did not say what")
 }
 
 #[cfg(test)]

@@ -7,11 +7,11 @@ use egui::{Painter, Rect};
 
 impl Workbench {
     /// Draws the times of what is shown: the whole picture, and the part where B is.
-    pub(super) fn timers(&self, painter: &Painter, a: Rect, b: Option<Rect>) {
+    pub(super) fn timers(&mut self, painter: &Painter, a: Rect, b: Option<Rect>) {
         if self.view.timers == Rows::None {
             return;
         }
-        let sides: Vec<Timers> = (0..2).map(|side| self.timers_of(side)).collect();
+        let sides: Vec<Timers> = (0..2).map(|side| self.timers_of(painter.ctx(), side)).collect();
         let longest = sides[0].longest().max(if b.is_some() { sides[1].longest() } else { 0.0 });
         let flipped = self.view.mode == Mode::Flip && self.view.flipped && b.is_some();
         draw(painter, a, false, &sides[usize::from(flipped)], longest);
@@ -20,20 +20,21 @@ impl Workbench {
         }
     }
 
-    fn timers_of(&self, side: usize) -> Timers {
+    fn timers_of(&mut self, context: &egui::Context, side: usize) -> Timers {
+        let medians = self.times.medians(context, side);
         let (Some(info), Some(picture)) = (&self.sides[side].info, &self.sides[side].picture) else {
             return Timers::default();
         };
         let device = self.device.as_ref().map_or("", |d| d.name.as_str());
-        let medians = self.times.medians(side);
-        let mut timers = Timers::new(self.view.timers, &info.graph, &info.params, device, picture.size, &medians);
+        let mut timers =
+            Timers::new(self.view.timers, &info.graph, &info.params, device, picture.size, &medians.passes);
         if self.desired.sides[1].is_some() {
             timers.title[0].insert_str(0, ["A: ", "B: "][side.min(1)]);
         }
         if let Some((metric, error)) = self.chart.known_error(side, self.sent.number) {
             timers.title.push(format!("{metric} {error:.3e}"));
         }
-        timers.total = self.times.median_total(side);
+        timers.total = medians.total;
         timers
     }
 }

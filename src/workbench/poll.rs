@@ -95,14 +95,12 @@ impl Workbench {
             }
             Report::Picture(picture) => self.picture_came(picture),
             Report::Pixels { side, frame, bytes } => {
-                if let Some(picture) = self.sides[side].picture.as_mut().filter(|p| p.frame == frame) {
-                    // A window that did not keep up has none of this frame.
-                    if picture.shared.is_none() {
-                        let size = picture.size;
-                        self.pixels.retain(|p| p.picture != side);
-                        self.pixels.push(NewPixels { picture: side, size, bytes: Some(bytes.clone()), shared: None });
-                    }
-                    picture.bytes = Some(bytes);
+                let Some(picture) = self.sides[side].picture.as_mut().filter(|p| p.frame == frame) else { return };
+                picture.bytes = Some(bytes.clone());
+                // A window that did not keep up has none of this frame.
+                if picture.shared.is_none() {
+                    let size = picture.size;
+                    self.show(NewPixels { picture: side, size, bytes: Some(bytes), shared: None });
                 }
             }
             Report::Loading(what, part) => self.loading = Some((what, part)),

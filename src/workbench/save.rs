@@ -92,7 +92,7 @@ pub fn take(
     timers: Rows,
 ) -> Result<PathBuf, LabError> {
     let resources = resources.into_iter().map(|name| Resource { name, mip: 0, layer: 0 }).collect();
-    let what = What { resources, timers: Some(timers).filter(|t| *t != Rows::None), ..What::default() };
+    let what = What { resources, timers, ..What::default() };
     let name = capture::free_name(folder, &experiment.name);
     capture::take(lab, experiment, scene, &what, folder, &name)
 }

@@ -13,10 +13,10 @@ mod scenes;
 
 use super::builder::{self, Done, Job, Key};
 use super::error_worker::{self, ErrorQuery, ErrorRequest};
-use super::guard::said;
 use super::report::{DeviceReport, Report};
 use super::request::{InspectTarget, RenderRequest};
 use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
+use crate::panics::said;
 use crate::scene::{Scene, SceneError};
 use crate::timers::Rows;
 use crate::vulkan::GpuOptions;

@@ -50,7 +50,7 @@ impl Workbench {
             ui.weak(self.waiting_text());
             return;
         };
-        let times = self.times.medians(side);
+        let times = self.times.medians(ui.ctx(), side);
         let chosen = self.nodes.chosen.clone();
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
@@ -76,7 +76,7 @@ impl Workbench {
             seen = Some(now);
         }
         let mut canvas = Canvas { ui, area, seen: now, asked: None };
-        canvas.draw(&info, layout, &times, chosen.as_deref());
+        canvas.draw(&info, layout, &times.passes, chosen.as_deref());
         let asked = canvas.asked;
         self.nodes.seen = seen;
         match asked {
@@ -136,7 +136,7 @@ impl Workbench {
         let pass = &info.graph.passes[number].value;
         ui.strong(name);
         ui.label(format!("stage: {}", pass.stage()));
-        if let Some((_, ms)) = self.times.medians(side).iter().find(|t| t.0 == number) {
+        if let Some((_, ms)) = self.times.medians(ui.ctx(), side).passes.iter().find(|t| t.0 == number) {
             ui.label(format!("{ms:.3} ms (median)"));
         }
         ui.horizontal(|ui| {

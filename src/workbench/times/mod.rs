@@ -12,6 +12,7 @@ use crate::timers;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
 use history::{Frame, History, Row};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How long a table stands before it is worked out anew.
@@ -35,6 +36,17 @@ pub struct Times {
     scene_bytes: u64,
     /// Name of the pass under the pointer.
     hovered: Option<String>,
+    /// Of how many changes of a side's history, and since when.
+    medians: [Option<(u64, Instant, Arc<Medians>)>; 2],
+}
+
+/// Median times of a side's last frames on the GPU.
+#[derive(Default)]
+pub struct Medians {
+    /// (number, ms) of its passes, in order; none without frames.
+    pub passes: Vec<(usize, f64)>,
+    /// From the first command to the last, ms.
+    pub total: f64,
 }
 
 impl Times {
@@ -50,7 +62,7 @@ impl Times {
     pub fn built(&mut self, side: usize, info: &GraphInfo) {
         let pass = |i: &usize| info.graph.passes.get(*i).map(|p| (*i, p.value.name.value.clone()));
         self.sides[side] = History::new(info.passes.iter().filter_map(pass).collect());
-        self.made = None;
+        (self.made, self.medians[side]) = (None, None);
         if side == 0 {
             self.memory.clone_from(&info.memory);
             self.memory.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
@@ -58,17 +70,26 @@ impl Times {
         }
     }
 
-    /// (number, median time in ms) of the passes of a side, in order; empty without frames.
-    pub fn medians(&self, side: usize) -> Vec<(usize, f64)> {
+    /// Median times of a side. They are worked out anew as often as the table, so that a frame of the interface does not sort the
+    /// times of every pass.
+    pub fn medians(&mut self, ui: &egui::Context, side: usize) -> Arc<Medians> {
         let history = &self.sides[side];
-        let frames = || history.frames.iter();
-        let median = |pass: usize| spread(frames().map(|f| f.pass(pass)).collect()).median;
-        history.passes.iter().filter(|_| !history.frames.is_empty()).map(|p| (p.0, median(p.0))).collect()
-    }
-
-    /// Median time of a side's frames from their first to their last command on the GPU, ms; 0 without frames.
-    pub fn median_total(&self, side: usize) -> f64 {
-        spread(self.sides[side].frames.iter().map(|f| f.gpu_ms).collect()).median
+        if let Some((changes, since, known)) = &self.medians[side] {
+            let age = since.elapsed();
+            if *changes == history.changes {
+                return known.clone();
+            }
+            if age < TABLE_AGE {
+                ui.request_repaint_after(TABLE_AGE - age);
+                return known.clone();
+            }
+        }
+        let of = |time: &dyn Fn(&Frame) -> f64| spread(history.frames.iter().map(time).collect()).median;
+        let passes = history.passes.iter().filter(|_| !history.frames.is_empty());
+        let passes = passes.map(|p| (p.0, of(&|f| f.pass(p.0)))).collect();
+        let made = Arc::new(Medians { passes, total: of(&|f| f.gpu_ms) });
+        self.medians[side] = Some((history.changes, Instant::now(), made.clone()));
+        made
     }
 
     fn refresh(&mut self, both: bool) {
