@@ -9,10 +9,13 @@ use conelab::vulkan::{Faults, GpuOptions};
 use conelab::workbench::engine::Engine;
 use conelab::workbench::report::{PictureReport, Report};
 use conelab::workbench::request::{RenderRequest, SideRequest};
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A shader that hangs may take the GPU from all: it runs without the others.
+static ALONE: RwLock<()> = RwLock::new(());
 
 struct Driver {
     engine: Engine,
@@ -82,6 +85,7 @@ impl Driver {
 
 #[test]
 fn a_hundred_lost_devices_and_twenty_that_hang_are_replaced() {
+    let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut driver = Driver::start();
     driver.ask();
     let first = driver.picture();
@@ -106,6 +110,7 @@ fn a_hundred_lost_devices_and_twenty_that_hang_are_replaced() {
 
 #[test]
 fn an_engine_that_ends_by_a_fault_says_so_and_another_goes_on() {
+    let _beside = ALONE.read().unwrap_or_else(PoisonError::into_inner);
     let mut driver = Driver::start();
     driver.ask();
     let first = driver.picture();
@@ -135,6 +140,7 @@ fn a_shader_that_hangs_is_left_behind() {
         eprintln!("skipped: the software device ends endless loops by itself");
         return;
     }
+    let _alone = ALONE.write().unwrap_or_else(PoisonError::into_inner);
     let home = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| {
         std::fs::create_dir_all(home.path().join(name).parent().unwrap()).unwrap();

@@ -103,7 +103,7 @@ pub enum Redo {
 /// A frame in flight.
 struct Slot {
     commands: FrameSlot,
-    /// By parity, the commands of its last frame, and what they do. Dropped behind the slot, which waits for them.
+    /// By parity, the commands of its last frame, and what they do.
     recorded: [Option<(Recorded, Recording)>; 2],
     cpu_ms: f64,
     /// Whether each of [`Program::starts`] has a timestamp.
@@ -894,7 +894,14 @@ impl Program {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // Waits for the frames in flight before anything they use is destroyed.
+        // All frames in flight end before anything that one of them uses is destroyed, and what was recorded goes before the
+        // queries that it writes. Of a hung or lost device there is nothing to wait for.
+        for slot in &mut self.slots {
+            let _ = slot.commands.wait();
+        }
+        for slot in &mut self.slots {
+            slot.recorded = [None, None];
+        }
         self.slots.clear();
     }
 }
