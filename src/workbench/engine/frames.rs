@@ -9,6 +9,9 @@ use crate::lab::LabError;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// How long an engine that is ahead waits for a window that may be hidden.
+const UNSEEN: Duration = Duration::from_millis(100);
+
 impl Run<'_> {
     /// Renders the frames that are left, A and B in turns, so that neither always finds the clocks raised by the other.
     pub(super) fn render(&mut self) -> Result<(), LabError> {
@@ -17,6 +20,12 @@ impl Run<'_> {
         }
         let stepping = self.tick();
         let rest = !(self.desired.continuous || stepping);
+        if !rest && self.is_ahead() && self.last_rendered.elapsed() < UNSEEN {
+            std::thread::sleep(Duration::from_micros(200));
+            self.waited = true;
+            return Ok(());
+        }
+        self.last_rendered = Instant::now();
         self.turn += 1;
         for i in 0..2 {
             let number = (i + self.turn) % 2;
@@ -24,7 +33,15 @@ impl Run<'_> {
                 self.frame(number, rest)?;
             }
         }
+        self.waited = false;
         Ok(())
+    }
+
+    /// Whether the window has not taken the last pictures yet, and none is awaited to settle: another one would be thrown
+    /// away, and takes the GPU from the window that is to show them.
+    fn is_ahead(&self) -> bool {
+        let shown = self.sides.iter().filter(|s| s.session.is_some()).count();
+        self.sides.iter().all(|s| s.frames_left <= 1) && self.out.reports.len() >= shown
     }
 
     /// Moves time on; whether it goes.
@@ -82,7 +99,8 @@ impl Run<'_> {
         }
         // Long frames gain nothing from another one ahead, and an edit would wait for it; a still picture must not wait
         // for the next change.
-        let ahead = u64::from(!(software || side.last_ms > LONG || side.frames_left == 0 || captured.is_some()));
+        let waits = side.frames_left == 0 || captured.is_some() || self.waited;
+        let ahead = u64::from(!(software || side.last_ms > LONG || waits));
         finished.extend(session.program.finish_to(ahead)?);
         if let Some(begun) = captured {
             self.out.send(Report::Trouble(renderdoc::end(begun)));

@@ -204,6 +204,9 @@ struct Run<'a> {
     turn: usize,
     renderdoc: bool,
     last_read_back: Instant,
+    last_rendered: Instant,
+    /// Whether the next frame had to wait for the window.
+    waited: bool,
 }
 
 /// Time as it goes.
@@ -291,6 +294,8 @@ fn session(
         turn: 0,
         renderdoc: false,
         last_read_back: Instant::now(),
+        last_rendered: Instant::now(),
+        waited: false,
     };
     run.change(desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone())?;
     let result = loop {
