@@ -10,7 +10,7 @@ mod mutate;
 #[path = "fuzz/seeds.rs"]
 mod seeds;
 
-use common::root;
+use common::{number, root};
 use conelab::bench;
 use conelab::camera_path::CameraPath;
 use conelab::capture;
@@ -35,10 +35,6 @@ const INPUTS: usize = 20_000;
 const SHORT: Duration = Duration::from_secs(45);
 const LONGEST: Duration = Duration::from_secs(10);
 const MAX_MEMORY: u64 = 2 << 30;
-
-fn number(name: &str) -> Option<usize> {
-    std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name}: '{text}' is no number")))
-}
 
 /// Reads a file as the program would; what it says where it refuses it.
 fn read(kind: Kind, path: &Path, graph: &Graph) -> Result<(), String> {

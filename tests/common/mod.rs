@@ -28,6 +28,11 @@ pub fn on_software() -> bool {
     device() == "llvmpipe"
 }
 
+/// A number that the environment gives, as for longer runs of what is drawn at random.
+pub fn number(name: &str) -> Option<usize> {
+    std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name}: '{text}' is no number")))
+}
+
 /// Compiled shaders and pipelines, kept between the tests of one build.
 pub fn cache() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("cache")

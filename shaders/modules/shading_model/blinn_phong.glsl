@@ -3,7 +3,8 @@ vec3 specularBrdf(Surface s, vec3 v, vec3 l) {
     float n_h = max(dot(s.normal, normalize(v + l)), 0.0);
     float a2 = pow(s.roughness, 4.0);
     float exponent = 2.0 / a2 - 2.0;
-    return s.f0 * (exponent + 8.0) / (8.0 * PI) * pow(n_h, exponent);
+    // A rough surface's exponent is 0, and 0 to the power of 0 undefined.
+    return s.f0 * (exponent + 8.0) / (8.0 * PI) * pow(max(n_h, 1e-9), exponent);
 }
 
 // BRDF * cosine / density of a direction drawn by the visible normals. v, l and half_way are in the normal's frame; g1:
