@@ -228,6 +228,33 @@ fn large_textures_are_reduced() {
     assert_eq!(scene.textures[0].mips[0][..4], [10, 20, 30, 255]);
 }
 
+/// A box as OBJ, its sides towards the outside.
+fn obj_box(low: Vec3, high: Vec3, first: usize) -> String {
+    let corner = |i: usize| Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low);
+    let mut text: String = (0..8).map(corner).map(|c| format!("v {} {} {}\n", c.x, c.y, c.z)).collect();
+    for side in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
+        text += &format!("f {}\n", side.map(|i| (i + first).to_string()).join(" "));
+    }
+    text
+}
+
+#[test]
+fn a_model_without_a_camera_is_not_seen_from_inside_of_something() {
+    let folder = folder();
+    // Inside out, a box is a room.
+    let room = obj_box(Vec3::new(5.0, 3.0, 4.0), Vec3::new(-5.0, 0.0, -4.0), 1);
+    let usual = open(write(&folder, "room.obj", &room)).unwrap().cameras["default"].eye;
+    let (low, high) = (usual - Vec3::new(0.8, 0.5, 0.8), usual + Vec3::new(0.8, 1.0, 0.8));
+    let block = obj_box(low, high, 9);
+    let blocked = open(write(&folder, "blocked.obj", format!("{room}{block}"))).unwrap();
+    let eye = blocked.cameras["default"].eye;
+    assert!(eye.cmplt(low).any() || eye.cmpgt(high).any(), "{eye} is inside of the box from {low} to {high}");
+    assert!(eye.abs().cmplt(Vec3::new(5.0, 3.0, 4.0)).all(), "{eye} has left the room");
+    let body = open(write(&folder, "body.obj", obj_box(Vec3::ZERO, Vec3::ONE, 1))).unwrap();
+    let Vec3 { x, z, .. } = body.cameras["default"].eye;
+    assert!(!(0.0..=1.0).contains(&x) || !(0.0..=1.0).contains(&z), "a single body is seen from outside");
+}
+
 #[test]
 fn bad_triangles_are_dropped_and_counted() {
     let dir = folder();

@@ -19,15 +19,37 @@ pub(super) fn sun() -> Light {
     }
 }
 
-/// A level view along the longest horizontal axis, from inside its positive end.
+/// A level view along the longest horizontal axis, from inside its positive end; from another place where that one is
+/// inside of something, or sees nothing.
 pub(super) fn camera(scene: &Scene) -> Camera {
+    let mut best = (f32::NEG_INFINITY, place(scene, 0, PLACES[0]));
+    for place in PLACES.iter().flat_map(|p| [place(scene, 0, *p), place(scene, 1, *p)]) {
+        let seen = scene.seen_by(&place);
+        let far = seen.median.unwrap_or(0.0) / (place.target - place.eye).length();
+        if seen.hits >= 0.25 && seen.backs <= 0.6 * seen.hits && far >= 0.15 {
+            return place;
+        }
+        if far > best.0 {
+            best = (far, place);
+        }
+    }
+    best.1
+}
+
+/// Where a camera is tried in a scene's bounds: along the axis from the middle, and above the ground, as parts of the extent.
+/// The last is outside, for single bodies.
+const PLACES: [(f32, f32); 8] =
+    [(0.32, 0.2), (-0.32, 0.2), (0.32, 0.5), (-0.32, 0.5), (0.46, 0.5), (-0.46, 0.5), (0.1, 0.5), (1.2, 0.5)];
+
+/// A camera along the longer horizontal axis, or along the other one.
+fn place(scene: &Scene, which: usize, (along, above): (f32, f32)) -> Camera {
     let (low, high) = scene.bounds();
     let (centre, extent) = ((low + high) * 0.5, high - low);
-    let axis = if extent.x >= extent.z { Vec3::X } else { Vec3::Z };
-    let mut eye = centre + axis * (0.32 * extent.dot(axis));
-    eye.y = low.y + 0.2 * extent.y;
+    let axis = if (extent.x >= extent.z) == (which == 0) { Vec3::X } else { Vec3::Z };
     let length = extent.dot(axis);
-    let target = eye - axis * if length > 0.0 { length } else { 1.0 };
+    let mut eye = centre + axis * (along * length);
+    eye.y = low.y + above * extent.y;
+    let target = eye - axis * along.signum() * if length > 0.0 { length } else { 1.0 };
     Camera { eye, target, up: Vec3::Y, fov_y: 58.3, near: near_plane(extent.length()), far: f32::INFINITY }
 }
 

@@ -9,23 +9,34 @@ const RAYS: (usize, usize) = (6, 10);
 /// Triangles that are looked at; of larger scenes, as many spread evenly. Costs a tenth of a second at most.
 const TRIANGLES: usize = 1 << 20;
 
+/// What a camera sees, by a few rays across its picture.
+pub(super) struct Seen {
+    /// The part of the rays that meet a surface.
+    pub hits: f32,
+    /// The part that meets the back of one.
+    pub backs: f32,
+    /// Median distance of the surfaces [m]; `None` where there are none.
+    pub median: Option<f32>,
+}
+
 impl Scene {
     /// With [`Scene::seen_distance`] of its camera `default`, or of the first where none is called so.
     pub(super) fn with_seen_distance(mut self) -> Scene {
         let camera = self.cameras.get("default").or_else(|| self.cameras.values().next());
-        self.seen_distance = camera.and_then(|c| self.median_distance(c)).unwrap_or(0.0);
+        self.seen_distance = camera.and_then(|c| self.seen_by(c).median).unwrap_or(0.0);
         self
     }
 
-    /// The median distance of the surfaces that a camera sees [m], in the scene's first pose; `None` where it sees nothing.
-    fn median_distance(&self, camera: &Camera) -> Option<f32> {
+    /// What a camera sees in the scene's first pose.
+    pub(super) fn seen_by(&self, camera: &Camera) -> Seen {
         let rays = rays(camera);
-        let mut nearest = vec![f32::INFINITY; rays.len()];
+        let mut nearest = vec![(f32::INFINITY, false); rays.len()];
         let stride = self.triangle_count().div_ceil(TRIANGLES).max(1);
         let mut number = 0;
         for (i, instance) in self.instances.iter().enumerate() {
             let Some(mesh) = self.meshes.get(instance.mesh as usize) else { continue };
             let world = self.instance_transform(i, 0.0);
+            let turned = world.determinant().signum();
             for corners in mesh.indices.chunks_exact(3) {
                 number += 1;
                 if number % stride != 0 {
@@ -37,14 +48,23 @@ impl Scene {
                     continue;
                 };
                 let triangle = Triangle { v0, v1, v2 };
+                let normal = (v1 - v0).cross(v2 - v0) * turned;
                 for (ray, nearest) in rays.iter().zip(&mut nearest) {
-                    *nearest = nearest.min(triangle.intersect(ray));
+                    let distance = triangle.intersect(ray);
+                    if distance < nearest.0 {
+                        *nearest = (distance, normal.dot(ray.direction) > 0.0);
+                    }
                 }
             }
         }
-        nearest.retain(|d| d.is_finite());
-        nearest.sort_by(f32::total_cmp);
-        nearest.get(nearest.len() / 2).copied()
+        nearest.retain(|hit| hit.0.is_finite());
+        nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let share = |count: usize| count as f32 / rays.len() as f32;
+        Seen {
+            hits: share(nearest.len()),
+            backs: share(nearest.iter().filter(|hit| hit.1).count()),
+            median: nearest.get(nearest.len() / 2).map(|hit| hit.0),
+        }
     }
 }
 
