@@ -51,21 +51,14 @@ fn temporary(
         _ => Path::new("."),
     };
     std::fs::create_dir_all(folder)?;
-    let mut file = tempfile::Builder::new().prefix(".conelab-").tempfile_in(folder)?;
-    write(file.as_file_mut())?;
-    make_readable(file.as_file())?;
-    Ok(file)
-}
-
-/// Temporary files are private to their owner; what is kept should be as readable as any other file.
-fn make_readable(file: &std::fs::File) -> std::io::Result<()> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".conelab-");
+    // Temporary files are private to their owner; what is kept is for whom the user's umask says.
     #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        file.set_permissions(std::fs::Permissions::from_mode(0o644))?;
-    }
-    let _ = file;
-    Ok(())
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder)?;
+    write(file.as_file_mut())?;
+    Ok(file)
 }
 
 /// Writes a cache file: SHA-256 of the content, then the content.

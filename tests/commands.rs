@@ -309,6 +309,25 @@ fn standard_output_is_json_alone_or_an_error_when_full() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn files_are_for_whom_the_umask_says() {
+    use std::os::unix::fs::PermissionsExt;
+    let out = Out::new();
+    for (mask, mode) in [("022", 0o644), ("027", 0o640), ("077", 0o600)] {
+        let file = out.path(&format!("{mask}.json"));
+        let graph = format!(
+            "umask {mask}; exec '{}' graph passes/vct.ron --json '{}'",
+            env!("CARGO_BIN_EXE_conelab"),
+            file.display()
+        );
+        let done = std::process::Command::new("sh").args(["-c", &graph]).current_dir(root()).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let found = std::fs::metadata(&file).unwrap().permissions().mode() & 0o777;
+        assert_eq!(found, mode, "umask {mask}: {found:o}");
+    }
+}
+
 #[test]
 fn files_of_the_program_are_found_from_anywhere() {
     let out = Out::new();
