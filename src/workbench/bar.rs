@@ -129,7 +129,6 @@ impl Workbench {
                 chosen = Some(spec);
                 ui.close();
             }
-            ui.weak("Models (.gltf, .glb, .obj) can be dropped on the window");
         });
         if let Some(spec) = chosen {
             self.open_scene(&spec);

@@ -87,6 +87,11 @@ pub(super) fn spin(ui: &mut Ui, field: DragValue<'_>, name: &str) -> Response {
     response
 }
 
+/// The name of a text field or a menu, which else has none but its content.
+pub(super) fn named(response: &Response, kind: egui::WidgetType, name: &str) {
+    response.widget_info(|| WidgetInfo::labeled(kind, true, name));
+}
+
 fn joined(slider: Option<Response>, control: Response, label: Response) -> Response {
     let control = control.labelled_by(label.id);
     slider.map_or(control.clone(), |s| s | control) | label

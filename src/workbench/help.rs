@@ -21,16 +21,18 @@ pub enum Action {
     Panels,
     FullScreen,
     WholePicture,
+    Open,
 }
 
 const NONE: Modifiers = Modifiers::NONE;
 
 /// In the order in which they are explained.
-const KEYS: [(Action, KeyboardShortcut, &str); 16] = [
+const KEYS: [(Action, KeyboardShortcut, &str); 17] = [
     (Action::Help, KeyboardShortcut::new(NONE, Key::F1), "these keys"),
     (Action::Undo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Z), "undo the last edit of parameters or lights"),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), "redo"),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Y), "redo"),
+    (Action::Open, KeyboardShortcut::new(Modifiers::COMMAND, Key::O), "open a scene, a model or an experiment"),
     (Action::Find, KeyboardShortcut::new(Modifiers::COMMAND, Key::F), "search the parameters"),
     (
         Action::Save,

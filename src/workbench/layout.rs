@@ -78,6 +78,7 @@ impl Workbench {
                     self.hidden = false;
                     panel::Panel::find(ui);
                 }
+                help::Action::Open => self.models.ask(),
                 help::Action::Help => self.help = !self.help,
                 help::Action::Undo => self.go(true),
                 help::Action::Redo => self.go(false),

@@ -259,7 +259,7 @@ impl Workbench {
             tables: tables::Tables::default(),
             paths: paths::Paths::default(),
             bookmarks: bookmarks::Bookmarks::default(),
-            models: models::Models::default(),
+            models: models::Models::new(&root),
             gallery: gallery::Gallery::default(),
             help: false,
             hidden: false,
@@ -389,6 +389,9 @@ impl Workbench {
         self.messages(ui, place);
         if self.help {
             self.help_window(ui, place);
+        }
+        if let Some(path) = self.models.picked(ui) {
+            self.dropped(&path);
         }
         self.fit_size(ui);
         let held = ui.input(|i| i.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();

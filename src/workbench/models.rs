@@ -1,30 +1,42 @@
-//! Model files in the scene menu: those in the folders of CONELAB_SCENES, and a field for the path of any other.
+//! Files that the window opens: the models in the folders of CONELAB_SCENES, and any other by a dialog.
 
-use egui::{Key, TextEdit, Ui};
+use egui::Ui;
+use egui_file_dialog::{DialogState, FileDialog};
 use std::path::{Path, PathBuf};
 
-/// State of this part of the menu.
-#[derive(Default)]
+/// The model files of a menu, and the dialog.
 pub struct Models {
     /// Files found, once they were looked for.
     found: Option<Vec<PathBuf>>,
-    path: String,
-    /// What the path may go on as.
-    completions: Option<(String, Vec<String>)>,
+    dialog: FileDialog,
 }
 
 /// How deep folders are looked into, and the most files that are listed.
 const DEEP: usize = 2;
 const MOST: usize = 200;
 
+const ENDINGS: [&str; 4] = ["gltf", "glb", "obj", "ron"];
+const OPENED: &str = "Scenes, models, experiments";
+
 impl Models {
+    /// Begins with the dialog at a folder.
+    pub fn new(folder: &Path) -> Models {
+        let dialog = FileDialog::new()
+            .title("Open a scene, a model or an experiment")
+            .initial_directory(folder.to_path_buf())
+            .add_file_filter_extensions(OPENED, ENDINGS.to_vec())
+            .default_file_filter(OPENED)
+            .default_size([620.0, 360.0]);
+        Models { found: None, dialog }
+    }
+
     /// Shows the models; the one that was chosen.
     pub fn menu(&mut self, ui: &mut Ui) -> Option<String> {
         let mut chosen = None;
-        let folders = std::env::var("CONELAB_SCENES").unwrap_or_default();
+        let folders = std::env::var_os("CONELAB_SCENES").unwrap_or_default();
         let found = self.found.get_or_insert_with(|| {
             let mut list = Vec::new();
-            folders.split(':').filter(|f| !f.is_empty()).for_each(|f| look(Path::new(f), DEEP, &mut list));
+            std::env::split_paths(&folders).for_each(|folder| look(&folder, DEEP, &mut list));
             list.sort();
             list
         });
@@ -39,23 +51,13 @@ impl Models {
                 }
             });
         }
-        let field =
-            ui.add(TextEdit::singleline(&mut self.path).hint_text("path of a scene or model").desired_width(240.0));
-        field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "path of a model"));
-        if field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) && is_scene(Path::new(self.path.trim())) {
-            chosen = Some(self.path.trim().to_string());
-        }
-        if self.completions.as_ref().is_none_or(|c| c.0 != self.path) {
-            self.completions = Some((self.path.clone(), completions(&self.path)));
-        }
-        for text in self.completions.iter().flat_map(|c| c.1.clone()) {
-            if ui.small_button(&text).clicked() {
-                if is_scene(Path::new(&text)) {
-                    chosen = Some(text.clone());
-                }
-                self.path = text;
-                field.request_focus();
-            }
+        if ui
+            .button("open file...")
+            .on_hover_text("A scene, a model or an experiment; they can be dropped too")
+            .clicked()
+        {
+            self.ask();
+            ui.close();
         }
         if chosen.is_some() {
             // Files come and go.
@@ -63,72 +65,36 @@ impl Models {
         }
         chosen
     }
+
+    /// Opens the dialog.
+    pub fn ask(&mut self) {
+        self.dialog.pick_file();
+    }
+
+    /// Shows the dialog, if it is open; the file that was picked.
+    pub fn picked(&mut self, ui: &Ui) -> Option<PathBuf> {
+        if *self.dialog.state() == DialogState::Closed {
+            return None;
+        }
+        self.dialog.update(ui.ctx());
+        self.dialog.take_picked()
+    }
 }
 
-/// Whether a file may hold a scene.
-fn is_scene(path: &Path) -> bool {
-    let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
-    ["gltf", "glb", "obj", "ron"].contains(&ending.as_str()) && path.is_file()
-}
-
+/// Model files of a folder and those in it.
 fn look(folder: &Path, deep: usize, list: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if list.len() >= MOST {
             return;
         }
+        let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
         if path.is_dir() {
             if deep > 0 {
                 look(&path, deep - 1, list);
             }
-        } else if is_scene(&path) && path.extension().is_some_and(|e| e != "ron") {
+        } else if ending != "ron" && ENDINGS.contains(&ending.as_str()) {
             list.push(path);
         }
-    }
-}
-
-/// Folders and scenes that a path may go on as; nothing before something was typed.
-fn completions(text: &str) -> Vec<String> {
-    let (folder, begin) = match text.rsplit_once('/') {
-        Some((folder, begin)) => (format!("{folder}/"), begin),
-        None if text.is_empty() => return Vec::new(),
-        None => (String::new(), text),
-    };
-    let place = if folder.is_empty() { Path::new(".") } else { Path::new(&folder) };
-    let mut list: Vec<String> = std::fs::read_dir(place)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .filter_map(|entry| {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let fits = name.starts_with(begin) && !name.starts_with('.') && name != begin;
-            let path = entry.path();
-            let end = if path.is_dir() { "/" } else { "" };
-            (fits && (path.is_dir() || is_scene(&path))).then(|| format!("{folder}{name}{end}"))
-        })
-        .collect();
-    list.sort();
-    list.truncate(8);
-    list
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn paths_go_on_as_folders_and_scenes() {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::create_dir_all(folder.path().join("models/deep")).unwrap();
-        for file in ["models/a.obj", "models/b.txt", "models/deep/c.glb"] {
-            std::fs::write(folder.path().join(file), "").unwrap();
-        }
-        let start = format!("{}/models/", folder.path().display());
-        assert_eq!(completions(&start), [format!("{start}a.obj"), format!("{start}deep/")]);
-        assert_eq!(completions(&format!("{start}d")), [format!("{start}deep/")]);
-        let mut list = Vec::new();
-        look(folder.path(), DEEP, &mut list);
-        list.sort();
-        assert_eq!(list, ["models/a.obj", "models/deep/c.glb"].map(|f| folder.path().join(f)));
     }
 }

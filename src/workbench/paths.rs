@@ -1,5 +1,6 @@
 //! Camera paths: keys recorded, edited, played, saved; and image sequences.
 
+use super::control::spin;
 use super::sequence::Sequence;
 use super::{Workbench, ron_files, short};
 use crate::camera_path::{self, CameraPath, Key};
@@ -117,7 +118,8 @@ impl Workbench {
             for (i, key) in self.paths.path.keys.iter().enumerate() {
                 ui.horizontal(|ui| {
                     let mut time = key.time;
-                    if ui.add(DragValue::new(&mut time).speed(0.05).suffix(" s")).changed() {
+                    let field = DragValue::new(&mut time).speed(0.05).suffix(" s");
+                    if spin(ui, field, &format!("time of key {}", i + 1)).changed() {
                         moved = Some((i, time));
                     }
                     let (x, y, z) = key.eye;

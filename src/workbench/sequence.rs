@@ -92,8 +92,9 @@ impl Workbench {
                 super::control::spin(ui, rate, "frames a second");
             });
             ui.horizontal(|ui| {
-                ui.add(egui::TextEdit::singleline(&mut sequence.folder).desired_width(160.0))
-                    .on_hover_text("Folder for frame-00000.png and so on");
+                let field = ui.add(egui::TextEdit::singleline(&mut sequence.folder).desired_width(160.0));
+                super::control::named(&field, egui::WidgetType::TextEdit, "folder of the sequence");
+                field.on_hover_text("Folder for frame-00000.png and so on");
                 render = ui.button("render").clicked();
             });
         });

@@ -144,7 +144,9 @@ impl Workbench {
     fn picture_file(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let field = egui::TextEdit::singleline(&mut self.view.picture).hint_text("sky.hdr or sky.exr");
-            let done = ui.add(field.desired_width(180.0)).lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            let field = ui.add(field.desired_width(180.0));
+            super::control::named(&field, egui::WidgetType::TextEdit, "picture of the sky");
+            let done = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let clicked = ui.button("load").on_hover_text("A picture of the sky; empty: the scene's own").clicked();
             if (done || clicked) && self.view.picture.trim() != self.desired.environment {
                 if self.missing_scene().is_none() {

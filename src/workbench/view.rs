@@ -1,6 +1,7 @@
 //! The picture in the viewport: A, B, or both, and what the mouse does there.
 
 use super::compare::{MODES, Mode};
+use super::control::spin;
 use super::motion;
 use super::zoom::{Zoom, foot, pixel_at, pixel_text};
 use super::{COMPARISON, Workbench};
@@ -80,7 +81,7 @@ impl Workbench {
                 }
             }
             Mode::Difference => {
-                ui.add(egui::DragValue::new(&mut self.view.gain).range(1..=255).prefix("x "));
+                spin(ui, egui::DragValue::new(&mut self.view.gain).range(1..=255).prefix("x "), "gain");
             }
             _ => {}
         }

@@ -114,12 +114,20 @@ impl Watch {
             {
                 changed.experiments.push(path.clone());
             }
-            if self.scene.as_ref().is_some_and(|s| path.starts_with(s)) {
+            if self.scene.as_ref().is_some_and(|s| path.starts_with(s)) && is_of_a_scene(&path) {
                 changed.scene = true;
             }
         }
         Ok(changed)
     }
+}
+
+/// Scene files, models and what they refer to: other programs, and this one, may write beside them.
+fn is_of_a_scene(path: &Path) -> bool {
+    const ENDINGS: [&str; 14] =
+        ["ron", "obj", "mtl", "gltf", "glb", "bin", "png", "jpg", "jpeg", "tga", "bmp", "dds", "hdr", "exr"];
+    let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
+    ENDINGS.contains(&ending.as_str())
 }
 
 /// Not an editor's own file: hidden, or a backup, or a swap.

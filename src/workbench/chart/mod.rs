@@ -9,6 +9,7 @@ mod rows;
 mod thumbnail;
 
 use super::Workbench;
+use super::control::named;
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
 use crate::report::{Data, Dot, axis_title};
@@ -153,11 +154,13 @@ impl Workbench {
         });
         let Some(data) = data.filter(|d| d.subjects.len() > 1) else { return };
         let name = |i: usize| data.subjects.get(i).cloned().unwrap_or_default();
-        egui::ComboBox::from_id_salt("subject").selected_text(name(choice.subject)).width(280.0).show_ui(ui, |ui| {
+        let menu = egui::ComboBox::from_id_salt("subject").selected_text(name(choice.subject)).width(280.0);
+        let menu = menu.show_ui(ui, |ui| {
             for i in 0..data.subjects.len() {
                 self.chart.by_hand |= ui.selectable_value(&mut choice.subject, i, name(i)).clicked();
             }
         });
+        named(&menu.response, egui::WidgetType::ComboBox, "scene, camera and size");
     }
 
     /// Shows a point's experiment in side A, at its size: then its error can be compared.

@@ -1,6 +1,7 @@
 //! Below the chart: what is known of A and B, the reference that is missing, the size that fits.
 
 use super::super::Workbench;
+use super::super::control::spin;
 use super::plot::{LIVE, Live};
 use crate::comparison::within_noise;
 use egui::{Button, DragValue, ProgressBar, Ui};
@@ -75,7 +76,7 @@ impl Workbench {
             let text = if missing { "gather" } else { "gather more" };
             start = ui.button(text).on_hover_text(about).clicked();
             let samples = DragValue::new(&mut self.chart.live.samples).range(32..=1 << 24).speed(32).suffix(" samples");
-            ui.add(samples).on_hover_text("Of every pixel, in all; the error of the reference falls with their root");
+            spin(ui, samples, "samples of the reference").on_hover_text("Of every pixel, in all; the error of the reference falls with their root");
         });
         if start {
             self.start_gathering();

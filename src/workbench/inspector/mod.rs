@@ -7,6 +7,7 @@ mod viewport;
 mod views;
 mod work;
 
+use super::control::{named, spin};
 use super::report::GraphInfo;
 use super::request::InspectTarget;
 use super::{INSPECTOR, Workbench};
@@ -155,13 +156,14 @@ impl Workbench {
         let mut chosen = None;
         let box_ = egui::ComboBox::from_id_salt("texture").width(ui.available_width() - 8.0);
         let label = describe(info, &self.inspector.target.texture);
-        box_.height(500.0).selected_text(label).show_ui(ui, |ui| {
+        let menu = box_.height(500.0).selected_text(label).show_ui(ui, |ui| {
             for name in &names {
                 if ui.selectable_label(*name == self.inspector.target.texture, describe(info, name)).clicked() {
                     chosen = Some((*name).to_string());
                 }
             }
         });
+        named(&menu.response, egui::WidgetType::ComboBox, "texture");
         if let Some(name) = chosen {
             self.inspector.open(self.inspector.target.side, name);
         }
@@ -225,9 +227,11 @@ impl Workbench {
         ui.add(Slider::new(&mut tone.stops, -12.0..=12.0).step_by(0.1).text("stops"));
         ui.horizontal(|ui| {
             let speed = f64::from((tone.high - tone.low).abs()).max(1e-6) * 0.005;
-            ui.add(DragValue::new(&mut tone.low).speed(speed).max_decimals(6)).on_hover_text("This value is black");
+            let field = DragValue::new(&mut tone.low).speed(speed).max_decimals(6);
+            spin(ui, field, "black").on_hover_text("This value is black");
             ui.label("to");
-            ui.add(DragValue::new(&mut tone.high).speed(speed).max_decimals(6)).on_hover_text("This value is white");
+            let field = DragValue::new(&mut tone.high).speed(speed).max_decimals(6);
+            spin(ui, field, "white").on_hover_text("This value is white");
             fit = ui.button("fit range").on_hover_text("From the least to the greatest finite value").clicked();
             if ui.button("0 to 1").clicked() {
                 (tone.low, tone.high, tone.stops) = (0.0, 1.0, 0.0);
