@@ -644,6 +644,18 @@ fn errors_in_shapes_have_a_place_and_limits_hold() {
     let many = "Repeat(at: Grid(from: (0, 0, 0), steps: [((1, 0, 0), 60000)]), parts: [Seed(1), Seed(2), Seed(3), Seed(4), Seed(5)])";
     error(many, &["x.ron:4:3", "parts"]);
     error("Box(material: \"a\", low: (0, 0, 0), high: (1e30, 1, 1))", &["x.ron:", "units and scale"]);
+    let nested = (0..8).fold(String::new(), |inner, _| {
+        format!("Repeat(at: Grid(from: (0, 0, 0), steps: [((1, 0, 0), 60000)]), parts: [{inner}])")
+    });
+    error(&nested, &["x.ron:4:3", "parts"]);
+    let ball = "[Sphere(material: \"a\", radius: 1, level: 7)]";
+    let text = format!(
+        "(materials: {{\"a\": ()}}, meshes: {{\"m\": {ball}, \"n\": {ball}, \"o\": {ball}, \"p\": {ball}, \"q\": {ball}}})"
+    );
+    assert_error(open(write(&dir, "x.ron", text)), &["mesh 'q'", "vertices"]);
+    let entry = "(meshes: [\"m\"], at: Circle(radius: 1, count: 60000))";
+    let text = format!("(meshes: {{\"m\": []}}, instances: [{entry}, {entry}])");
+    assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "instances"]);
     let text = "(groups: {\"g\": [Group(\"g\")]}, meshes: {\"m\": [Group(\"g\")]})";
     assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "groups inside of"]);
     let text = "(materials: {\"a\": (base_color_texture: 0)})";

@@ -12,12 +12,14 @@ use crate::scene::progress::Progress;
 use crate::scene::shapes::*;
 use crate::scene::{Instance, MAX_COORDINATE, Material, Scene};
 
-/// How often parts may be walked through for one mesh.
+/// Parts and places that are walked through, for all meshes.
 const MAX_PARTS: u32 = 1 << 18;
 /// Groups and repetitions inside of each other.
 const MAX_DEPTH: u32 = 16;
-/// Instances of one entry, and places of one repetition.
+/// Places of one repetition, and all instances.
 const MAX_PLACES: u32 = 1 << 16;
+/// Textures that are drawn.
+const MAX_TEXTURES: usize = 64;
 
 /// A part of a mesh.
 #[derive(Debug, Deserialize)]
@@ -170,16 +172,21 @@ pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Probl
         check_material(material, file.textures.len()).map_err(|m| wrong(name, format!("material '{name}': {m}")))?;
         scene.materials.push(Material { name: name.clone(), ..material.clone() });
     }
+    if file.textures.len() > MAX_TEXTURES {
+        return Err(wrong("", format!("more than {MAX_TEXTURES} textures")));
+    }
     scene.textures = file.textures.iter().map(patterns::Picture::draw).collect();
     let mut raw = Vec::new();
+    let mut room = MAX_VERTICES;
+    let mut walk = Walk { groups: &file.groups, left: MAX_PARTS, progress };
     for (name, parts) in &file.meshes {
-        let mut mesh = MeshBuilder::new(name, &file.materials);
-        let mut walk = Walk { groups: &file.groups, left: MAX_PARTS, progress };
+        let mut mesh = MeshBuilder::new(name, &file.materials, room);
         walk.parts(parts, &mut mesh, None, Mat4::IDENTITY, Vec3::ZERO, 0);
         let mesh = mesh.finish().map_err(|p| match p.near.is_empty() {
             true => wrong(name, format!("mesh '{name}': {}", p.message)),
             false => p,
         })?;
+        room -= mesh.vertices.len() as u64;
         raw.push(RawMesh { mesh, has_normals: true, has_tangents: false });
     }
     let dropped;
@@ -205,6 +212,9 @@ fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
         let wrong = |message: String| Problem { near: near.into(), message };
         let (transform, moves) = (entry.transform.0, entry.animation.clone().map(|moves| moves.0));
         let places = entry.at.clone().unwrap_or_default().list().map_err(wrong)?;
+        if scene.instances.len() + places.len() * entry.meshes.len() > MAX_PLACES as usize {
+            return Err(wrong(format!("more than {MAX_PLACES} instances")));
+        }
         for (i, (turn, at)) in places.into_iter().enumerate() {
             for name in &entry.meshes {
                 let no_mesh = || wrong(format!("no mesh '{name}' is in this file's meshes"));
@@ -312,6 +322,7 @@ impl Walk<'_> {
             mesh.fail("", message);
             Vec::new()
         });
+        self.left = self.left.saturating_sub(places.len() as u32);
         let still = repeat.rotate_deg.is_none() && repeat.quarters.is_none() && repeat.scale.is_none();
         if solid.is_some() && !(still && places.iter().all(|(turn, _)| *turn == 0.0)) {
             return mesh.fail("", "what is in a solid cannot be turned or scaled".into());

@@ -22,8 +22,8 @@ pub(super) use relief::{Specks, Vase};
 pub(super) use soft::{Banner, Chain, Crown, Curtain, Sprigs};
 pub(super) use solid::{Hollow, Solid};
 
-/// Vertices that a scene file's meshes may have, each.
-const MAX_VERTICES: u64 = 1 << 22;
+/// Vertices that a scene file's meshes may have, all together.
+pub(super) const MAX_VERTICES: u64 = 1 << 22;
 
 /// The name of a material, or several that are used in turn as a repetition counts.
 #[derive(Clone, Debug, Deserialize)]
@@ -45,6 +45,8 @@ pub(super) struct MeshBuilder<'a> {
     name: String,
     materials: &'a IndexMap<String, Material>,
     vertices: Vec<Vertex>,
+    /// The most vertices.
+    room: u64,
     triangles: IndexMap<u32, Vec<u32>>,
     pub transform: Mat4,
     /// How often what surrounds the shape was repeated before.
@@ -54,11 +56,12 @@ pub(super) struct MeshBuilder<'a> {
 }
 
 impl<'a> MeshBuilder<'a> {
-    pub fn new(name: &str, materials: &'a IndexMap<String, Material>) -> Self {
+    pub fn new(name: &str, materials: &'a IndexMap<String, Material>, room: u64) -> Self {
         MeshBuilder {
             name: name.into(),
             materials,
             vertices: Vec::new(),
+            room,
             triangles: IndexMap::new(),
             transform: Mat4::IDENTITY,
             number: 0,
@@ -87,8 +90,8 @@ impl<'a> MeshBuilder<'a> {
 
     /// Whether nothing is wrong and so many more vertices may be added.
     pub fn has_room(&mut self, more: u64) -> bool {
-        if self.vertices.len() as u64 + more > MAX_VERTICES {
-            self.fail("", format!("it would have more than {MAX_VERTICES} vertices"));
+        if self.vertices.len() as u64 + more > self.room {
+            self.fail("", format!("with it there would be more than {MAX_VERTICES} vertices"));
         }
         self.problem.is_none()
     }
