@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use common::triangles::{meets, world};
-use conelab::scene::{LightKind, Scene, SceneError, TextureFormat, builtin};
+use conelab::scene::{LightKind, Mesh, Scene, SceneError, Side, TextureFormat, builtin};
 use glam::{DVec3, Mat4, Vec3};
 use proptest::prelude::*;
 use tempfile::TempDir;
@@ -567,6 +567,128 @@ fn lamps_glow_outward() {
         let held: f32 = mesh.indices.as_chunks::<3>().0.iter().map(held).sum();
         assert!((0.93..1.0).contains(&(held / volume)), "{name}: {lamp} holds {held} of {volume}");
     }
+}
+
+/// One mesh of shapes.
+fn shapes(folder: &TempDir, parts: &str) -> Mesh {
+    let text = format!("(materials: {{\"a\": ()}}, meshes: {{\"m\": [{parts}]}})");
+    open(write(folder, "shapes.ron", text)).unwrap().meshes.remove(0)
+}
+
+#[test]
+fn balls_and_boxes_have_an_outside_and_sheets_have_none() {
+    let dir = folder();
+    let ball = shapes(&dir, "Sphere(material: \"a\", radius: 0.5, level: 1)");
+    let all = |mesh: &Mesh, side: Option<Side>| mesh.outsides(10.0).iter().all(|s| *s == side);
+    assert!(all(&ball, Some(Side::Front)));
+    assert!(ball.outsides(1.0).iter().all(Option::is_none), "too large");
+    let mut turned = ball.clone();
+    turned.indices.as_chunks_mut::<3>().0.iter_mut().for_each(|t| t.swap(0, 1));
+    assert!(all(&turned, Some(Side::Back)));
+    let mut mixed = ball.clone();
+    mixed.indices.as_chunks_mut::<3>().0.iter_mut().step_by(3).for_each(|t| t.swap(0, 1));
+    let turned = (0..).zip(mixed.outsides(10.0)).map(|(i, s)| (i % 3 == 0, s == Some(Side::Back)));
+    assert!(turned.into_iter().all(|(turned, back)| turned == back), "neighbours turn either way");
+    let mut opened = ball.clone();
+    opened.indices.truncate(opened.indices.len() - 3);
+    assert!(all(&opened, None));
+    let cuboid = "Box(material: \"a\", low: (0, 0, 0), high: (1, 1, 1)";
+    assert!(all(&shapes(&dir, &format!("{cuboid})")), Some(Side::Front)));
+    assert!(all(&shapes(&dir, &format!("{cuboid}, open: [\"-y\"])")), None));
+}
+
+/// Triangles, vertices, instances and materials of the built-in scenes: one that changes must say so here.
+#[test]
+fn built_in_scenes_keep_their_size() {
+    let row = |name| {
+        let scene = open(name).unwrap();
+        let vertices: usize = scene.meshes.iter().map(|m| m.vertices.len()).sum();
+        format!("{name} {} {vertices} {} {}", scene.triangle_count(), scene.instances.len(), scene.materials.len())
+    };
+    insta::assert_snapshot!(builtin::list().map(|(name, _)| row(name)).collect::<Vec<_>>().join("\n"), @r"
+    atrium 265240 165735 59 19
+    cornell 32 64 8 4
+    furnace 768 486 1 1
+    white-sky 5120 15360 1 1
+    thin-walls 258 341 14 3
+    triangles 4135 12405 5 5
+    moving-box 108 99 4 3
+    blade 108 99 4 3
+    small-quad 114 228 4 4
+    emitters 4610 13540 4 9
+    ceiling-panel 1028 2056 4 7
+    neon-tube 772 1030 6 8
+    lampshade 1976 3418 5 7
+    huge-ground 4174 4540 33 7
+    far-away 4174 4540 33 7
+    pocket 144 288 2 5
+    plain 494 990 2 4
+    blinds 866 1732 3 5
+    door-ajar 394 788 3 5
+    corridor 456 912 2 5
+    street 18038 36076 9 9
+    gloss 13072 34200 3 10
+    foliage 29964 15961 12 4
+    sky-window 314 628 2 5
+    vases 1025312 525874 3 7
+    ");
+}
+
+#[test]
+fn shapes_repeat_and_stand_where_they_are_put() {
+    let scene = open(Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/scenes/shapes.ron")).unwrap();
+    assert_eq!(scene.warnings, Vec::<String>::new());
+    let names: Vec<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
+    assert_eq!(names, ["room", "balls", "stool 1", "stool 2", "stool 3"]);
+    assert_eq!(scene.materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["plaster", "wood", "red", "blue"]);
+    // Six balls in two colours by turns, around the middle.
+    let balls = &scene.meshes[1];
+    assert_eq!((balls.triangle_count(), balls.submeshes.len()), (6 * 80, 2));
+    let far = balls.vertices.iter().map(|v| Vec3::from(v.position).with_y(0.0).length()).fold(0.0, f32::max);
+    assert!((far - 1.35).abs() < 0.01, "{far}");
+    assert!(scene.instances[4].transform.w_axis.abs_diff_eq(glam::Vec4::new(1.5, 0.0, 1.4, 1.0), 1e-6));
+}
+
+#[test]
+fn errors_in_shapes_have_a_place_and_limits_hold() {
+    let dir = folder();
+    let error = |parts: &str, pieces: &[&str]| {
+        let text = format!("(\n materials: {{\"a\": ()}},\n meshes: {{\n  \"m\": [\n   {parts}\n  ],\n }},\n)");
+        assert_error(open(write(&dir, "x.ron", text)), pieces);
+    };
+    error("Bx(material: \"a\")", &["x.ron:5:", "unknown kind 'Bx'", "did you mean 'Box'?"]);
+    error("Sphere(material: \"a\", radus: 1)", &["x.ron:5:", "did you mean 'radius'?"]);
+    error("Sphere(material: \"red\", radius: 1, level: 1)", &["x.ron:5:21", "no material 'red'", "a"]);
+    error("Group(\"g\")", &["x.ron:5:", "no group 'g'"]);
+    error("Box(material: \"a\", low: (0, 0, 0), high: (1, 1, 1), open: [\"up\"])", &["x.ron:5:", "'up'", "+y"]);
+    error("Sphere(material: \"a\", radius: 1, level: 40)", &["x.ron:4:3", "mesh 'm'", "vertices"]);
+    error("Lathe(material: \"a\", profile: [], sides: 4294967295, rows: 4294967295)", &["x.ron:4:3", "vertices"]);
+    error("Repeat(at: Circle(radius: 1, count: 4294967295), parts: [])", &["x.ron:4:3", "places"]);
+    error("Solid([Sphere(material: \"a\", radius: 1, level: 1)])", &["x.ron:4:3", "boxes and hollows"]);
+    error("Solid([])", &["x.ron:4:3", "at least one box"]);
+    let deep = (0..20).fold(String::new(), |inner, _| format!("Repeat(parts: [{inner}])"));
+    error(&deep, &["x.ron:4:3", "inside of"]);
+    let many = "Repeat(at: Grid(from: (0, 0, 0), steps: [((1, 0, 0), 60000)]), parts: [Seed(1), Seed(2), Seed(3), Seed(4), Seed(5)])";
+    error(many, &["x.ron:4:3", "parts"]);
+    error("Box(material: \"a\", low: (0, 0, 0), high: (1e30, 1, 1))", &["x.ron:", "units and scale"]);
+    let nested = (0..8).fold(String::new(), |inner, _| {
+        format!("Repeat(at: Grid(from: (0, 0, 0), steps: [((1, 0, 0), 60000)]), parts: [{inner}])")
+    });
+    error(&nested, &["x.ron:4:3", "parts"]);
+    let ball = "[Sphere(material: \"a\", radius: 1, level: 7)]";
+    let text = format!(
+        "(materials: {{\"a\": ()}}, meshes: {{\"m\": {ball}, \"n\": {ball}, \"o\": {ball}, \"p\": {ball}, \"q\": {ball}}})"
+    );
+    assert_error(open(write(&dir, "x.ron", text)), &["mesh 'q'", "vertices"]);
+    let entry = "(meshes: [\"m\"], at: Circle(radius: 1, count: 60000))";
+    let text = format!("(meshes: {{\"m\": []}}, instances: [{entry}, {entry}])");
+    assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "instances"]);
+    let text = "(groups: {\"g\": [Group(\"g\")]}, meshes: {\"m\": [Group(\"g\")]})";
+    assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "groups inside of"]);
+    let text = "(materials: {\"a\": (base_color_texture: 0)})";
+    assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "material 'a'", "texture 0 of 0"]);
+    let text = "(instances: [(meshes: [\"gone\"])])";
+    assert_error(open(write(&dir, "x.ron", text)), &["x.ron:1:", "no mesh 'gone'"]);
 }
 
 #[test]

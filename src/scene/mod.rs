@@ -17,6 +17,7 @@ mod open;
 mod progress;
 mod reach;
 mod resample;
+mod shapes;
 mod shuffle;
 mod split;
 mod summary;
@@ -26,6 +27,7 @@ mod transform;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Quat, Vec3, Vec4};
 use indexmap::IndexMap;
+use serde::Deserialize;
 
 pub use environment::{Environment, SUN, SkyPicture};
 pub use error::SceneError;
@@ -87,8 +89,10 @@ pub struct Submesh {
 }
 
 /// Metallic-roughness material; every texture multiplies the factor beside it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(default, deny_unknown_fields)]
 pub struct Material {
+    #[serde(skip)]
     pub name: String,
     /// Linear RGB and alpha.
     pub base_color: Vec4,

@@ -53,9 +53,8 @@ impl Scene {
 
 /// A scene by whatever names it.
 fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
-    if let Some(build) = builtin::find(spec) {
-        progress.step(spec, 0.0)?;
-        return Ok(build());
+    if builtin::is_one(spec) {
+        return builtin::open(spec, progress);
     }
     let path = Path::new(spec);
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {

@@ -3,15 +3,11 @@
 use super::{Environment, Level, SkyPicture};
 use crate::files::read_input;
 use crate::panics::caught;
-use image::{ImageFormat, ImageReader, Limits};
-use std::io::Cursor;
+use crate::scene::texture::{MAX_FILE_BYTES, decode_limited};
+use image::ImageFormat;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Largest width and height of a file.
-const MAX_FILE_SIDE: u32 = 16384;
-/// Largest memory of a decoded file.
-const MAX_FILE_BYTES: u64 = 512 << 20;
 /// Larger pictures are reduced to this.
 const MAX_SIZE: (u32, u32) = (4096, 2048);
 /// Largest radiance: far above what any sky has, and products of it are finite.
@@ -36,17 +32,8 @@ fn decode(path: &Path) -> Result<Level, String> {
     let format = format
         .filter(|f| matches!(f, ImageFormat::Hdr | ImageFormat::OpenExr))
         .ok_or("not a Radiance HDR or OpenEXR picture")?;
-    let mut reader = ImageReader::with_format(Cursor::new(bytes.as_slice()), format);
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_FILE_SIDE);
-    limits.max_image_height = Some(MAX_FILE_SIDE);
-    limits.max_alloc = Some(MAX_FILE_BYTES);
-    reader.limits(limits);
-    let image = reader.decode().map_err(|e| format!("the picture is damaged or too large ({e})"))?.into_rgb32f();
+    let image = decode_limited(&bytes, format)?.into_rgb32f();
     let (width, height) = image.dimensions();
-    if width == 0 || height == 0 {
-        return Err("the picture is empty".into());
-    }
     Ok(Level { width, height, texels: image.pixels().map(|p| p.0).collect() })
 }
 

@@ -11,7 +11,7 @@ use std::f32::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-pub(super) use clear_sky::clear_sky;
+pub(super) use clear_sky::{ClearSky, clear_sky};
 pub(crate) use file::read;
 pub(crate) use level::Level;
 use sun::Sun;

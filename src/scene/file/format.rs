@@ -4,8 +4,10 @@ use glam::{Mat4, Quat, Vec3};
 use indexmap::IndexMap;
 use serde::Deserialize;
 
-use crate::scene::environment::check as check_environment;
-use crate::scene::{Animation, Camera, Keyframe, Light, LightKind, MAX_COORDINATE, builtin};
+use super::parts::{InstanceEntry, Part};
+use crate::scene::environment::{ClearSky, check as check_environment};
+use crate::scene::shapes::patterns::Picture;
+use crate::scene::{Animation, Camera, Keyframe, Light, LightKind, MAX_COORDINATE, Material, builtin};
 
 /// A whole scene file.
 #[derive(Debug, Default, Deserialize)]
@@ -19,6 +21,13 @@ pub(super) struct SceneFile {
     /// A picture that multiplies the radiance.
     pub environment: Option<EnvironmentEntry>,
     pub cameras: IndexMap<String, CameraEntry>,
+    pub materials: IndexMap<String, Material>,
+    pub textures: Vec<Picture>,
+    /// Parts that meshes and other groups share.
+    pub groups: IndexMap<String, Vec<Part>>,
+    pub meshes: IndexMap<String, Vec<Part>>,
+    /// Placements; a mesh without any stands where it was built.
+    pub instances: Vec<InstanceEntry>,
 }
 
 /// Radiance of the sky.
@@ -38,11 +47,18 @@ impl TryFrom<Vec3> for Sky {
     }
 }
 
+/// Where a picture of the sky comes from.
+#[derive(Clone, Debug)]
+pub(super) enum SkyOf {
+    File(String),
+    Clear(ClearSky),
+}
+
 /// A picture of the sky.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "EnvironmentFields")]
 pub(super) struct EnvironmentEntry {
-    pub file: String,
+    pub of: SkyOf,
     /// Degrees about y.
     pub rotation: f32,
     pub intensity: f32,
@@ -51,7 +67,10 @@ pub(super) struct EnvironmentEntry {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct EnvironmentFields {
-    file: String,
+    #[serde(default)]
+    file: Option<String>,
+    #[serde(default)]
+    clear_sky: Option<ClearSky>,
     #[serde(default)]
     rotation: f32,
     #[serde(default = "whole")]
@@ -66,9 +85,14 @@ impl TryFrom<EnvironmentFields> for EnvironmentEntry {
     type Error = String;
 
     fn try_from(fields: EnvironmentFields) -> Result<Self, String> {
-        let EnvironmentFields { file, rotation, intensity } = fields;
+        let EnvironmentFields { file, clear_sky, rotation, intensity } = fields;
         check_environment(rotation, intensity)?;
-        Ok(EnvironmentEntry { file, rotation, intensity })
+        let of = match (file, clear_sky) {
+            (Some(file), None) => SkyOf::File(file),
+            (None, Some(sky)) => SkyOf::Clear(sky),
+            _ => return Err("an environment needs either a file or a clear_sky".into()),
+        };
+        Ok(EnvironmentEntry { of, rotation, intensity })
     }
 }
 
@@ -92,9 +116,9 @@ struct ModelFields {
     #[serde(default)]
     builtin: Option<String>,
     #[serde(default)]
-    transform: TransformFields,
+    transform: Placed,
     #[serde(default)]
-    animation: Option<AnimationFields>,
+    animation: Option<Moves>,
     /// Whether the model's own lights come along.
     #[serde(default = "yes")]
     lights: bool,
@@ -142,19 +166,15 @@ struct KeyframeFields {
     rotate_deg: Vec3,
 }
 
-impl TryFrom<ModelFields> for ModelEntry {
+/// The matrix of a transform.
+#[derive(Debug, Default, Deserialize)]
+#[serde(try_from = "TransformFields")]
+pub(super) struct Placed(pub Mat4);
+
+impl TryFrom<TransformFields> for Placed {
     type Error = String;
 
-    fn try_from(fields: ModelFields) -> Result<Self, String> {
-        match (&fields.file, &fields.builtin) {
-            (Some(_), None) => {}
-            (None, Some(name)) if builtin::find(name).is_some() => {}
-            (None, Some(name)) => {
-                return Err(format!("unknown builtin '{name}': {}", builtin::hint(name)));
-            }
-            _ => return Err("a model needs either a file or a builtin".into()),
-        }
-        let TransformFields { translate, rotate_deg, scale } = fields.transform;
+    fn try_from(TransformFields { translate, rotate_deg, scale }: TransformFields) -> Result<Self, String> {
         let far = |v: Vec3| v.abs().max_element() > MAX_COORDINATE;
         if !translate.is_finite() || !rotate_deg.is_finite() || !scale.is_finite() || scale.min_element() <= 0.0 {
             return Err("a transform's numbers must be finite and its scale above 0".into());
@@ -162,9 +182,80 @@ impl TryFrom<ModelFields> for ModelEntry {
         if far(translate) || far(scale) || scale.min_element() < 1.0 / MAX_COORDINATE {
             return Err(format!("a model can be moved {MAX_COORDINATE:e} m at most, and scaled by as much"));
         }
+        Ok(Placed(Mat4::from_scale_rotation_translation(scale, rotation(rotate_deg), translate)))
+    }
+}
+
+/// The motion of keyframes.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "AnimationFields")]
+pub(super) struct Moves(pub Animation);
+
+impl TryFrom<AnimationFields> for Moves {
+    type Error = String;
+
+    fn try_from(fields: AnimationFields) -> Result<Self, String> {
+        let keys = &fields.keyframes;
+        let finite = |key: &KeyframeFields| {
+            key.time.is_finite()
+                && key.translate.abs().max_element() <= MAX_COORDINATE
+                && key.rotate_deg.abs().max_element() < 36_000.0
+        };
+        if keys.is_empty()
+            || !keys.iter().all(finite)
+            || !keys.is_sorted_by(|a, b| a.time < b.time)
+            || keys[0].time < 0.0
+        {
+            return Err("an animation needs keyframes with finite numbers and times that rise from 0 or more".into());
+        }
+        let mut keyframes = Vec::new();
+        for (i, key) in keys.iter().enumerate() {
+            let before = if i == 0 { key } else { &keys[i - 1] };
+            // A quaternion forgets whole turns: steps of at most 90 degrees keep them.
+            let turn = (key.rotate_deg - before.rotate_deg).abs().max_element();
+            let steps = (turn / 90.0).ceil().max(1.0) as u32;
+            for step in (1..=steps).skip(if i == 0 { steps as usize - 1 } else { 0 }) {
+                let s = step as f32 / steps as f32;
+                keyframes.push(Keyframe {
+                    time: before.time + (key.time - before.time) * s,
+                    translation: before.translate.lerp(key.translate, s),
+                    rotation: rotation(before.rotate_deg.lerp(key.rotate_deg, s)),
+                });
+            }
+        }
+        Ok(Moves(Animation { keyframes, repeat: fields.repeat }))
+    }
+}
+
+impl Default for ModelEntry {
+    /// Where it is, with all that it has.
+    fn default() -> Self {
+        ModelEntry {
+            file: None,
+            builtin: None,
+            transform: Mat4::IDENTITY,
+            animation: None,
+            lights: true,
+            cameras: true,
+        }
+    }
+}
+
+impl TryFrom<ModelFields> for ModelEntry {
+    type Error = String;
+
+    fn try_from(fields: ModelFields) -> Result<Self, String> {
+        match (&fields.file, &fields.builtin) {
+            (Some(_), None) => {}
+            (None, Some(name)) if builtin::is_one(name) => {}
+            (None, Some(name)) => {
+                return Err(format!("unknown builtin '{name}': {}", builtin::hint(name)));
+            }
+            _ => return Err("a model needs either a file or a builtin".into()),
+        }
         Ok(ModelEntry {
-            transform: Mat4::from_scale_rotation_translation(scale, rotation(rotate_deg), translate),
-            animation: fields.animation.map(animation).transpose()?,
+            transform: fields.transform.0,
+            animation: fields.animation.map(|moves| moves.0),
             file: fields.file,
             builtin: fields.builtin,
             lights: fields.lights,
@@ -176,34 +267,6 @@ impl TryFrom<ModelFields> for ModelEntry {
 fn rotation(degrees: Vec3) -> Quat {
     let [x, y, z] = degrees.to_array().map(f32::to_radians);
     Quat::from_rotation_z(z) * Quat::from_rotation_y(y) * Quat::from_rotation_x(x)
-}
-
-fn animation(fields: AnimationFields) -> Result<Animation, String> {
-    let keys = &fields.keyframes;
-    let finite = |key: &KeyframeFields| {
-        key.time.is_finite()
-            && key.translate.abs().max_element() <= MAX_COORDINATE
-            && key.rotate_deg.abs().max_element() < 36_000.0
-    };
-    if keys.is_empty() || !keys.iter().all(finite) || !keys.is_sorted_by(|a, b| a.time < b.time) || keys[0].time < 0.0 {
-        return Err("an animation needs keyframes with finite numbers and times that rise from 0 or more".into());
-    }
-    let mut keyframes = Vec::new();
-    for (i, key) in keys.iter().enumerate() {
-        let before = if i == 0 { key } else { &keys[i - 1] };
-        // A quaternion forgets whole turns: steps of at most 90 degrees keep them.
-        let turn = (key.rotate_deg - before.rotate_deg).abs().max_element();
-        let steps = (turn / 90.0).ceil().max(1.0) as u32;
-        for step in (1..=steps).skip(if i == 0 { steps as usize - 1 } else { 0 }) {
-            let s = step as f32 / steps as f32;
-            keyframes.push(Keyframe {
-                time: before.time + (key.time - before.time) * s,
-                translation: before.translate.lerp(key.translate, s),
-                rotation: rotation(before.rotate_deg.lerp(key.rotate_deg, s)),
-            });
-        }
-    }
-    Ok(Animation { keyframes, repeat: fields.repeat })
 }
 
 /// A light.

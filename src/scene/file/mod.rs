@@ -1,19 +1,22 @@
-//! Scene files (RON): models, lights, sky and cameras put together.
+//! Scene files (RON): models, shapes, lights, sky and cameras put together.
 
 mod compose;
 mod format;
+mod parts;
 
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::{Mat4, Vec3};
+use ron::extensions::Extensions;
 
 use crate::excerpt::excerpt;
 use crate::files::read_input_text;
 
 use super::limits::check_extent;
 use super::progress::Progress;
+use super::shapes::Problem;
 use super::{Environment, Scene, SceneError, builtin, defaults, environment, open};
-use format::{EnvironmentEntry, ModelEntry, SceneFile};
+use format::{EnvironmentEntry, ModelEntry, SceneFile, SkyOf};
 
 /// Scene files larger than this are refused.
 const MAX_BYTES: u64 = 4 << 20;
@@ -28,25 +31,37 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         hint: "Check the path; scene files are UTF-8 text".into(),
         source,
     })?;
-    let file = parse(&text, path)?;
+    read(&text, path, progress)
+}
+
+/// A scene by its file's text; the path is where other files are looked for, and for messages.
+pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene, SceneError> {
+    let file = parse(text, path)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut scene = Scene { name: file.name.clone().unwrap_or(name), ..Scene::default() };
     let (mut sky, mut picture) = (None, None);
     for (i, entry) in file.models.iter().enumerate() {
-        let model = load_model(entry, path, &text, progress.share(i, file.models.len()))?;
+        let model = load_model(entry, path, text, progress.share(i, file.models.len() + 1))?;
         if i == 0 {
             (sky, picture) = (Some(model.sky), model.environment.clone());
         }
         check_extent(&model, entry.transform).map_err(|message| {
             let named = entry.file.as_deref().or(entry.builtin.as_deref()).unwrap_or_default();
-            let (line, column) = position_of(&text, named);
-            SceneError::SceneFile { path: path.into(), line, column, message: format!("'{named}', placed: {message}") }
+            in_file(path, text, named, format!("'{named}', placed: {message}"))
         })?;
         compose::add(&mut scene, model, entry);
     }
+    progress.share(file.models.len(), file.models.len() + 1).step(&scene.name, 0.0)?;
+    let own = parts::build(&file, progress);
+    let own = own.map_err(|Problem { near, message }| match progress.stopped() {
+        true => SceneError::Cancelled,
+        false => in_file(path, text, &near, message),
+    })?;
+    check_extent(&own, Mat4::IDENTITY).map_err(|message| in_file(path, text, "", message))?;
+    compose::add(&mut scene, own, &ModelEntry::default());
     match &file.environment {
         Some(entry) => {
-            scene.environment = Some(open_environment(entry, path, &text, &mut scene.warnings)?);
+            scene.environment = Some(open_environment(entry, path, text, &mut scene.warnings)?);
             scene.sky = file.sky.map_or(Vec3::ONE, |s| s.0) * entry.intensity;
         }
         // A radiance of its own takes the place of the first model's sky, picture and all.
@@ -76,21 +91,24 @@ fn open_environment(
     text: &str,
     warnings: &mut Vec<String>,
 ) -> Result<Environment, SceneError> {
-    let candidates = places(&entry.file, scene_file);
+    let file = match &entry.of {
+        SkyOf::File(file) => file,
+        SkyOf::Clear(sky) => {
+            let sky = environment::clear_sky(sky).map_err(|m| in_file(scene_file, text, "", m))?;
+            return Ok(Environment { rotation: entry.rotation, ..sky });
+        }
+    };
+    let candidates = places(file, scene_file);
     // Where it is nowhere, the message is about the first place.
     let found = candidates.iter().find(|candidate| candidate.is_file()).or(candidates.first());
     let opened = environment::read(found.map_or(Path::new(""), PathBuf::as_path), warnings);
-    let environment = opened.map_err(|message| {
-        let (line, column) = position_of(text, &entry.file);
-        SceneError::SceneFile { path: scene_file.into(), line, column, message }
-    })?;
+    let environment = opened.map_err(|message| in_file(scene_file, text, file, message))?;
     Ok(Environment { rotation: entry.rotation, ..environment })
 }
 
 fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progress) -> Result<Scene, SceneError> {
-    if let Some(build) = entry.builtin.as_deref().and_then(builtin::find) {
-        progress.step(entry.builtin.as_deref().unwrap_or_default(), 0.0)?;
-        return Ok(build());
+    if let Some(name) = &entry.builtin {
+        return builtin::open(name, progress);
     }
     let file = entry.file.as_deref().unwrap_or_default();
     let candidates = places(file, scene_file);
@@ -116,6 +134,12 @@ fn places(file: &str, scene_file: &Path) -> Vec<PathBuf> {
     places
 }
 
+/// What is wrong beside a quoted string of a scene file.
+fn in_file(path: &Path, text: &str, near: &str, message: String) -> SceneError {
+    let (line, column) = position_of(text, near);
+    SceneError::SceneFile { path: path.into(), line, column, message: excerpt(&message, MAX_MESSAGE) }
+}
+
 /// Line and column of a quoted string, both from 1; (1, 1) when it is not there as it is.
 fn position_of(text: &str, string: &str) -> (usize, usize) {
     let Some(offset) = text.find(&format!("\"{string}\"")) else {
@@ -127,7 +151,8 @@ fn position_of(text: &str, string: &str) -> (usize, usize) {
 }
 
 fn parse(text: &str, path: &Path) -> Result<SceneFile, SceneError> {
-    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    let options =
+        ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES);
     options.from_str(text).map_err(|error| SceneError::SceneFile {
         path: path.into(),
         line: error.span.start.line,

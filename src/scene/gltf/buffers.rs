@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use ::gltf::{Document, buffer};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD_NO_PAD;
 
 use crate::files::read_input;
 use crate::scene::texture::Source;
@@ -117,38 +119,11 @@ fn percent(text: &str) -> Vec<u8> {
 
 /// RFC 4648 base64, standard or URL alphabet, padding optional.
 fn base64(text: &str) -> Result<Vec<u8>, String> {
-    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut bits, mut count) = (0u32, 0);
-    for c in text.bytes().filter(|c| !c.is_ascii_whitespace() && *c != b'=') {
-        let value = match c {
-            b'A'..=b'Z' => c - b'A',
-            b'a'..=b'z' => c - b'a' + 26,
-            b'0'..=b'9' => c - b'0' + 52,
-            b'+' | b'-' => 62,
-            b'/' | b'_' => 63,
-            _ => {
-                return Err(format!("a data URI holds '{}', which is not base64", char::from(c)));
-            }
-        };
-        bits = bits << 6 | u32::from(value);
-        count += 6;
-        if count >= 8 {
-            count -= 8;
-            bytes.push((bits >> count) as u8);
-        }
-    }
-    Ok(bytes)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn base64_and_percent() {
-        assert_eq!(base64("aGVsbG8gd29ybGQ=").unwrap(), b"hello world");
-        assert_eq!(base64("").unwrap(), b"");
-        assert!(base64("a$").is_err());
-        assert_eq!(percent("a%20b%2"), b"a b%2");
-    }
+    let standard = |c: u8| match c {
+        b'-' => b'+',
+        b'_' => b'/',
+        other => other,
+    };
+    let digits: Vec<u8> = text.bytes().filter(|c| !c.is_ascii_whitespace() && *c != b'=').map(standard).collect();
+    STANDARD_NO_PAD.decode(digits).map_err(|error| format!("a data URI is not base64: {error}"))
 }

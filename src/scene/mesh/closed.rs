@@ -101,34 +101,3 @@ impl Mesh {
         triangles.iter().enumerate().map(of).collect()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::builtin::shapes::{MeshBuilder, STANDING};
-
-    #[test]
-    fn balls_and_boxes_have_an_outside_and_sheets_have_none() {
-        let mut builder = MeshBuilder::new("shapes");
-        builder.icosphere(0, Vec3::ZERO, 0.5, 1);
-        let ball = builder.finish();
-        assert!(ball.outsides(10.0).iter().all(|s| *s == Some(Side::Front)));
-        assert!(ball.outsides(1.0).iter().all(Option::is_none), "too large");
-        let mut turned = ball.clone();
-        turned.indices.as_chunks_mut::<3>().0.iter_mut().for_each(|t| t.swap(0, 1));
-        assert!(turned.outsides(10.0).iter().all(|s| *s == Some(Side::Back)));
-        let mut mixed = ball.clone();
-        mixed.indices.as_chunks_mut::<3>().0.iter_mut().step_by(3).for_each(|t| t.swap(0, 1));
-        let turned = (0..).zip(mixed.outsides(10.0)).map(|(i, s)| (i % 3 == 0, s == Some(Side::Back)));
-        assert!(turned.into_iter().all(|(turned, back)| turned == back), "neighbours turn either way");
-        let mut opened = ball.clone();
-        opened.indices.truncate(opened.indices.len() - 3);
-        assert!(opened.outsides(10.0).iter().all(Option::is_none));
-        let mut builder = MeshBuilder::new("box");
-        builder.cuboid(0, Vec3::ZERO, Vec3::ONE, 1.0, [true; 6]);
-        assert!(builder.finish().outsides(10.0).iter().all(|s| *s == Some(Side::Front)));
-        let mut builder = MeshBuilder::new("without its bottom");
-        builder.cuboid(0, Vec3::ZERO, Vec3::ONE, 1.0, STANDING);
-        assert!(builder.finish().outsides(10.0).iter().all(Option::is_none));
-    }
-}

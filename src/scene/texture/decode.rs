@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::io::Cursor;
 
 use glam::{Vec2, Vec3};
-use image::{ImageFormat, ImageReader, Limits, RgbaImage};
+use image::{DynamicImage, ImageFormat, ImageReader, Limits, RgbaImage};
 
 use crate::files::read_input;
 
@@ -13,7 +13,7 @@ use super::{Filter, Recipe, Source, Texture, TextureFormat, dds, mips, texture_f
 /// Largest width and height of an image file.
 const MAX_FILE_SIDE: u32 = 16384;
 /// Largest memory of a decoded image.
-const MAX_FILE_BYTES: u64 = 512 << 20;
+pub(in crate::scene) const MAX_FILE_BYTES: u64 = 512 << 20;
 /// Larger textures are reduced to this.
 const MAX_SIDE: u32 = 4096;
 
@@ -78,16 +78,7 @@ impl Texture {
             TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm => Cow::Borrowed(bytes),
             format => Cow::Owned(dds::decompress(format, width, height, bytes).ok()?),
         };
-        let linear = |c: u8| {
-            let c = f32::from(c) / 255.0;
-            match self.format.is_srgb() {
-                false => c,
-                true if c <= 0.04045 => c / 12.92,
-                true => ((c + 0.055) / 1.055).powf(2.4),
-            }
-        };
-        let texels: Vec<Vec3> =
-            rgba.as_chunks::<4>().0.iter().map(|t| Vec3::from([t[0], t[1], t[2]].map(linear))).collect();
+        let texels: Vec<Vec3> = mips::decode(&rgba, self.format.is_srgb()).iter().map(|t| t.truncate()).collect();
         (texels.len() == (width * height) as usize).then_some(SmallPicture { width, height, texels })
     }
 }
@@ -185,13 +176,18 @@ fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
     if !matches!(format, ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tga | ImageFormat::Bmp) {
         return Err(format!("{format:?} images are not supported; convert it to PNG"));
     }
+    decode_limited(bytes, format).map(DynamicImage::into_rgba8)
+}
+
+/// An image file of a format, which may not be larger than files may be.
+pub(in crate::scene) fn decode_limited(bytes: &[u8], format: ImageFormat) -> Result<DynamicImage, String> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_FILE_SIDE);
     limits.max_image_height = Some(MAX_FILE_SIDE);
     limits.max_alloc = Some(MAX_FILE_BYTES);
     reader.limits(limits);
-    let image = reader.decode().map_err(|error| format!("the image is damaged or too large ({error})"))?.into_rgba8();
+    let image = reader.decode().map_err(|error| format!("the image is damaged or too large ({error})"))?;
     if image.width() == 0 || image.height() == 0 { Err("the image is empty".into()) } else { Ok(image) }
 }
 

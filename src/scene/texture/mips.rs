@@ -82,7 +82,8 @@ pub(super) fn reduce(rgba: &[u8], from: (u32, u32), to: (u32, u32), srgb: bool, 
     encode(&shrink(&decode(rgba, srgb), from, to, filter), srgb)
 }
 
-fn decode(rgba: &[u8], srgb: bool) -> Vec<Vec4> {
+/// Linear texels of RGBA8 ones.
+pub(super) fn decode(rgba: &[u8], srgb: bool) -> Vec<Vec4> {
     let plain = |c: u8| f32::from(c) / 255.0;
     let color = |c: u8| {
         if srgb { SRGB_TO_LINEAR[c as usize] } else { plain(c) }

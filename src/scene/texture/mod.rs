@@ -18,7 +18,7 @@ use super::progress::Progress;
 use super::{SceneError, Texture, TextureFormat};
 
 pub use decode::SmallPicture;
-pub(super) use decode::first_level_rgba;
+pub(super) use decode::{MAX_FILE_BYTES, decode_limited, first_level_rgba};
 pub(super) use mips::{Filter, texture_from_rgba};
 
 /// Where an image's bytes come from.
