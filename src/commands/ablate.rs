@@ -5,11 +5,11 @@ mod steps;
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use super::sweep::run_with_bar;
-use crate::ablation::{changes, csv, markdown, rows};
+use crate::campaign::ablation::{changes, csv, markdown, rows};
+use crate::campaign::sweep::{Options, Shard, Sweep, write_file};
 use crate::lab::{LabError, Workspace, params_of};
 use crate::measure::Frames;
-use crate::reference::ALL_BOUNCES;
-use crate::sweep::{Options, Shard, Sweep, write_file};
+use crate::measure::reference::ALL_BOUNCES;
 use clap::Args;
 use std::path::PathBuf;
 

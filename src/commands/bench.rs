@@ -2,15 +2,15 @@
 
 use super::DeviceArgs;
 use super::adapt::{check_frames, parse_size};
-use crate::bench::{
+use crate::campaign::bench::{
     Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, percent, record_file, slower, text,
 };
+use crate::campaign::sweep::{PointBuilder, Sweep, SweepPoint, list, write_file};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::{Frames, Warm};
+use crate::results::stats::DeviceStats;
 use crate::scene::SceneError;
-use crate::stats::DeviceStats;
-use crate::sweep::{PointBuilder, Sweep, SweepPoint, list, write_file};
 use clap::Args;
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! `conelab check`.
 
-use crate::bench::check_record;
+use crate::campaign::bench::check_record;
 use crate::experiment::Experiment;
 use crate::files::read_input_text;
 use crate::graph::file::GraphFile;
@@ -111,8 +111,8 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
         let findings = match kind(&name) {
             FileKind::Graph => home.check(&name),
             FileKind::Path => crate::camera_path::CameraPath::read(file).err().unwrap_or_default(),
-            FileKind::Sweep => crate::sweep::check(&home, file).err().unwrap_or_default(),
-            FileKind::Stability => crate::stability::check(&home, file).err().unwrap_or_default(),
+            FileKind::Sweep => crate::campaign::sweep::check(&home, file).err().unwrap_or_default(),
+            FileKind::Stability => crate::campaign::stability::check(&home, file).err().unwrap_or_default(),
             FileKind::Experiment => check_experiment(&home, file),
             FileKind::Times => match check_record(&home, file) {
                 Err(LabError::Input(errors)) => errors,

@@ -2,11 +2,11 @@
 
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
+use crate::campaign::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
 use crate::experiment::Experiment;
-use crate::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
 use crate::lab::{Lab, LabError, Workspace, params_of};
 use crate::measure::Frames;
-use crate::reference::{self, ALL_BOUNCES};
+use crate::measure::reference::{self, ALL_BOUNCES};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;

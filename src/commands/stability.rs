@@ -2,9 +2,9 @@
 
 use super::DeviceArgs;
 use super::adapt::parse_size;
+use crate::campaign::stability::{Options, Outcome, Progress, Suite, failure_table, failures, run as run_suite, sheet};
 use crate::files::write_whole;
 use crate::lab::{Lab, LabError, Workspace};
-use crate::stability::{Options, Outcome, Progress, Suite, failure_table, failures, run as run_suite, sheet};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
@@ -110,7 +110,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     let (counts, report) = result?;
     for r in &report.results {
         let Some(total) = r.measured().and_then(|m| m.parts.get("total")) else { continue };
-        let number = |v: Option<f64>| v.map_or("-".into(), crate::report::short);
+        let number = |v: Option<f64>| v.map_or("-".into(), crate::campaign::report::short);
         let noise = if total.told_apart == Some(false) { " (within noise)" } else { "" };
         say!(
             "{:32} {:24} E_t {}{noise}, jump {}/255, flicker {}, relMSE {}",

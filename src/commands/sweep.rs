@@ -1,9 +1,9 @@
 //! `conelab sweep`.
 
 use super::DeviceArgs;
+use crate::campaign::sweep::{Counts, Options, Outcome, Progress, Shard, Sweep, run as run_sweep};
 use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::Frames;
-use crate::sweep::{Counts, Options, Outcome, Progress, Shard, Sweep, run as run_sweep};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;

@@ -1,6 +1,9 @@
 //! One experiment, measured: times of its passes, memory, failed checks, and how far its light is from a reference.
 
+pub mod comparison;
+pub mod oracle;
 mod pictures;
+pub mod reference;
 mod warm_up;
 
 pub use warm_up::WarmUp;
@@ -8,10 +11,10 @@ pub use warm_up::WarmUp;
 use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
+use crate::measure::reference::Reference;
 use crate::metrics::{Compared, Kind, Linear, Scores};
-use crate::reference::Reference;
+use crate::results::stats::{self, Stats};
 use crate::scene::Scene;
-use crate::stats::{self, Stats};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;

@@ -9,9 +9,9 @@ mod rows;
 mod thumbnail;
 
 use super::Workbench;
+use crate::campaign::report::{Data, Dot, axis_title};
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
-use crate::report::{Data, Dot, axis_title};
 use choice::{Choice, Chosen, METRICS};
 use egui::Ui;
 use folder::Folder;
