@@ -4,7 +4,7 @@ mod table;
 mod verdict;
 
 pub use table::table;
-pub use verdict::{Verdict, within_noise};
+pub use verdict::{NOISE_FACTOR, Verdict, within_noise};
 
 use crate::measure::reference::Noise;
 use crate::metrics::maps::{MapFile, maps};

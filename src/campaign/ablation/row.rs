@@ -1,8 +1,9 @@
 //! What a parameter's plain value changes, over the scenes, and what follows from it.
 
 use super::Change;
+use crate::campaign::record::{Outcome, first_line};
 use crate::campaign::report::error_of;
-use crate::campaign::sweep::{NOTHING, Outcome, SCENE, SET, collect, numbers};
+use crate::campaign::sweep::{NOTHING, SCENE, SET, collect, numbers};
 use crate::lab::LabError;
 use crate::measure::Point;
 use std::collections::HashMap;
@@ -182,7 +183,7 @@ fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Point
                 continue;
             }
             (None, _) => "the experiment as it is failed".into(),
-            (_, Some(Err(why))) => why.lines().next().unwrap_or_default().to_string(),
+            (_, Some(Err(why))) => first_line(why).to_string(),
             (_, None) => "not measured".into(),
         };
         failed.push(((*scene).clone(), why));

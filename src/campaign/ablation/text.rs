@@ -1,8 +1,7 @@
 //! The rows as text: Markdown that is aligned for terminals too, and comma-separated values.
 
 use super::row::{Delta, METRICS, PARTS, Row};
-use crate::campaign::report::short;
-use crate::campaign::sweep::csv_text;
+use crate::campaign::table::{self, Table, short};
 use crate::lab::LabError;
 
 /// The tables as Markdown: costs and verdicts, then the errors of each part.
@@ -21,12 +20,12 @@ pub fn markdown(rows: &[Row]) -> String {
         let name = row.change.name.clone();
         verdicts.push(vec![name, from, to, cost(&row.ms), cost(&row.bytes), named(1), named(-1), verdict]);
     }
-    let mut out = aligned(&verdicts);
+    let mut out = table::markdown(&verdicts);
     for part in PARTS {
         let table = errors(rows, part);
         if table.len() > 1 {
             out += "\n";
-            out += &aligned(&table);
+            out += &table::markdown(&table);
         }
     }
     out
@@ -90,51 +89,29 @@ fn noise(metric: &str, noise: f64) -> String {
     }
 }
 
-fn aligned(table: &[Vec<String>]) -> String {
-    let columns = table.first().map_or(0, Vec::len);
-    let width = |i: usize| table.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let mut out = String::new();
-    for (number, line) in table.iter().enumerate() {
-        let cells = line.iter().zip(&widths).map(|(cell, width)| format!("| {:width$} ", cell.replace('|', "\\|")));
-        out.extend(cells.chain(["|\n".into()]));
-        if number == 0 {
-            out.extend(widths.iter().map(|width| format!("|{}", "-".repeat(width + 2))).chain(["|\n".into()]));
-        }
-    }
-    out
-}
-
 /// Comma-separated values (RFC 4180): for each parameter a line for its time, its memory and each error.
 ///
 /// # Errors
 /// Writing to memory gives none.
 pub fn csv(rows: &[Row]) -> Result<String, LabError> {
-    let head = [
-        "parameter",
-        "is",
-        "plain",
-        "verdict",
-        "part",
-        "quantity",
-        "unchanged",
-        "change",
-        "noise",
-        "worst change",
-        "its noise",
-        "worst scene",
-    ];
-    let mut lines = vec![head.map(String::from).to_vec()];
+    let mut lines: Vec<(&Row, &str, &str, &Delta)> = Vec::new();
     for row in rows {
-        let cost = [("ms", &row.ms), ("bytes", &row.bytes)].into_iter();
-        let cost = cost.filter_map(|(quantity, delta)| Some(("", quantity, delta.as_ref()?)));
-        for (part, quantity, d) in cost.chain(row.errors.iter().map(|e| (e.part, e.metric, &e.delta))) {
-            let (change, verdict) = (&row.change, row.verdict.to_string());
-            let names = [change.name.clone(), change.from.to_string(), change.to.to_string(), verdict];
-            let numbers = [d.unchanged, d.change, d.noise, d.worst, d.worst_noise].map(|v| v.to_string());
-            let line = names.into_iter().chain([part.into(), quantity.into()]).chain(numbers);
-            lines.push(line.chain([d.worst_scene.clone()]).collect());
-        }
+        let costs = [("ms", &row.ms), ("bytes", &row.bytes)];
+        lines.extend(costs.into_iter().filter_map(|(quantity, delta)| Some((row, "", quantity, delta.as_ref()?))));
+        lines.extend(row.errors.iter().map(|e| (row, e.part, e.metric, &e.delta)));
     }
-    csv_text(&lines)
+    let mut table = Table::new(&lines);
+    table.column("parameter", |l| l.0.change.name.clone());
+    table.column("is", |l| l.0.change.from.to_string());
+    table.column("plain", |l| l.0.change.to.to_string());
+    table.column("verdict", |l| l.0.verdict.to_string());
+    table.column("part", |l| l.1.to_string());
+    table.column("quantity", |l| l.2.to_string());
+    table.column("unchanged", |l| l.3.unchanged.to_string());
+    table.column("change", |l| l.3.change.to_string());
+    table.column("noise", |l| l.3.noise.to_string());
+    table.column("worst change", |l| l.3.worst.to_string());
+    table.column("its noise", |l| l.3.worst_noise.to_string());
+    table.column("worst scene", |l| l.3.worst_scene.clone());
+    table.csv()
 }

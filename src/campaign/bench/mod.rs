@@ -11,7 +11,7 @@ pub use charts::charts;
 pub use record::{RECORD_SCHEMA, Record, Recorded, check_record, record_file};
 pub use tables::{csv, text};
 
-use crate::campaign::sweep::SweepPoint;
+use crate::campaign::points::SweepPoint;
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, ReusableParts, Session};
 use crate::measure::{Frames, Timed, Warm, timed};

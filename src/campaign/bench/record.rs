@@ -2,9 +2,12 @@
 //! (docs/sweeps.md).
 
 use super::{Bench, Times};
-use crate::campaign::sweep::{Labels, Setting, SweepPoint, read_json};
+use crate::campaign::points::{Labels, SweepPoint};
+use crate::campaign::record::read_json;
+use crate::campaign::runner::Mistakes;
+use crate::campaign::settings::{apply, lines};
 use crate::experiment::{Experiment, environment_text};
-use crate::graph::source::{At, Diagnostic, Loc};
+use crate::graph::source::Diagnostic;
 use crate::lab::{LabError, Workspace};
 use crate::measure::{Frames, Warm};
 use crate::results::stats::DeviceStats;
@@ -72,24 +75,12 @@ pub fn record_file(path: &Path, device: &str) -> PathBuf {
 /// No record; all mistakes, each once.
 pub fn check_record(home: &Workspace, path: &Path) -> Result<(), LabError> {
     let mut warm = Warm::default();
-    let mut errors: Vec<Diagnostic> = Vec::new();
+    let mut mistakes = Mistakes::default();
     for recorded in Record::read(path)?.configurations {
-        let checked = recorded.experiment(home).map_err(LabError::Input).and_then(|experiment| {
-            let graph = &warm.graph(home, &experiment.graph)?.graph;
-            experiment.params_over(&graph.params)
-        });
-        match checked {
-            Err(LabError::Input(list)) => {
-                for diagnostic in list {
-                    if !errors.contains(&diagnostic) {
-                        errors.push(diagnostic);
-                    }
-                }
-            }
-            other => drop(other?),
-        }
+        let experiment = recorded.experiment(home).map_err(LabError::Input);
+        mistakes.take(experiment.and_then(|experiment| warm.check(home, &experiment)))?;
     }
-    if errors.is_empty() { Ok(()) } else { Err(LabError::Input(errors)) }
+    mistakes.none()
 }
 
 impl Record {
@@ -121,7 +112,7 @@ impl Record {
     /// Reads a record.
     ///
     /// # Errors
-    /// No such file, or not what [`Record::text`] writes.
+    /// No such file, or not what `conelab bench --record` writes.
     pub fn read(path: &Path) -> Result<Record, LabError> {
         let wrong = |why: String| LabError::Request(format!("'{}': {why}", path.display()));
         let record: Record = read_json(path, MAX_BYTES)
@@ -152,14 +143,6 @@ impl Record {
             .iter()
             .enumerate()
             .try_for_each(|(i, c)| c.check().map_err(|why| format!("configuration {}: {why}", i + 1)))
-    }
-
-    /// The file's text: JSON.
-    ///
-    /// # Errors
-    /// Writing to memory gives none, whatever the record.
-    pub fn text(&self) -> Result<String, LabError> {
-        serde_json::to_string_pretty(self).map(|text| text + "\n").map_err(|e| LabError::Request(e.to_string()))
     }
 
     /// Whether its times can be compared with those of a device.
@@ -269,17 +252,9 @@ impl Recorded {
     /// Mistakes of the file, and settings that are none; unknown parameters are found with the graph.
     pub fn experiment(&self, home: &Workspace) -> Result<Experiment, Vec<Diagnostic>> {
         let mut experiment = Experiment::read(&self.file(home))?;
-        let lines: Vec<String> = self.settings.iter().map(|(name, text)| format!("{name}: {text}")).collect();
-        let file = experiment.sources.add(format!("settings of {}", self.title()).as_ref(), lines.join("\n"));
-        let (mut offset, mut errors) = (0, Vec::new());
-        for ((name, text), line) in self.settings.iter().zip(&lines) {
-            let at = At { file, offset };
-            let setting = Setting { name: Loc { value: name.clone(), at }, text: text.clone() };
-            if let Err(message) = setting.apply(&mut experiment, file, &home.root) {
-                errors.push(experiment.sources.error(at, message));
-            }
-            offset += u32::try_from(line.len() + 1).unwrap_or(0);
-        }
+        let (text, settings) = lines(self.settings.iter().map(|(name, text)| (name.as_str(), text.as_str())), ": ");
+        experiment.sources.add(format!("settings of {}", self.title()).as_ref(), text);
+        let errors = apply(&mut experiment, &settings, &home.root);
         if errors.is_empty() { Ok(experiment) } else { Err(errors) }
     }
 }

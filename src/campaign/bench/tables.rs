@@ -1,6 +1,8 @@
 //! A benchmark as tables.
 
 use super::{Bench, Configuration};
+use crate::campaign::record::first_line;
+use crate::campaign::table::{Table, cell};
 use crate::lab::LabError;
 use crate::results::stats::Spread;
 use std::fmt::Write;
@@ -12,6 +14,17 @@ pub(super) struct Row<'a> {
     pub size: (u32, u32),
     /// One for each column.
     pub cells: Vec<Option<&'a Configuration>>,
+}
+
+impl Row<'_> {
+    /// Of its pictures.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.size.0) * u64::from(self.size.1)
+    }
+
+    fn totals(&self) -> Vec<Option<String>> {
+        self.cells.iter().map(|c| Some(shown((*c)?.times.as_ref()?.stats.total_gpu_ms))).collect()
+    }
 }
 
 /// Name and values of what the columns vary: the first setting that is no size and no experiment.
@@ -80,19 +93,19 @@ pub fn text(bench: &Bench) -> String {
         out.extend(cells.iter().map(|c| format!("{:>22}", c.as_deref().unwrap_or("-"))));
         out.push('\n');
     };
-    let last = rows.iter().map(|r| u64::from(r.size.0) * u64::from(r.size.1)).max().unwrap_or(0);
-    for row in rows.iter().filter(|r| u64::from(r.size.0) * u64::from(r.size.1) == last) {
+    let last = rows.iter().map(Row::pixels).max().unwrap_or(0);
+    for row in rows.iter().filter(|r| r.pixels() == last) {
         header(&mut out, &format!("{} at {}x{}", row.title, row.size.0, row.size.1));
         for stage in stages(row) {
-            let cells: Vec<_> = row.cells.iter().map(|c| cell(stage_of((*c)?, &stage)?)).collect();
+            let cells: Vec<_> = row.cells.iter().map(|c| Some(shown(stage_of((*c)?, &stage)?))).collect();
             line(&mut out, &stage, &cells);
         }
-        line(&mut out, "total", &row.cells.iter().map(|c| cell(total((*c)?)?)).collect::<Vec<_>>());
+        line(&mut out, "total", &row.totals());
     }
     header(&mut out, "total");
     for row in &rows {
         let title = format!("{}x{} {}", row.size.0, row.size.1, row.title);
-        line(&mut out, &title, &row.cells.iter().map(|c| cell(total((*c)?)?)).collect::<Vec<_>>());
+        line(&mut out, &title, &row.totals());
     }
     let compared: Vec<(&Row, &Row)> = rows
         .iter()
@@ -108,7 +121,7 @@ pub fn text(bench: &Bench) -> String {
     }
     for failed in bench.configurations.iter().filter(|c| c.error.is_some()) {
         let labels: Vec<String> = failed.labels.iter().map(|(n, v)| format!("{n} {v}")).collect();
-        let error = failed.error.as_deref().and_then(|e| e.lines().next()).unwrap_or_default();
+        let error = failed.error.as_deref().map_or("", first_line);
         let _ = writeln!(out, "failed: {}: {error}", labels.join(", "));
     }
     out
@@ -129,12 +142,8 @@ pub(super) fn stage_of(configuration: &Configuration, stage: &str) -> Option<Spr
     configuration.times.as_ref()?.stages.get(stage).copied()
 }
 
-fn total(configuration: &Configuration) -> Option<Spread> {
-    Some(configuration.times.as_ref()?.stats.total_gpu_ms)
-}
-
-fn cell(spread: Spread) -> Option<String> {
-    Some(format!("{:.3} ({:.3})", spread.median, spread.p95))
+fn shown(spread: Spread) -> String {
+    format!("{:.3} ({:.3})", spread.median, spread.p95)
 }
 
 fn ratio(first: &Configuration, other: &Configuration) -> Option<String> {
@@ -150,31 +159,28 @@ fn ratio(first: &Configuration, other: &Configuration) -> Option<String> {
 /// # Errors
 /// Writing to memory gives none, whatever the benchmark.
 pub fn csv(bench: &Bench) -> Result<String, LabError> {
-    let failed = |e: csv::Error| LabError::Request(format!("cannot make the table: {e}"));
-    let mut out = csv::Writer::from_writer(Vec::new());
-    let ends = ["experiment", "width", "height", "kind", "name", "min ms", "median ms", "p95 ms", "error"];
-    let names: Vec<&String> = bench.names.iter().filter(|n| *n != "size" && *n != "experiment").collect();
-    out.write_record(names.iter().map(|n| n.as_str()).chain(ends)).map_err(failed)?;
+    let mut rows: Vec<(&Configuration, &str, &str, Option<Spread>)> = Vec::new();
     for c in &bench.configurations {
-        let labels: Vec<&str> = names.iter().map(|n| c.labels.get(*n).map_or("", String::as_str)).collect();
-        let size = [c.size.0.to_string(), c.size.1.to_string()];
-        let mut row = |kind: &str, name: &str, spread: Option<Spread>, error: &str| {
-            let ms = spread.map_or([const { String::new() }; 3], |s| [s.min, s.median, s.p95].map(|v| v.to_string()));
-            let before = [c.experiment.as_str(), &size[0], &size[1], kind, name, &ms[0], &ms[1], &ms[2], error];
-            out.write_record(labels.iter().copied().chain(before)).map_err(failed)
-        };
-        if let Some(error) = &c.error {
-            row("total", "total", None, error.lines().next().unwrap_or_default())?;
+        if c.error.is_some() {
+            rows.push((c, "total", "total", None));
         }
         let Some(times) = &c.times else { continue };
-        for pass in &times.stats.passes {
-            row("pass", &pass.name, Some(pass.gpu_ms), "")?;
-        }
-        for (stage, spread) in &times.stages {
-            row("stage", stage, Some(*spread), "")?;
-        }
-        row("total", "total", Some(times.stats.total_gpu_ms), "")?;
+        rows.extend(times.stats.passes.iter().map(|p| (c, "pass", p.name.as_str(), Some(p.gpu_ms))));
+        rows.extend(times.stages.iter().map(|(stage, spread)| (c, "stage", stage.as_str(), Some(*spread))));
+        rows.push((c, "total", "total", Some(times.stats.total_gpu_ms)));
     }
-    let bytes = out.into_inner().map_err(|e| LabError::Request(e.to_string()))?;
-    String::from_utf8(bytes).map_err(|e| LabError::Request(e.to_string()))
+    let mut table = Table::new(&rows);
+    for name in bench.names.iter().filter(|n| *n != "size" && *n != "experiment") {
+        table.column(name, |r| cell(r.0.labels.get(name)));
+    }
+    table.column("experiment", |r| r.0.experiment.clone());
+    table.column("width", |r| r.0.size.0.to_string());
+    table.column("height", |r| r.0.size.1.to_string());
+    table.column("kind", |r| r.1.to_string());
+    table.column("name", |r| r.2.to_string());
+    table.column("min ms", |r| cell(r.3.map(|s| s.min)));
+    table.column("median ms", |r| cell(r.3.map(|s| s.median)));
+    table.column("p95 ms", |r| cell(r.3.map(|s| s.p95)));
+    table.column("error", |r| cell(r.0.error.as_deref().map(first_line)));
+    table.csv()
 }

@@ -1,6 +1,8 @@
 //! What the page and its charts show, taken from the records of sweeps.
 
-use crate::campaign::sweep::{Collected, Outcome, Subject, parts_of};
+use crate::campaign::charts::file_name;
+use crate::campaign::record::Outcome;
+use crate::campaign::sweep::{Collected, Subject, parts_of};
 use crate::measure::comparison::within_noise;
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -93,6 +95,13 @@ pub struct Data {
     pub left: usize,
 }
 
+impl Failed {
+    /// Its values.
+    pub fn title(&self) -> String {
+        self.labels.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
 impl Dot {
     /// Some of its values.
     pub fn title(&self, names: &[&String]) -> String {
@@ -133,15 +142,15 @@ impl Data {
             let point = match &record.outcome {
                 Outcome::Done(point) => point,
                 Outcome::Failed(error) => {
-                    let key = (record.subject.clone(), record.device.name.clone());
+                    let key = (record.about.subject.clone(), record.device.name.clone());
                     data.failed.push(Failed { labels: planned.labels.clone(), key, error: error.clone() });
                     continue;
                 }
             };
-            let key = (&record.subject, &record.device.name);
+            let key = (&record.about.subject, &record.device.name);
             let subject = keys.iter().position(|k| *k == key).unwrap_or_else(|| {
                 keys.push(key);
-                let (s, device) = (&record.subject, &record.device);
+                let (s, device) = (&record.about.subject, &record.device);
                 let same = keys.iter().filter(|k| k.0.scene == s.scene && k.0.size == s.size && k.1 == key.1).count();
                 let number = if same > 1 { format!(" ({same})") } else { String::new() };
                 data.subjects.push(format!("{}{number} at {}x{}, {}", s.scene, s.size.0, s.size.1, device.name));
@@ -159,11 +168,8 @@ impl Data {
                 data.bounces.push(point.references.keys().find(|b| !beside(b)).copied());
                 let frames = point.stats.passes.first().map_or(0, |p| p.frames);
                 let alike = collected.points.iter().filter_map(|(_, r)| r.as_ref());
-                let alike = alike.filter(|r| (&r.subject, &r.device.name) == key);
-                let warmups = alike.filter_map(|r| match &r.outcome {
-                    Outcome::Done(point) => Some(point.stats.warmup),
-                    Outcome::Failed(_) => None,
-                });
+                let alike = alike.filter(|r| (&r.about.subject, &r.device.name) == key);
+                let warmups = alike.filter_map(|r| Some(r.done()?.stats.warmup));
                 let (least, most) = warmups.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
                 let warmup = if least < most { format!("{least} to {most}") } else { most.to_string() };
                 data.settings.push(format!(
@@ -192,7 +198,7 @@ impl Data {
                 scores: parts_of(point),
                 noise: point.noise.clone(),
                 warnings: point.stats.warnings.clone(),
-                experiment: record.experiment.clone(),
+                experiment: record.about.experiment.clone(),
                 picture: picture("pictures"),
                 error_map: picture("errors"),
             });
@@ -221,7 +227,7 @@ impl Data {
 
     /// A file's name for a subject.
     pub fn name(&self, what: &str, subject: usize) -> String {
-        let what: String = what.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
+        let what = file_name(what);
         if self.subjects.len() > 1 { format!("{what}-{}", subject + 1) } else { what }
     }
 }

@@ -1,19 +1,18 @@
 //! Sweeps as something to look at: one page that needs no network, charts as SVG files, a table.
 
-mod bars;
 mod data;
 mod page;
 mod pareto;
 mod scatter;
 mod scenes;
 
-pub use bars::{Bar, COLORS, bars};
 pub(crate) use data::{Data, Dot, Scored, error_of};
-pub(crate) use page::escaped;
 pub use pareto::pareto;
-pub(crate) use scatter::{axis_title, short, ticks};
+pub(crate) use scatter::axis_title;
 
-use crate::campaign::sweep::{Collected, csv, write_file};
+use super::charts::{Bar, bars};
+use super::record::{File, write_files};
+use super::sweep::{Collected, csv};
 use crate::lab::LabError;
 use data::Chart;
 use std::path::{Path, PathBuf};
@@ -37,25 +36,20 @@ pub fn write(collected: &Collected, metrics: &[String], folder: &Path) -> Result
     }
     let charts = charts(&data, metrics)?;
     let table = csv(collected)?;
-    let mut files = vec![(folder.join("points.csv"), table.clone().into_bytes())];
-    for chart in &charts {
-        files.push((folder.join(format!("{}.svg", chart.name)), chart.svg.clone().into_bytes()));
-    }
     let passes: Vec<(String, String)> = (0..data.subjects.len())
         .map(|s| Ok((data.name("passes", s), passes(&data, s)?)))
         .collect::<Result<_, LabError>>()?;
-    for (name, svg) in &passes {
-        files.push((folder.join(format!("{name}.svg")), svg.clone().into_bytes()));
-    }
     let scenes = scenes::Scenes::of(&data);
+    let mut files: Vec<File> = vec![("points.csv".into(), table.clone().into_bytes())];
+    let charted = charts.iter().map(|c| (&c.name, &c.svg)).chain(passes.iter().map(|(name, svg)| (name, svg)));
+    files.extend(charted.map(|(name, svg)| (format!("{name}.svg"), svg.clone().into_bytes())));
     if let Some(scenes) = &scenes {
-        files.push((folder.join("scenes.csv"), scenes.csv(&data)?.into_bytes()));
+        files.push(("scenes.csv".into(), scenes.csv(&data)?.into_bytes()));
     }
-    files.push((folder.join("index.html"), page::page(&data, &charts, &passes, &table, scenes.as_ref())?.into_bytes()));
-    for (path, bytes) in &files {
-        write_file(path, bytes)?;
-    }
-    Ok(files.into_iter().map(|f| f.0).collect())
+    let page = page::page(&data, &charts, &passes, &table, scenes.as_ref())?;
+    files.push(("index.html".into(), page.into_bytes()));
+    write_files(folder, &files)?;
+    Ok(files.into_iter().map(|f| folder.join(f.0)).collect())
 }
 
 /// One chart for each subject, part and metric that points have.
@@ -93,6 +87,8 @@ fn passes(data: &Data, subject: usize) -> Result<String, LabError> {
     let value = |i: usize, name: &String| data.dots[i].labels.get(name);
     let differs = |name: &&String| chosen.iter().any(|i| value(*i, name) != value(chosen[0], name));
     let names: Vec<&String> = data.names.iter().filter(differs).collect();
-    let rows = chosen.iter().map(|i| Bar { label: data.dots[*i].title(&names), parts: data.dots[*i].stages.clone() });
-    bars(&format!("{}: {what}, ms of each stage (medians)", data.subjects[subject]), &rows.collect::<Vec<_>>())
+    let dots = chosen.iter().map(|i| &data.dots[*i]);
+    let rows = dots.map(|d| Bar { label: d.title(&names), parts: d.stages.clone(), hollow: false });
+    let title = format!("{}: {what}, ms of each stage (medians)", data.subjects[subject]);
+    bars(&title, " ms", |ms| format!("{ms:.3}"), &rows.collect::<Vec<_>>())
 }

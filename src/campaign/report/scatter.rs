@@ -2,12 +2,11 @@
 
 use super::data::Scored;
 use super::pareto::pareto;
+use crate::campaign::charts::{Area, Axis, FONT, Failure, drawn, plane};
 use crate::lab::LabError;
-use plotters::coord::combinators::BindKeyPoints;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (900, 560);
-const FONT: &str = "sans-serif";
 /// Of the dots of each experiment, in turns.
 const DOTS: [RGBColor; 5] = [
     RGBColor(70, 110, 160),
@@ -35,38 +34,17 @@ pub fn axis_title(metric: &str) -> String {
 /// joined by a red line, and red where there is one experiment; those that are not told apart from the reference's noise are
 /// hollow.
 pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, LabError> {
-    let mut svg = String::new();
-    draw(&mut svg, title, metric, dots).map_err(|e| LabError::Request(format!("cannot draw '{title}': {e}")))?;
-    Ok(svg)
+    drawn(title, SIZE, |area| draw(area, title, metric, dots))
 }
 
-fn draw(svg: &mut String, title: &str, metric: &str, dots: &[Scored]) -> Result<(), Box<dyn std::error::Error>> {
-    let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
-    area.fill(&WHITE)?;
+fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), Failure> {
     // A perfect point has no logarithm: it is drawn at the bottom, a tenth below the others.
     let least = dots.iter().map(|d| d.error).filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min).min(1.0);
     let place = |d: &Scored| (d.ms, d.error.max(least / 10.0));
     let (xs, ys) = (around(dots.iter().map(|d| place(d).0)), around(dots.iter().map(|d| place(d).1)));
-    let mut chart = ChartBuilder::on(&area)
-        .margin(12)
-        .caption(format!("{title}, {metric} against time ({} points)", dots.len()), (FONT, 20))
-        .x_label_area_size(48)
-        .y_label_area_size(76)
-        .build_cartesian_2d(
-            (xs.0..xs.1).log_scale().with_key_points(ticks(xs)),
-            (ys.0..ys.1).log_scale().with_key_points(ticks(ys)),
-        )?;
-    chart
-        .configure_mesh()
-        .x_desc("GPU time of a frame, ms, median (log)")
-        .y_desc(format!("{metric} (log)"))
-        .x_label_formatter(&|v| short(*v))
-        .y_label_formatter(&|v| short(*v))
-        .axis_desc_style((FONT, 17))
-        .label_style((FONT, 14))
-        .light_line_style(RGBColor(240, 240, 240))
-        .bold_line_style(RGBColor(220, 220, 220))
-        .draw()?;
+    let (x, y) = (Axis::log("GPU time of a frame, ms, median", xs), Axis::log(metric, ys));
+    let title = format!("{title}, {metric} against time ({} points)", dots.len());
+    let mut chart = plane(area, &title, &x, &y)?;
     let pairs: Vec<(f64, f64)> = dots.iter().map(|d| (d.ms, d.error)).collect();
     let front = pareto(&pairs);
     let mut steps: Vec<(f64, f64)> = Vec::new();
@@ -101,7 +79,6 @@ fn draw(svg: &mut String, title: &str, metric: &str, dots: &[Scored]) -> Result<
             .label_font((FONT, 15))
             .draw()?;
     }
-    area.present()?;
     Ok(())
 }
 
@@ -110,28 +87,6 @@ fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
     let room = (high / low).powf(0.05).max(1.5 / (high / low).sqrt()).max(1.05);
     (low / room, high * room)
-}
-
-/// Round numbers in a range, 3 to about 12 of them.
-pub fn ticks((low, high): (f64, f64)) -> Vec<f64> {
-    let inside = |steps: &[f64]| -> Vec<f64> {
-        let decades = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
-        let all = decades.flat_map(|e| steps.iter().map(move |s| s * 10f64.powi(e)));
-        all.filter(|v| (low..=high).contains(v)).collect()
-    };
-    let tenths: Vec<f64> = (10..100).map(|i| f64::from(i) / 10.0).collect();
-    let halves: Vec<f64> = (2..20).map(|i| f64::from(i) / 2.0).collect();
-    let sets: [&[f64]; 5] = [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 3.0, 5.0, 7.0], &halves, &tenths];
-    sets.iter().map(|s| inside(s)).find(|t| t.len() >= 4).unwrap_or_else(|| inside(&tenths))
-}
-
-/// At most three digits.
-pub fn short(v: f64) -> String {
-    match v {
-        0.0 => "0".into(),
-        _ if !(1e-3..1e4).contains(&v) => format!("{v:.0e}"),
-        _ => format!("{}", format!("{v:.2e}").parse::<f64>().unwrap_or(v)),
-    }
 }
 
 #[cfg(test)]

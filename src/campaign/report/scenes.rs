@@ -2,11 +2,12 @@
 //! reference.
 
 use super::data::{Data, Dot};
-use super::page::{escaped, url};
-use super::scatter::short;
-use crate::campaign::sweep::{Subject, csv_text};
+use crate::campaign::page::url;
+use crate::campaign::record::first_line;
+use crate::campaign::sweep::Subject;
+use crate::campaign::table::{Table, cell, short};
 use crate::lab::LabError;
-use std::fmt::Write;
+use maud::{Markup, html};
 
 /// What tells rows apart; everything else that is varied tells methods apart.
 const OF_A_ROW: [&str; 4] = ["scene", "camera", "size", "time"];
@@ -79,35 +80,26 @@ impl Scenes {
     }
 
     /// As a section of the page. Its pictures are filled in by the script, from the points' data.
-    pub fn html(&self, data: &Data) -> String {
-        let mut out = String::from(
-            "<h2>Scenes</h2>\n<p>Worst first, by FLIP of the total of the first method. Beside each picture is where its light \
-             differs from the reference: black at 0 to white at 1, relative.</p>\n\
-             <div class=\"wide\"><table id=\"scenes\">\n<thead><tr><th>scene</th><th>reference</th>",
-        );
-        for method in &self.methods {
-            let _ = write!(out, "<th>{}</th>", escaped(method));
-        }
-        out += "</tr></thead>\n<tbody>\n";
-        for row in &self.rows {
-            let (subject, device) = &row.key;
-            let (width, height) = subject.size;
-            let name = escaped(&subject.scene);
-            let reference = data.keys.iter().position(|k| *k == row.key).and_then(|s| data.references[s].as_ref());
-            let reference = reference
-                .map_or(String::new(), |b| format!("<img alt=\"reference\" src=\"{}\">", url("image/jpeg", b)));
-            let _ = write!(
-                out,
-                "<tr><th title=\"{}\">{name}<br><small>{width}x{height}</small></th><td>{reference}</td>",
-                escaped(&format!("camera {}, time {} s, {device}", subject.camera, subject.time))
-            );
-            for cell in &row.cells {
-                let _ = write!(out, "<td>{}</td>", cell.html(data));
+    pub fn html(&self, data: &Data) -> Markup {
+        html! {
+            h2 { "Scenes" }
+            p {
+                "Worst first, by FLIP of the total of the first method. Beside each picture is where its light differs from \
+                 the reference: black at 0 to white at 1, relative."
             }
-            out += "</tr>\n";
+            div.wide {
+                table id="scenes" {
+                    thead {
+                        tr {
+                            th { "scene" }
+                            th { "reference" }
+                            @for method in &self.methods { th { (method) } }
+                        }
+                    }
+                    tbody { @for row in &self.rows { (row.html(data)) } }
+                }
+            }
         }
-        out += "</tbody></table></div>\n";
-        out
     }
 
     /// As comma-separated values (RFC 4180), a line for each scene, method and number of bounces.
@@ -115,36 +107,62 @@ impl Scenes {
     /// # Errors
     /// Writing to memory gives none, whatever the data.
     pub fn csv(&self, data: &Data) -> Result<String, LabError> {
-        let head = ["scene", "camera", "width", "height", "method", "bounces", "energy_ratio", "relmse", "flip"];
-        let mut lines = vec![head.into_iter().chain(["median ms", "error"]).map(String::from).collect::<Vec<_>>()];
+        let mut lines: Vec<Line> = Vec::new();
         for row in &self.rows {
-            let subject = &row.key.0;
             for (method, cell) in self.methods.iter().zip(&row.cells) {
-                let (ms, error) = match cell {
-                    Cell::Measured(i) => (data.dots[*i].ms.to_string(), String::new()),
-                    Cell::Failed(error) => (String::new(), first_line(error).to_string()),
-                    Cell::Left => continue,
-                };
-                let mut scored = match cell {
-                    Cell::Measured(i) => scores(data, &data.dots[*i]),
-                    _ => Vec::new(),
-                };
-                if scored.is_empty() {
-                    scored.push((String::new(), [None; 3]));
-                }
-                for (bounces, values) in scored {
-                    let (width, height) = (subject.size.0.to_string(), subject.size.1.to_string());
-                    let place = [&subject.scene, &subject.camera, &width, &height, method, &bounces].map(String::clone);
-                    let values = values.map(|v| v.map_or(String::new(), |v| v.to_string()));
-                    lines.push(place.into_iter().chain(values).chain([ms.clone(), error.clone()]).collect());
+                let line = |(bounces, scores)| Line { row, method, cell, bounces, scores };
+                match cell {
+                    Cell::Measured(i) => lines.extend(scores(data, &data.dots[*i]).into_iter().map(line)),
+                    Cell::Failed(_) => lines.push(line((String::new(), [None; 3]))),
+                    Cell::Left => {}
                 }
             }
         }
-        csv_text(&lines)
+        let mut table = Table::new(&lines);
+        table.column("scene", |l| l.row.key.0.scene.clone());
+        table.column("camera", |l| l.row.key.0.camera.clone());
+        table.column("width", |l| l.row.key.0.size.0.to_string());
+        table.column("height", |l| l.row.key.0.size.1.to_string());
+        table.column("method", |l| l.method.to_string());
+        table.column("bounces", |l| l.bounces.clone());
+        for (i, (_, metric)) in SCORES.into_iter().enumerate() {
+            table.column(metric, |l| cell(l.scores[i]));
+        }
+        table.column("median ms", |l| match l.cell {
+            Cell::Measured(i) => data.dots[*i].ms.to_string(),
+            _ => String::new(),
+        });
+        table.column("error", |l| match l.cell {
+            Cell::Failed(error) => first_line(error).to_string(),
+            _ => String::new(),
+        });
+        table.csv()
     }
 }
 
+/// A line of the comma-separated values.
+struct Line<'s> {
+    row: &'s Row,
+    method: &'s str,
+    cell: &'s Cell,
+    bounces: String,
+    scores: [Option<f64>; 3],
+}
+
 impl Row {
+    fn html(&self, data: &Data) -> Markup {
+        let (subject, device) = &self.key;
+        let about = format!("camera {}, time {} s, {device}", subject.camera, subject.time);
+        let reference = data.keys.iter().position(|k| *k == self.key).and_then(|s| data.references[s].as_ref());
+        html! {
+            tr {
+                th title=(about) { (subject.scene) br; small { (subject.size.0) "x" (subject.size.1) } }
+                td { @if let Some(bytes) = reference { img alt="reference" src=(url("image/jpeg", bytes)); } }
+                @for cell in &self.cells { td { (cell.html(data)) } }
+            }
+        }
+    }
+
     /// What rows are sorted by: FLIP of the total of the first method, against the reference of most bounces.
     fn worst(&self, data: &Data) -> Option<f64> {
         match self.cells.first()? {
@@ -155,30 +173,24 @@ impl Row {
 }
 
 impl Cell {
-    fn html(&self, data: &Data) -> String {
+    fn html(&self, data: &Data) -> Markup {
         let i = match self {
             Cell::Measured(i) => *i,
-            Cell::Failed(error) => return format!("<p>failed: {}</p>", escaped(first_line(error))),
-            Cell::Left => return "not measured yet".into(),
+            Cell::Failed(error) => return html! { p { "failed: " (first_line(error)) } },
+            Cell::Left => return html! { "not measured yet" },
         };
-        let mut out = String::new();
-        for (kind, what) in [("picture", "picture"), ("error_map", "error")] {
-            let _ = write!(out, "<img alt=\"{what}\" data-dot=\"{i}\" data-kind=\"{kind}\">");
-        }
-        out += "<table><tr><th>bounces</th>";
-        for (title, _) in SCORES {
-            let _ = write!(out, "<th>{title}</th>");
-        }
-        out += "</tr>";
-        for (bounces, values) in scores(data, &data.dots[i]) {
-            let _ = write!(out, "<tr><td>{bounces}</td>");
-            for value in values {
-                let _ = write!(out, "<td>{}</td>", value.map_or("no number".into(), short));
+        let number = |v: Option<f64>| v.map_or("no number".into(), short);
+        html! {
+            img alt="picture" data-dot=(i) data-kind="picture";
+            img alt="error" data-dot=(i) data-kind="error_map";
+            table {
+                tr { th { "bounces" } @for (title, _) in SCORES { th { (title) } } }
+                @for (bounces, values) in scores(data, &data.dots[i]) {
+                    tr { td { (bounces) } @for value in values { td { (number(value)) } } }
+                }
             }
-            out += "</tr>";
+            (short(data.dots[i].ms)) " ms"
         }
-        let _ = write!(out, "</table>{} ms", short(data.dots[i].ms));
-        out
     }
 }
 
@@ -195,8 +207,4 @@ fn scores(data: &Data, dot: &Dot) -> Vec<(String, [Option<f64>; 3])> {
     }
     list.sort_by_key(|s| std::cmp::Reverse(s.0));
     list.into_iter().map(|(bounces, values)| (bounces.to_string(), values)).collect()
-}
-
-fn first_line(text: &str) -> &str {
-    text.lines().next().unwrap_or_default()
 }

@@ -6,15 +6,14 @@
 use super::chart_spec::CostChart;
 use super::file::{Method, Suite};
 use super::plan::{Job, Options, plan};
-use super::record::{json, lasting};
-use super::run::{Progress, cell_of, median, place};
-use crate::campaign::sweep::PointBuilder;
-use crate::lab::{Lab, LabError, ReusableParts};
-use crate::measure::oracle;
-use crate::measure::{Warm, WarmUp};
+use super::sequence::{cell_of, median, place};
+use crate::campaign::points::PointBuilder;
+use crate::campaign::record::{first_line, json, read_json, write_file};
+use crate::campaign::runner::{Progress, Runner};
+use crate::lab::LabError;
+use crate::measure::{WarmUp, oracle};
 use crate::vulkan::VulkanError;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 use std::path::Path;
 
 /// How often every candidate is timed that is not passed over.
@@ -100,14 +99,12 @@ impl Cost {
 /// # Errors
 /// What is wrong with the suite; no device; a method that can be timed at none of its values.
 pub(super) fn costs(
-    lab: &Lab,
+    runner: &mut Runner,
     builder: &mut PointBuilder,
-    warm: &mut Warm,
     (suite, chart): (&Suite, &CostChart),
     options: &Options,
-    on_progress: &mut dyn FnMut(Progress),
 ) -> Result<Vec<Cost>, LabError> {
-    let charted = |m: &&Method| chart.groups.iter().any(|g| g.1.contains(&m.name));
+    let charted = |m: &&Method| chart.groups.0.iter().any(|g| g.1.value.contains(&m.name));
     let names: Vec<&Method> =
         suite.methods.iter().take(1).chain(suite.methods.iter().skip(1).filter(charted)).collect();
     // A suite of all candidates in one case: its plan checks every value, and gives each its number.
@@ -117,7 +114,8 @@ pub(super) fn costs(
         ..suite.clone()
     };
     let options = Options { only: Vec::new(), ..options.clone() };
-    let jobs = plan(&lab.home, &lab.gpu.info, builder, warm, &timed, &options)?;
+    let (home, device) = (runner.lab.home.clone(), runner.lab.gpu.info.clone());
+    let jobs = plan(&home, &device, builder, &mut runner.warm, &timed, &options)?;
     let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
     let path = options.folder.join("cost.json");
     let kept = read(&path);
@@ -149,12 +147,12 @@ pub(super) fn costs(
     if todo.is_empty() {
         return Ok(costs);
     }
-    let mut shared = HashMap::new();
+    let of = ROUNDS * todo.len();
     let todo = between(&todo, &mut |job| {
-        on_progress(Progress::Times { method: &job.method, done: 0, of: ROUNDS * todo.len() });
-        Ok((time(lab, warm, job, &mut shared), time(lab, warm, first, &mut shared)?.0))
+        told(runner, job, 0, of);
+        Ok((time(runner, job), time(runner, first)?.0))
     })?;
-    let steps = ROUNDS * todo.len();
+    let of = ROUNDS * todo.len();
     for round in 0..ROUNDS {
         // The first is timed again before each method: what is compared lies close together.
         let mut before = None;
@@ -162,14 +160,14 @@ pub(super) fn costs(
         for (i, (cost, candidate, job)) in todo.iter().enumerate() {
             if before != Some(*cost) {
                 before = Some(*cost);
-                first_cost = time(lab, warm, first, &mut shared)?;
+                first_cost = time(runner, first)?;
             }
             let candidate = &mut costs[*cost].candidates[*candidate];
             if candidate.failed.is_some() {
                 continue;
             }
-            on_progress(Progress::Times { method: &job.method, done: round * todo.len() + i, of: steps });
-            let cost = if job.work == first.work { Ok(first_cost) } else { time(lab, warm, job, &mut shared) };
+            told(runner, job, round * todo.len() + i, of);
+            let cost = if job.work == first.work { Ok(first_cost) } else { time(runner, job) };
             match cost {
                 Ok((ms, bytes)) => {
                     candidate.ms.push(ms);
@@ -178,8 +176,8 @@ pub(super) fn costs(
                 }
                 Err(lost @ LabError::Vulkan(VulkanError::Lost(_))) => return Err(lost),
                 Err(error) => {
-                    let why = error.to_string().lines().next().unwrap_or_default().to_string();
-                    *candidate = Candidate { failed: Some(why), ms: vec![], first_ms: vec![], ..candidate.clone() };
+                    let failed = Some(first_line(&error.to_string()).to_string());
+                    *candidate = Candidate { failed, ms: vec![], first_ms: vec![], ..candidate.clone() };
                 }
             }
         }
@@ -189,7 +187,8 @@ pub(super) fn costs(
         let why = cost.candidates.iter().find_map(|c| c.failed.as_deref()).unwrap_or("it takes no time at all");
         return Err(LabError::Request(format!("'{}' could be timed at no {}: {why}", cost.method, cost.parameter)));
     }
-    lasting(&path, &json(&Kept { schema: SCHEMA.into(), costs: costs.clone() })?)?;
+    runner.warm.sessions.clear();
+    write_file(&path, &json(&Kept { schema: SCHEMA.into(), costs: costs.clone() })?)?;
     // As the next run will read it, to the last place.
     Ok(Some(read(&path)).filter(|k| k.len() == costs.len()).unwrap_or(costs))
 }
@@ -230,10 +229,13 @@ fn same(kept: &Cost, wanted: &Cost) -> bool {
     kept.taken().is_some_and(|c| c.ratio().is_some()) && head(kept) == head(wanted) && list(kept) == list(wanted)
 }
 
+fn told(runner: &mut Runner, job: &Job, done: usize, of: usize) {
+    (runner.on_progress)(Progress::Runs(format!("timing {}, {done} of {of}", job.method)));
+}
+
 /// What is kept; folders may come from anywhere, and what is no such file is nothing.
 fn read(path: &Path) -> Vec<Cost> {
-    let bytes = crate::files::read_input(path, MAX_FILE).unwrap_or_default();
-    let kept = serde_json::from_slice::<Kept>(&bytes).ok().filter(|k| k.schema == SCHEMA);
+    let kept = read_json::<Kept>(path, MAX_FILE).ok().filter(|k| k.schema == SCHEMA);
     kept.map_or(Vec::new(), |k| k.costs)
 }
 
@@ -242,20 +244,20 @@ pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite 
     let mut suite = suite.clone();
     for method in &mut suite.methods {
         let cost = costs.iter().find(|c| c.method == method.name);
-        let setting = cost.and_then(|c| chart.varied(&method.name).get(c.chosen?));
-        method.set.extend(setting.cloned());
+        method.set.extend(cost.and_then(|c| chart.varied(&method.name).into_iter().nth(c.chosen?)));
     }
     suite
 }
 
 /// Times a job. Every session is a new one: memory holds one at a time.
-fn time(lab: &Lab, warm: &mut Warm, job: &Job, shared: &mut HashMap<String, ReusableParts>) -> Timed {
+fn time(runner: &mut Runner, job: &Job) -> Timed {
+    let Runner { lab, warm, .. } = runner;
     let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
     let mut wanted: Vec<String> = loaded.graph.output.iter().chain(&loaded.graph.hdr).take(1).cloned().collect();
     if job.case.motion.in_voxels() {
         wanted.extend(oracle::wanted(&loaded.graph)?);
     }
-    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, shared.get(&job.method))?;
+    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, warm.sessions.get(&job.method))?;
     let cell = cell_of(&mut session, job)?;
     let mut lights = job.scene.lights.clone();
     // Sessions are built between the frames of one and the next: a GPU that waits for them falls to a low clock.
@@ -271,6 +273,6 @@ fn time(lab: &Lab, warm: &mut Warm, job: &Job, shared: &mut HashMap<String, Reus
     let frames = times.split_off(times.len().saturating_sub(FRAMES as usize));
     let sums = frames.iter().map(|t| t.passes.iter().map(|p| p.1).sum()).collect();
     let bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
-    shared.insert(job.method.clone(), session.share());
+    warm.sessions.insert(job.method.clone(), session.share());
     Ok((median(sums), bytes))
 }

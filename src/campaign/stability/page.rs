@@ -2,10 +2,12 @@
 
 use super::chart::Chart;
 use super::plot::Plot;
-use super::record::{Measured, Outcome, PartResult, Record, Report};
-use super::table::parts;
-use crate::campaign::report::{escaped, short};
-use std::fmt::Write;
+use super::record::{CaseRecord, Report, picture};
+use super::table::{COLUMNS, Value, parts};
+use crate::campaign::page::{figure, page as whole_page};
+use crate::campaign::table::short;
+use maud::{Markup, html};
+use std::collections::BTreeSet;
 
 const STYLE: &str = "body{font:15px/1.45 sans-serif;margin:2em auto;max-width:1150px;padding:0 1em;color:#222}\
 table{border-collapse:collapse;margin:.6em 0}th,td{padding:.2em .6em;text-align:right;border-bottom:1px solid #ddd}\
@@ -13,125 +15,98 @@ th:first-child,td:first-child{text-align:left}.noise{color:#888;font-style:itali
 figure{margin:1em 0}figcaption{color:#555;font-size:13px}img{max-width:100%;image-rendering:pixelated}svg{max-width:100%;height:auto}\
 .wide{overflow-x:auto}h2{margin-top:2em;border-top:2px solid #ccc;padding-top:.6em}";
 
+/// Parts of the light that have tables on the page; the others are in the files.
+const SHOWN: [&str; 3] = ["total", "diffuse", "specular"];
+
 /// The page as HTML.
 pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> String {
-    let title = escaped(&report.suite);
-    let mut out = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}: stability</title>\n\
-         <meta name=\"viewport\" content=\"width=device-width\"><style>{STYLE}</style></head>\n<body>\n\
-         <h1>{title}: stability</h1>\n"
-    );
+    let title = format!("{}: stability", report.suite);
     let reference = match report.reference {
         Some((samples, bounces)) => format!("path traced, {samples} samples a pixel, {bounces} bounces, one seed"),
         None => "none: changes are measured only where the reference does not change".into(),
     };
-    let devices: std::collections::BTreeSet<&str> = report.results.iter().map(|r| r.device.name.as_str()).collect();
+    let devices: BTreeSet<&str> = report.results.iter().map(|r| r.device.name.as_str()).collect();
     let devices = devices.into_iter().collect::<Vec<_>>().join(", ");
-    let _ = writeln!(
-        out,
-        "<p>Reference: {reference}. Device: {}. E_t is the root mean square of a frame's change less the reference's; \
-         <i class=\"noise\">grey and slanted</i>, hollow in charts: less than 4 times the same between the two halves of \
-         the reference, not told apart from its noise. Jumps are of the displayed picture, in 1/255. All figures: \
-         <a href=\"stability.csv\">stability.csv</a>, <a href=\"frames.csv\">frames.csv</a>, \
-         <a href=\"stability.json\">stability.json</a>.</p>",
-        escaped(&devices)
-    );
-    out += &plot.map_or(String::new(), Plot::html);
-    let figure = |out: &mut String, chart: &Chart| {
-        let _ = writeln!(out, "<figure>{}</figure>", chart.svg);
-    };
-    charts.iter().filter(|c| c.case.is_none()).for_each(|c| figure(&mut out, c));
-    let parts = parts(report);
-    let mut cases: Vec<String> = report.results.iter().map(Record::title).collect();
-    cases.dedup();
-    for case in &cases {
-        let of: Vec<&Record> = report.results.iter().filter(|r| r.title() == *case).collect();
-        let Some(first) = of.first() else { continue };
-        let _ = writeln!(
-            out,
-            "<h2>{}</h2>\n<p>{} Scene {}, {}; {}x{}, {} frames after {} of warm-up.</p>",
-            escaped(case),
-            escaped(&first.about),
-            escaped(&first.scene),
-            escaped(&first.motion),
-            first.size[0],
-            first.size[1],
-            first.frames,
-            first.warmup
-        );
-        for part in parts.iter().filter(|p| ["total", "diffuse", "specular"].contains(&p.as_str())) {
-            table(&mut out, part, &of);
+    let parts: Vec<String> = parts(report).into_iter().filter(|p| SHOWN.contains(&p.as_str())).collect();
+    let body = html! {
+        h1 { (title) }
+        p {
+            "Reference: " (reference) ". Device: " (devices) ". E_t is the root mean square of a frame's change less the \
+             reference's; " i.noise { "grey and slanted" } ", hollow in charts: less than 4 times the same between the two \
+             halves of the reference, not told apart from its noise. Jumps are of the displayed picture, in 1/255. All \
+             figures: "
+            a href="stability.csv" { "stability.csv" } ", " a href="frames.csv" { "frames.csv" } ", "
+            a href="stability.json" { "stability.json" } "."
         }
-        charts.iter().filter(|c| c.case.as_ref() == Some(case)).for_each(|c| figure(&mut out, c));
-        for r in &of {
-            if let Some((m, w)) = r.measured().and_then(|m| Some((m, m.worst.as_ref()?))) {
-                let warnings =
-                    if m.warnings.is_empty() { String::new() } else { format!(" {}.", m.warnings.join("; ")) };
-                let _ = writeln!(
-                    out,
-                    "<figure><img src=\"pictures/{0}.png\" alt=\"\"><figcaption><b>{1}</b>, worst frame {2} of {6} \
-                     (pictures/{0}.png): {3}; red brighter, blue darker, full at {4} / 255.{5}</figcaption></figure>",
-                    r.id,
-                    escaped(&r.method),
-                    w.frame,
-                    escaped(&w.panels.join(" | ")),
-                    short(w.full),
-                    escaped(&warnings),
-                    escaped(&w.part)
-                );
+        @if let Some(plot) = plot { (plot.html()) }
+        @for chart in charts.iter().filter(|c| c.case.is_none()) { (figure(&chart.svg)) }
+        @for (case, of) in report.cases() {
+            h2 { (case) }
+            @if let Some(first) = of.first().map(|r| &r.about) {
+                p {
+                    (first.text) " Scene " (first.scene) ", " (first.motion) "; " (first.size[0]) "x" (first.size[1]) ", "
+                    (first.frames) " frames after " (first.warmup) " of warm-up."
+                }
+            }
+            @for part in &parts { (table(part, &of)) }
+            @for chart in charts.iter().filter(|c| c.case.as_ref() == Some(&case)) { (figure(&chart.svg)) }
+            @for r in &of { (worst(r)) }
+        }
+    };
+    whole_page(&title, STYLE, &body)
+}
+
+/// The worst frame of a method in a case.
+fn worst(record: &CaseRecord) -> Markup {
+    let picture = picture(&record.id);
+    html! {
+        @if let Some((m, w)) = record.done().and_then(|m| Some((m, m.worst.as_ref()?))) {
+            figure {
+                img src=(picture) alt="";
+                figcaption {
+                    b { (record.about.method) } ", worst frame " (w.frame) " of " (w.part) " (" (picture) "): "
+                    (w.panels.join(" | ")) "; red brighter, blue darker, full at " (short(w.full)) " / 255."
+                    @if !m.warnings.is_empty() { " " (m.warnings.join("; ")) "." }
+                }
             }
         }
     }
-    out += "</body></html>\n";
-    out
 }
 
-type Column = (&'static str, fn(&Measured, &PartResult) -> Option<f64>);
-
-const COLUMNS: [Column; 16] = [
-    ("E_t", |_, p| p.e),
-    ("noise", |_, p| p.e_noise),
-    ("pops", |_, p| p.pops),
-    ("jump", |_, p| p.jump),
-    ("flicker", |_, p| p.flicker.filter(|_| p.frames.len() > 1).map(|f| f.mean)),
-    ("its p99", |_, p| p.flicker.filter(|_| p.frames.len() > 1).map(|f| f.p99)),
-    ("its noise", |_, p| p.flicker_noise),
-    ("frames to 5 %", |_, p| p.step.and_then(|s| s.frames).map(|f| f as f64)),
-    ("overshoot", |_, p| p.step.map(|s| s.overshoot)),
-    ("settling frames", |_, p| p.settling.map(|f| f as f64)),
-    ("relMSE", |_, p| p.scores.as_ref().map(|s| s.relmse)),
-    ("structure", |_, p| p.scores.as_ref().map(|s| s.structure)),
-    ("energy", |_, p| p.scores.as_ref().map(|s| s.energy_ratio)),
-    ("leak", |_, p| p.scores.as_ref().map(|s| s.leak)),
-    ("over-occluded", |_, p| p.scores.as_ref().map(|s| s.over_occluded)),
-    ("voxel recall", |m, _| m.voxels.as_ref().and_then(|v| v.recall)),
-];
-
 /// A row for each method; columns that nobody has are left out.
-fn table(out: &mut String, part: &str, records: &[&Record]) {
-    let found = |r: &Record, c: &Column| {
-        let m = r.measured()?;
-        (c.1)(m, m.parts.get(part)?).filter(|v| v.is_finite())
+fn table(part: &str, records: &[&CaseRecord]) -> Markup {
+    let found = |r: &CaseRecord, value: Value| r.part(part).and_then(value).filter(|v| v.is_finite());
+    let recall = |r: &CaseRecord| r.done().and_then(|m| m.voxels.as_ref()?.recall);
+    let columns = COLUMNS.iter().filter_map(|(_, title, value)| Some(((*title)?, *value)));
+    let columns: Vec<(&str, Value)> = columns.filter(|c| records.iter().any(|r| found(r, c.1).is_some())).collect();
+    let voxels = records.iter().any(|r| recall(r).is_some());
+    let number = |v: Option<f64>| v.map_or(String::new(), short);
+    let noisy = |r: &CaseRecord, title: &str| {
+        (title == "E_t" && r.part(part).is_some_and(|p| p.told_apart == Some(false))).then_some("noise")
     };
-    let columns: Vec<&Column> = COLUMNS.iter().filter(|c| records.iter().any(|r| found(r, c).is_some())).collect();
-    let _ = write!(out, "<div class=\"wide\"><table><tr><th>{}</th>", escaped(part));
-    columns.iter().for_each(|c| {
-        let _ = write!(out, "<th>{}</th>", c.0);
-    });
-    *out += "</tr>\n";
-    for r in records {
-        let _ = write!(out, "<tr><td>{}</td>", escaped(&r.method));
-        if let Outcome::Failed(why) = &r.outcome {
-            let why = why.lines().next().unwrap_or_default();
-            let _ = write!(out, "<td class=\"bad\" colspan=\"{}\">{}</td>", columns.len(), escaped(why));
+    html! {
+        div.wide {
+            table {
+                tr {
+                    th { (part) }
+                    @for (title, _) in &columns { th { (title) } }
+                    @if voxels { th { "voxel recall" } }
+                }
+                @for r in records {
+                    tr {
+                        td { (r.about.method) }
+                        @match r.error() {
+                            Some(why) => { td.bad colspan=(columns.len() + usize::from(voxels)) { (why) } }
+                            None => {
+                                @for (title, value) in &columns {
+                                    td class=[noisy(r, title)] { (number(found(r, *value))) }
+                                }
+                                @if voxels { td { (number(recall(r))) } }
+                            }
+                        }
+                    }
+                }
+            }
         }
-        for c in columns.iter().filter(|_| r.measured().is_some()) {
-            let mark = c.0 == "E_t"
-                && r.measured().and_then(|m| m.parts.get(part)).is_some_and(|p| p.told_apart == Some(false));
-            let class = if mark { " class=\"noise\"" } else { "" };
-            let _ = write!(out, "<td{class}>{}</td>", found(r, c).map_or(String::new(), short));
-        }
-        *out += "</tr>\n";
     }
-    *out += "</table></div>\n";
 }

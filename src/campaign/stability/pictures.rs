@@ -1,5 +1,6 @@
 //! A frame as pictures side by side.
 
+use super::series::Known;
 use crate::lab::LabError;
 use crate::metrics::colour::display;
 use crate::metrics::{Kind, Linear};
@@ -21,12 +22,11 @@ pub(super) struct Panels {
 impl Panels {
     /// Of radiance: what was before, what is, the reference, and the difference: of the changes where there is a frame
     /// before, of the pictures otherwise.
-    pub fn new(
-        before: Option<&Linear>,
-        x: &Linear,
-        reference: Option<&Linear>,
-        reference_before: Option<&Linear>,
-    ) -> Panels {
+    pub fn new(before: Option<&Linear>, x: &Linear, known: Known) -> Panels {
+        let (reference, reference_before) = match known {
+            Known::Reference { now, before } => (Some(&now.mean), before.map(|b| &b.mean)),
+            Known::Nothing { .. } => (None, None),
+        };
         let shown = |p: &Linear| -> Vec<[f64; 3]> {
             p.rgb.iter().map(|c| c.map(|v| display(Kind::Radiance, if v.is_finite() { v } else { 0.0 }))).collect()
         };

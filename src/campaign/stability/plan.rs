@@ -4,13 +4,17 @@ use super::cameras::Cameras;
 use super::file::{Case, Method, Suite};
 use super::motion::FrameState;
 use super::param_track::ParamTrack;
-use crate::campaign::sweep::PointBuilder;
+use super::record::{About, Measured, title};
+use crate::campaign::points::{DIGITS, PointBuilder};
+use crate::campaign::record::Folder;
+use crate::campaign::runner::{self, Mistakes, Runner};
+use crate::campaign::settings::{Setting, lines, named, set_params};
 use crate::experiment::{Experiment, check_size};
-use crate::graph::source::{At, Diagnostic, Loc};
+use crate::files::content_id;
 use crate::lab::{LabError, Workspace, camera_of, parts_of};
 use crate::measure::reference;
 use crate::measure::{Frames, Warm};
-use crate::results::capture::{id_of, scene_hash};
+use crate::results::capture::scene_hash;
 use crate::scene::Scene;
 use crate::vulkan::DeviceInfo;
 use std::path::PathBuf;
@@ -88,24 +92,16 @@ pub fn plan(
     // What the frames are compared with is part of a result.
     let shaders = if options.reference { reference::shaders(home)? } else { String::new() };
     let mut jobs: Vec<Job> = Vec::new();
-    let mut errors: Vec<Diagnostic> = Vec::new();
+    let mut mistakes = Mistakes::default();
     let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
     for case in suite.cases.iter().filter(wanted) {
         for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
-            match job(home, device, builder, warm, suite, options, (method, case, &shaders)) {
-                Ok(job) => jobs.push(job),
-                Err(LabError::Input(list)) => {
-                    for diagnostic in list {
-                        if !errors.contains(&diagnostic) {
-                            errors.push(diagnostic);
-                        }
-                    }
-                }
-                Err(other) => return Err(other),
-            }
+            let job = job(home, device, builder, warm, suite, options, (method, case, &shaders));
+            jobs.extend(mistakes.take(job)?);
         }
     }
-    if errors.is_empty() { Ok(jobs) } else { Err(LabError::Input(errors)) }
+    mistakes.none()?;
+    Ok(jobs)
 }
 
 fn job(
@@ -121,21 +117,15 @@ fn job(
     let mut experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input)?;
     let loaded = warm.graph(home, &experiment.graph)?.clone();
     let other = experiment.graph != suite.experiment.graph;
-    let file = experiment.sources.add("--set".as_ref(), options.set.join("\n"));
-    let mut offset = 0;
-    for setting in &options.set {
-        let (name, value) = setting
-            .split_once('=')
-            .ok_or_else(|| LabError::Request(format!("--set {setting}: expected NAME=VALUE")))?;
-        if !other || loaded.graph.params.index(name.trim()).is_some() {
-            experiment.params.push((Loc { value: name.trim().into(), at: At { file, offset } }, value.into()));
-        }
-        offset += u32::try_from(setting.len() + 1).unwrap_or(0);
-    }
+    let set: Vec<(&str, &str)> =
+        options.set.iter().map(|s| named("--set", s, "NAME=VALUE")).collect::<Result<_, LabError>>()?;
+    let (text, settings) = lines(set, "=");
+    experiment.sources.add("--set".as_ref(), text);
+    let has = |s: &&Setting| !other || loaded.graph.params.index(&s.name.value).is_some();
+    set_params(&mut experiment, settings.iter().filter(has));
     experiment.size = options.size.unwrap_or(experiment.size);
     check_size(experiment.size).map_err(LabError::Request)?;
-    let title = if case.variant.is_empty() { case.name.clone() } else { format!("{}: {}", case.name, case.variant) };
-    let wrong = |why: String| LabError::Request(format!("case '{title}': {why}"));
+    let wrong = |why: String| LabError::Request(format!("case '{}': {why}", title(&case.name, &case.variant)));
     let frames = options.frames.filter(|_| !case.own_frames).unwrap_or(case.frames);
     let names: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.0).collect();
     let parts = names.len() as u64;
@@ -179,14 +169,12 @@ fn job(
         setting: None,
     };
     let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
-    let work =
-        id_of(&[point.id, format!("{:?}", case.motion), format!("{} {} {}", device.name, device.driver, device.api)]);
-    let id = id_of(&[
-        work.clone(),
-        format!("{samples:?} {} {} {} {} {shaders}", suite.bounces, suite.seed, case.voxels, suite.pictures),
-        // Two names of the same thing are two rows.
-        format!("{:?} {:?} {:?}", method.name, case.name, case.variant),
-    ]);
+    let device = format!("{} {} {}", device.name, device.driver, device.api);
+    let work = content_id([point.id, format!("{:?}", case.motion), device], DIGITS);
+    let asked = format!("{samples:?} {} {} {} {} {shaders}", suite.bounces, suite.seed, case.voxels, suite.pictures);
+    // Two names of the same thing are two rows.
+    let names = format!("{:?} {:?} {:?}", method.name, case.name, case.variant);
+    let id = content_id([&work, &asked, &names], DIGITS);
     Ok(Job {
         id,
         work,
@@ -201,6 +189,37 @@ fn job(
         reference_moves,
         frames,
     })
+}
+
+impl runner::Job for Job {
+    type About = About;
+    type Measured = Measured;
+
+    fn id(&self) -> &str {
+        &self.id
+    }
+
+    fn title(&self) -> String {
+        format!("{}, {}", title(&self.case.name, &self.case.variant), self.method)
+    }
+
+    fn about(&self, _: &mut Runner, _: &Folder) -> Result<About, LabError> {
+        Ok(About {
+            case: self.case.name.clone(),
+            variant: self.case.variant.clone(),
+            text: self.case.about.clone(),
+            motion: self.case.motion.describe(),
+            method: self.method.clone(),
+            scene: self.scene.name.clone(),
+            size: self.experiment.size.into(),
+            warmup: self.case.warmup,
+            frames: self.frames,
+        })
+    }
+
+    fn warnings(measured: &Measured) -> &[String] {
+        &measured.warnings
+    }
 }
 
 impl Job {

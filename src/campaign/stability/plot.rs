@@ -2,26 +2,22 @@
 
 use super::chart_spec::CostChart;
 use super::cost::Cost;
-use super::record::{Measured, PartResult, Report};
-use super::table::{mebibytes, text};
-use crate::campaign::report::{COLORS, escaped, short, ticks};
-use crate::campaign::sweep::csv_text;
+use super::record::{PartResult, Report};
+use crate::campaign::charts::{Axis, color, cut, drawn, plane, text};
+use crate::campaign::page::figure;
+use crate::campaign::table::{Table, cell, mebibytes, number, short};
 use crate::lab::LabError;
-use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use crate::measure::comparison::{NOISE_FACTOR, within_noise};
+use maud::{Markup, html};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::fmt::Write;
-use std::ops::Range;
+use plotters::style::text_anchor::{HPos, VPos};
 
-const FONT: &str = "sans-serif";
 /// A panel, pixels.
 const PANEL: (u32, u32) = (620, 500);
 /// Height of a dot's label, pixels.
 const LABEL: i32 = 16;
 /// Values that spread by more than this factor get a logarithmic axis.
 const SPREAD: f64 = 8.0;
-/// Results below so many times the noise of the reference are not told apart from it.
-const NOISE_FACTOR: f64 = 4.0;
 
 /// A value with the same between the halves of the reference.
 #[derive(Clone, Copy)]
@@ -61,82 +57,84 @@ impl Plot<'_> {
     /// Drawing into memory gives none, whatever the results.
     pub fn new<'a>(report: &Report, spec: &'a CostChart) -> Result<Plot<'a>, LabError> {
         let rows = |list: &[String]| list.iter().map(|m| row(report, spec, m)).collect();
-        let groups: Vec<(String, Vec<Row>)> = spec.groups.iter().map(|g| (g.0.clone(), rows(&g.1))).collect();
-        let svg = draw(spec, &groups).map_err(|e| LabError::Request(format!("cannot draw the chart of costs: {e}")))?;
+        let groups: Vec<(String, Vec<Row>)> =
+            spec.groups.0.iter().map(|g| (g.0.value.clone(), rows(&g.1.value))).collect();
+        let svg = draw(spec, &groups)?;
         Ok(Plot { spec, groups, svg })
     }
 
     /// `cost.csv`.
     pub fn csv(&self) -> Result<String, LabError> {
-        let header = ["group", "method", "setting", "GPU ms", "part of the first's ms", "memory MiB"].map(String::from);
-        let scores = ["relMSE", "relMSE noise", "E_t", "E_t noise"].map(|c| format!("{} {c}", self.spec.part));
-        let mut lines = vec![header.into_iter().chain(scores).collect::<Vec<_>>()];
-        for (group, rows) in &self.groups {
-            lines.extend(rows.iter().map(|r| {
-                let score = |s: Option<Score>| [text(s.map(|s| s.value)), text(s.map(|s| s.noise))];
-                let own = [group.clone(), r.method.clone(), r.setting.clone(), text(r.ms), text(r.ratio)];
-                let memory = r.memory_bytes.map_or(String::new(), mebibytes);
-                own.into_iter().chain([memory]).chain(score(r.error)).chain(score(r.change)).collect()
-            }));
-        }
-        csv_text(&lines)
+        let rows: Vec<(&String, &Row)> =
+            self.groups.iter().flat_map(|(group, rows)| rows.iter().map(move |r| (group, r))).collect();
+        let part = &self.spec.part;
+        let mut table = Table::new(&rows);
+        table.column("group", |r| r.0.clone());
+        table.column("method", |r| r.1.method.clone());
+        table.column("setting", |r| r.1.setting.clone());
+        table.column("GPU ms", |r| number(r.1.ms));
+        table.column("part of the first's ms", |r| number(r.1.ratio));
+        table.column("memory MiB", |r| cell(r.1.memory_bytes.map(mebibytes)));
+        table.column(format!("{part} relMSE"), |r| number(r.1.error.map(|s| s.value)));
+        table.column(format!("{part} relMSE noise"), |r| number(r.1.error.map(|s| s.noise)));
+        table.column(format!("{part} E_t"), |r| number(r.1.change.map(|s| s.value)));
+        table.column(format!("{part} E_t noise"), |r| number(r.1.change.map(|s| s.noise)));
+        table.csv()
     }
 
     /// Chart and tables, HTML.
-    pub fn html(&self) -> String {
-        let mut out = String::new();
-        let _ = writeln!(
-            out,
-            "<h2>What stability costs</h2>\n<p>Part: {}. To the right relMSE of {}, up the root mean square of E_t of {}; \
-             both are better towards the lower left. Times and memory are of frames that make the picture alone, timed \
-             in '{}'. A bar reaches to what is left without the noise that the reference adds on average; hollow: less \
-             than {NOISE_FACTOR} times the noise between its halves. <a href=\"cost.csv\">cost.csv</a></p>",
-            escaped(&self.spec.part),
-            escaped(&self.spec.error.join(", ")),
-            escaped(&self.spec.motions.join(", ")),
-            escaped(self.spec.motions.first().map_or("", String::as_str))
-        );
-        match &self.svg {
-            Some(svg) => drop(writeln!(out, "<figure>{svg}</figure>")),
-            None => out += "<p>No chart: no method has results in all of these cases.</p>\n",
-        }
-        for (group, rows) in &self.groups {
-            let _ = writeln!(
-                out,
-                "<div class=\"wide\"><table><tr><th>{}</th><th>setting</th><th>GPU ms</th><th>of the first's</th>\
-                 <th>MiB</th><th>relMSE</th><th>noise</th><th>E_t</th><th>noise</th></tr>",
-                escaped(group)
-            );
-            for r in rows {
-                let _ = write!(out, "<tr><td>{}</td><td>{}</td>", escaped(&r.method), escaped(&r.setting));
-                let number = |v: Option<f64>| v.map_or(String::new(), short);
-                let off = if r.off { " class=\"bad\"" } else { "" };
-                let ratio = r.ratio.map_or(String::new(), |v| format!("{v:.2}"));
-                let _ = write!(out, "<td>{}</td><td{off}>{ratio}</td>", number(r.ms));
-                let _ = write!(out, "<td>{}</td>", r.memory_bytes.map_or(String::new(), mebibytes));
-                for score in [r.error, r.change] {
-                    let noisy = if score.is_some_and(|s| s.within_noise()) { " class=\"noise\"" } else { "" };
-                    let (value, noise) = (number(score.map(|s| s.value)), number(score.map(|s| s.noise)));
-                    let _ = write!(out, "<td{noisy}>{value}</td><td>{noise}</td>");
-                }
-                out += "</tr>\n";
+    pub fn html(&self) -> Markup {
+        let CostChart { part, error, motions, equal_time, .. } = self.spec;
+        let shown = |v: Option<f64>| v.map_or(String::new(), short);
+        let off = self.groups.iter().flat_map(|g| &g.1).any(|r| r.off);
+        html! {
+            h2 { "What stability costs" }
+            p {
+                "Part: " (part) ". To the right relMSE of " (error.join(", ")) ", up the root mean square of E_t of "
+                (motions.join(", ")) "; both are better towards the lower left. Times and memory are of frames that make \
+                 the picture alone, timed in '" (cell(motions.first())) "'. A bar reaches to what is left without the noise \
+                 that the reference adds on average; hollow: less than " (NOISE_FACTOR) " times the noise between its \
+                 halves. " a href="cost.csv" { "cost.csv" }
             }
-            out += "</table></div>\n";
+            @match &self.svg {
+                Some(svg) => (figure(svg)),
+                None => p { "No chart: no method has results in all of these cases." }
+            }
+            @for (group, rows) in &self.groups {
+                div.wide {
+                    table {
+                        tr {
+                            th { (group) }
+                            @for title in ["setting", "GPU ms", "of the first's", "MiB", "relMSE", "noise", "E_t", "noise"] {
+                                th { (title) }
+                            }
+                        }
+                        @for r in rows {
+                            tr {
+                                td { (r.method) }
+                                td { (r.setting) }
+                                td { (shown(r.ms)) }
+                                td class=[r.off.then_some("bad")] { (cell(r.ratio.map(|v| format!("{v:.2}")))) }
+                                td { (cell(r.memory_bytes.map(mebibytes))) }
+                                @for score in [r.error, r.change] {
+                                    td class=[score.filter(Score::noisy).map(|_| "noise")] { (shown(score.map(|s| s.value))) }
+                                    td { (shown(score.map(|s| s.noise))) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            @if let Some(equal) = equal_time.as_ref().filter(|_| off) {
+                p.bad { "Red: no value comes within " (format!("{:.0}", 100.0 * equal.tolerance)) " % of the first's time." }
+            }
         }
-        if let Some(equal) = &self.spec.equal_time
-            && self.groups.iter().flat_map(|g| &g.1).any(|r| r.off)
-        {
-            let percent = 100.0 * equal.tolerance;
-            let _ =
-                writeln!(out, "<p class=\"bad\">Red: no value comes within {percent:.0} % of the first's time.</p>");
-        }
-        out
     }
 }
 
 impl Score {
-    fn within_noise(&self) -> bool {
-        self.value < NOISE_FACTOR * self.noise
+    fn noisy(&self) -> bool {
+        within_noise(self.value, Some(self.noise))
     }
 }
 
@@ -179,114 +177,46 @@ fn values(
 ) -> Option<Vec<(f64, f64)>> {
     let mut list = Vec::new();
     for case in cases {
-        let own = report.results.iter().filter(|r| r.case == *case && r.method == method);
+        let own = report.results.iter().filter(|r| r.about.case == *case && r.about.method == method);
         let before = list.len();
         for record in own {
-            let part = record.measured().and_then(|m: &Measured| m.parts.get(&spec.part))?;
-            list.push(value(part).filter(|v| v.0.is_finite() && v.1.is_finite())?);
+            list.push(value(record.part(&spec.part)?).filter(|v| v.0.is_finite() && v.1.is_finite())?);
         }
         (list.len() > before).then_some(())?;
     }
     Some(list)
 }
 
-/// An axis: linear or logarithmic, from its least to its greatest value.
-#[derive(Clone)]
-struct Axis {
-    log: bool,
-    range: (f64, f64),
-}
-
-impl Axis {
-    fn of(values: &[f64]) -> Axis {
-        let most = values.iter().copied().fold(0.0, f64::max);
-        let least = values.iter().copied().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
-        match most > 0.0 && most / least > SPREAD {
-            true => Axis { log: true, range: (least / 1.6, most * 1.6) },
-            false => Axis { log: false, range: (0.0, if most > 0.0 { most * 1.15 } else { 1.0 }) },
-        }
-    }
-
-    fn title(&self, what: &str) -> String {
-        if self.log { format!("{what} (log)") } else { what.to_string() }
+/// An axis from the least to the greatest of some values.
+fn axis(title: &str, values: impl Iterator<Item = f64> + Clone) -> Axis {
+    let most = values.clone().fold(0.0, f64::max);
+    let least = values.filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
+    match most > 0.0 && most / least > SPREAD {
+        true => Axis::log(title, (least / 1.6, most * 1.6)),
+        false => Axis::linear(title, (0.0, if most > 0.0 { most * 1.15 } else { 1.0 })),
     }
 }
 
-impl Ranged for Axis {
-    type FormatOption = DefaultFormatting;
-    type ValueType = f64;
+/// Name, error and change of a method in a group, with its colour.
+type Dot<'a> = (&'a str, Score, Score, RGBColor);
 
-    /// What is below a logarithmic axis lies at its end.
-    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
-        let (low, high) = self.range;
-        let part = match self.log {
-            true => (value.max(low) / low).ln() / (high / low).ln(),
-            false => (value - low) / (high - low),
-        };
-        limit.0 + (f64::from(limit.1 - limit.0) * part).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        match (hint.weight().allow_light_points(), self.log) {
-            (true, _) => Vec::new(),
-            (false, true) => ticks(self.range),
-            (false, false) => {
-                let decade = 10f64.powf((self.range.1 / 5.0).log10().floor());
-                let steps = [1.0, 2.0, 5.0, 10.0].map(|s| s * decade);
-                let step = steps.into_iter().find(|s| s * 5.0 >= self.range.1).unwrap_or(self.range.1);
-                (0..=5).map(|i| step * f64::from(i)).filter(|v| *v <= self.range.1).collect()
-            }
-        }
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.range.0..self.range.1
-    }
+fn dots(rows: &[Row]) -> Vec<Dot<'_>> {
+    let dot = |(i, r): (usize, &Row)| Some((rows[i].method.as_str(), r.error?, r.change?, color(i)));
+    rows.iter().enumerate().filter_map(dot).collect()
 }
-
-type Failure = Box<dyn std::error::Error>;
 
 /// A panel a group, on equal axes; a colour for each place in a group.
-fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String>, Failure> {
-    type Dot<'a> = (&'a str, Score, Score, RGBColor);
-    fn dots(rows: &[Row]) -> Vec<Dot<'_>> {
-        let colors = COLORS.iter().cycle();
-        rows.iter()
-            .zip(colors)
-            .filter_map(|(r, color)| Some((r.method.as_str(), r.error?, r.change?, *color)))
-            .collect()
-    }
+fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String>, LabError> {
     let all: Vec<Dot> = groups.iter().flat_map(|g| dots(&g.1)).collect();
     if all.is_empty() {
         return Ok(None);
     }
-    let (x, y) = (
-        Axis::of(&all.iter().map(|d| d.1.value).collect::<Vec<_>>()),
-        Axis::of(&all.iter().map(|d| d.2.value).collect::<Vec<_>>()),
-    );
-    let count = u32::try_from(groups.len())?;
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, (PANEL.0 * count, PANEL.1)).into_drawing_area();
-        area.fill(&WHITE)?;
+    let x = axis(&format!("relMSE of {}, standing still", spec.part), all.iter().map(|d| d.1.value));
+    let y = axis(&format!("E_t of {}, moving", spec.part), all.iter().map(|d| d.2.value));
+    let width = PANEL.0.saturating_mul(u32::try_from(groups.len()).unwrap_or(u32::MAX));
+    let svg = drawn("cost", (width, PANEL.1), |area| {
         for ((title, rows), panel) in groups.iter().zip(area.split_evenly((1, groups.len()))) {
-            let mut chart = ChartBuilder::on(&panel)
-                .margin(12)
-                .caption(title, (FONT, 18))
-                .x_label_area_size(46)
-                .y_label_area_size(76)
-                .build_cartesian_2d(x.clone(), y.clone())?;
-            chart
-                .configure_mesh()
-                .x_desc(x.title(&format!("relMSE of {}, standing still", spec.part)))
-                .y_desc(y.title(&format!("E_t of {}, moving", spec.part)))
-                .x_label_formatter(&|v| short(*v))
-                .y_label_formatter(&|v| short(*v))
-                .axis_desc_style((FONT, 15))
-                .label_style((FONT, 13))
-                .light_line_style(WHITE)
-                .bold_line_style(RGBColor(225, 225, 225))
-                .draw()?;
+            let mut chart = plane(&panel, title, &x, &y)?;
             let mut placed: Vec<(i32, i32)> = Vec::new();
             let mut dots = dots(rows);
             dots.sort_by(|a, b| b.2.value.total_cmp(&a.2.value));
@@ -294,7 +224,7 @@ fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
                 let at = (error.value, change.value);
                 let bars = [vec![(error.without, at.1), at], vec![(at.0, change.without), at]];
                 chart.draw_series(bars.map(|bar| PathElement::new(bar, color.stroke_width(1))))?;
-                let hollow = error.within_noise() || change.within_noise();
+                let hollow = error.noisy() || change.noisy();
                 let inside = if hollow { WHITE.filled() } else { color.filled() };
                 chart.draw_series([Circle::new(at, 5, inside), Circle::new(at, 5, color.stroke_width(2))])?;
                 // Labels stand beside their dots, on the left above the bar, and below those of dots that are close.
@@ -305,11 +235,10 @@ fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
                 let line = near.map(|p| p.1 + LABEL).fold(dot.1 - if right { 0 } else { 10 }, i32::max);
                 placed.push((dot.0, line));
                 let (side, anchor) = if right { (9, HPos::Left) } else { (-9, HPos::Right) };
-                let style = (FONT, 13).into_text_style(&area).pos(Pos::new(anchor, VPos::Center));
-                area.draw(&Text::new(name.chars().take(34).collect::<String>(), (dot.0 + side, line), style))?;
+                area.draw(&Text::new(cut(name, 34), (dot.0 + side, line), text(13, anchor, VPos::Center)))?;
             }
         }
-        area.present()?;
-    }
+        Ok(())
+    })?;
     Ok(Some(svg))
 }

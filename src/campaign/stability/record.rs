@@ -1,19 +1,16 @@
-//! What a suite leaves: `results/ID.json`, one finished method in one case each, and `stability.json`, all of them. Folders
-//! may come from anywhere and are not trusted.
+//! What a suite leaves: `results/ID.json`, one finished method in one case each, and `stability.json`, all of them.
 
 use super::cost::Cost;
 use super::score::{Change, Flicker, Step};
-use crate::files::write_lasting;
-use crate::lab::LabError;
+use crate::campaign::record::{Folder, Record};
 use crate::measure::oracle::Score;
 use crate::metrics::Scores;
-use crate::results::stats::DeviceStats;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Version of a result's file.
-pub const RESULT_SCHEMA: &str = "conelab-stability-result-1";
+const RESULT_SCHEMA: &str = "conelab-stability-result-1";
 /// Version of `stability.json`.
 pub const SCHEMA: &str = "conelab-stability-1";
 /// Largest file of a result, bytes: 10,000 frames of five parts.
@@ -105,29 +102,16 @@ pub struct Measured {
     pub warnings: Vec<String>,
 }
 
-/// The result of a method in a case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// Measured.
-    Done(Box<Measured>),
-    /// Why not.
-    Failed(String),
-}
-
 /// A method in a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Record {
-    /// [`RESULT_SCHEMA`].
-    pub schema: String,
-    /// See [`super::Job::id`].
-    pub id: String,
+pub struct About {
     /// Name of the case.
     pub case: String,
     /// Name of its variant, empty if it has none.
     pub variant: String,
     /// About the case, for people.
-    pub about: String,
+    #[serde(rename = "about")]
+    pub text: String,
     /// What moves.
     pub motion: String,
     /// Name of the method.
@@ -140,11 +124,10 @@ pub struct Record {
     pub warmup: usize,
     /// Frames measured.
     pub frames: usize,
-    /// Device.
-    pub device: DeviceStats,
-    /// Result of the method in the case.
-    pub outcome: Outcome,
 }
+
+/// The result of a method in a case.
+pub type CaseRecord = Record<About, Measured>;
 
 /// `stability.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -163,61 +146,49 @@ pub struct Report {
     #[serde(default)]
     pub costs: Vec<Cost>,
     /// Every method in every case, in order.
-    pub results: Vec<Record>,
+    pub results: Vec<CaseRecord>,
 }
 
-impl Record {
-    /// The scores, if there are any.
-    pub fn measured(&self) -> Option<&Measured> {
-        match &self.outcome {
-            Outcome::Done(measured) => Some(measured),
-            Outcome::Failed(_) => None,
+impl Report {
+    /// The results case by case, by their titles.
+    pub fn cases(&self) -> Vec<(String, Vec<&CaseRecord>)> {
+        let mut cases: Vec<(String, Vec<&CaseRecord>)> = Vec::new();
+        for record in &self.results {
+            let title = record.about.title();
+            match cases.iter_mut().find(|c| c.0 == title) {
+                Some((_, of)) => of.push(record),
+                None => cases.push((title, vec![record])),
+            }
         }
+        cases
     }
+}
 
+impl About {
     /// The case with its variant.
     pub fn title(&self) -> String {
-        if self.variant.is_empty() { self.case.clone() } else { format!("{}: {}", self.case, self.variant) }
+        title(&self.case, &self.variant)
     }
 }
 
-/// A folder of results.
-pub(super) struct Folder(pub PathBuf);
-
-impl Folder {
-    fn result(&self, id: &str) -> PathBuf {
-        self.0.join("results").join(format!("{id}.json"))
-    }
-
-    pub fn picture(&self, id: &str) -> PathBuf {
-        self.0.join("pictures").join(format!("{id}.png"))
-    }
-
-    /// A result that is there, whole, and measured; anything else is measured again.
-    pub fn read(&self, id: &str) -> Option<Record> {
-        let path = self.result(id);
-        let bytes = crate::files::read_input(&path, MAX_FILE).ok()?;
-        let record: Record = serde_json::from_slice(&bytes).ok()?;
-        let fits = record.schema == RESULT_SCHEMA && record.id == id;
-        let whole = record.measured().is_some_and(|m| m.worst.is_none() || self.picture(id).is_file());
-        (fits && whole).then_some(record)
-    }
-
-    /// Keeps a result, its picture first, so that a result that is there is whole.
-    pub fn write(&self, record: &Record, picture: Option<&[u8]>) -> Result<(), LabError> {
-        if let Some(bytes) = picture {
-            lasting(&self.picture(&record.id), bytes)?;
-        }
-        lasting(&self.result(&record.id), &json(record)?)
+impl CaseRecord {
+    /// What was measured of a part of the light.
+    pub fn part(&self, name: &str) -> Option<&PartResult> {
+        self.done()?.parts.get(name)
     }
 }
 
-pub(super) fn json(value: &impl Serialize) -> Result<Vec<u8>, LabError> {
-    let mut bytes = serde_json::to_vec_pretty(value).map_err(|e| LabError::Request(e.to_string()))?;
-    bytes.push(b'\n');
-    Ok(bytes)
+/// A case with its variant, for people.
+pub(super) fn title(case: &str, variant: &str) -> String {
+    if variant.is_empty() { case.into() } else { format!("{case}: {variant}") }
 }
 
-pub(super) fn lasting(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
-    write_lasting(path, bytes).map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))
+/// The records of a suite's folder.
+pub(super) fn folder(path: &Path) -> Folder {
+    Folder { path: path.into(), kind: "results", schema: RESULT_SCHEMA, most: MAX_FILE }
+}
+
+/// Path of a result's picture in the folder.
+pub(super) fn picture(id: &str) -> String {
+    format!("pictures/{id}.png")
 }

@@ -1,13 +1,11 @@
 //! A part of the light, frame by frame against its reference.
 
 use super::record::{FrameScore, PartResult};
-use super::references::ReferencePart;
 use super::score::{FlickerSeries, change, settling, step};
+use crate::measure::comparison::within_noise;
+use crate::measure::reference::ReferencePart;
 use crate::metrics::colour::luminance;
 use crate::metrics::{Compared, Kind, Linear, relmse};
-
-/// Results below so many times what the noise of the reference gives are not told apart from it.
-const NOISE_FACTOR: f64 = 4.0;
 
 /// What is known of the reference at a frame.
 #[derive(Clone, Copy)]
@@ -67,8 +65,10 @@ impl PartSeries {
                 }
                 Known::Reference { now: reference, before: Some(before) } => {
                     frame.change = Some(change(self.kind, now, Some([&before.mean, &reference.mean])));
-                    let halves = |i: usize| [&before.halves[i], &reference.halves[i]];
-                    frame.noise = Some(change(self.kind, halves(0), Some(halves(1))).rms);
+                    frame.noise =
+                        before.halves.as_ref().zip(reference.halves.as_ref()).map(|(before, now)| {
+                            change(self.kind, [&before[0], &now[0]], Some([&before[1], &now[1]])).rms
+                        });
                 }
             }
         }
@@ -76,7 +76,9 @@ impl PartSeries {
             self.flicker.add(&x, reference.map(|t| &t.mean));
         }
         if let Some(t) = reference {
-            self.noise.add(&t.halves[0], Some(&t.halves[1]));
+            if let Some([even, odd]) = &t.halves {
+                self.noise.add(even, Some(odd));
+            }
             if last {
                 let compared = Compared::new(&x, &t.mean, self.kind).ok();
                 self.result.scores = compared.and_then(|c| c.scores(None));
@@ -109,7 +111,7 @@ impl PartSeries {
             self.result.flicker = Some(self.flicker.index());
             let noisy = self.result.e_noise.is_some() && self.frames.len() > 1;
             self.result.flicker_noise = noisy.then(|| self.noise.index().mean);
-            self.result.told_apart = self.result.e.zip(self.result.e_noise).map(|(e, n)| e >= NOISE_FACTOR * n);
+            self.result.told_apart = self.result.e.zip(self.result.e_noise).map(|(e, n)| !within_noise(e, Some(n)));
         }
         if let Some(at) = event {
             let signal = |value: fn(&FrameScore) -> Option<f64>| -> Vec<f64> {

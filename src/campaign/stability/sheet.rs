@@ -1,9 +1,10 @@
 //! Where each method fails, on one picture for documents: its worst case as method, reference and difference, with names and
 //! numbers beside them.
 
-use super::record::{Folder, Measured, PartResult, Record, Report, Worst};
-use crate::campaign::report::short;
+use super::record::{CaseRecord, Report, Worst, picture};
+use crate::campaign::table::short;
 use crate::lab::LabError;
+use crate::measure::comparison::within_noise;
 use egui::epaint::text::{FontDefinitions, Fonts, TextOptions};
 use egui::{Color32, FontId};
 use image::codecs::jpeg::JpegEncoder;
@@ -45,9 +46,9 @@ pub struct Failure {
 /// told apart from the reference's noise, if any is.
 pub fn failures(report: &Report) -> Vec<Failure> {
     let mut methods: Vec<&str> = Vec::new();
-    for record in &report.results {
-        if !methods.contains(&record.method.as_str()) {
-            methods.push(&record.method);
+    for about in report.results.iter().map(|r| &r.about) {
+        if !methods.contains(&about.method.as_str()) {
+            methods.push(&about.method);
         }
     }
     let kinds = [false, true].map(|moving| methods.iter().filter_map(move |m| worst(report, m, moving)));
@@ -57,19 +58,18 @@ pub fn failures(report: &Report) -> Vec<Failure> {
 }
 
 fn worst(report: &Report, method: &str, moving: bool) -> Option<Failure> {
-    let failure = |r: &Record| {
-        let m: &Measured = r.measured()?;
-        let worst = m.worst.clone()?;
-        let part: &PartResult = m.parts.get(&worst.part)?;
+    let failure = |r: &CaseRecord| {
+        let worst = r.done()?.worst.clone()?;
+        let part = r.part(&worst.part)?;
         let (metric, value, noise) = match moving {
             true => ("E_t", part.e?, part.e_noise),
             false => ("relMSE", part.scores.as_ref()?.relmse, part.noise),
         };
         let metric = format!("{metric} of {}", worst.part);
-        let (case, id, method) = (r.title(), r.id.clone(), r.method.clone());
+        let (case, id, method) = (r.about.title(), r.id.clone(), r.about.method.clone());
         Some(Failure { method, case, metric, value, noise, id, worst })
     };
-    let own = report.results.iter().filter(|r| r.method == method && (r.frames > 1) == moving);
+    let own = report.results.iter().filter(|r| r.about.method == method && (r.about.frames > 1) == moving);
     own.filter_map(failure).max_by(|a, b| {
         (a.above_noise(), a.value)
             .partial_cmp(&(b.above_noise(), b.value))
@@ -80,7 +80,7 @@ fn worst(report: &Report, method: &str, moving: bool) -> Option<Failure> {
 impl Failure {
     /// Whether it is told apart from the noise of its reference.
     pub fn above_noise(&self) -> bool {
-        self.value > 0.0 && self.noise.is_none_or(|n| self.value >= 4.0 * n)
+        self.value > 0.0 && !within_noise(self.value, self.noise)
     }
 
     fn lines(&self) -> String {
@@ -107,8 +107,7 @@ pub fn table(list: &[Failure]) -> String {
 /// # Errors
 /// Pictures that cannot be read.
 pub fn sheet(list: &[Failure], folder: &Path) -> Result<Vec<u8>, LabError> {
-    let folder = Folder(folder.to_path_buf());
-    let rows: Vec<[RgbImage; 3]> = list.iter().map(|f| panels(f, &folder)).collect::<Result<_, LabError>>()?;
+    let rows: Vec<[RgbImage; 3]> = list.iter().map(|f| panels(f, folder)).collect::<Result<_, LabError>>()?;
     let mut bytes = Vec::new();
     for (width, quality) in TRIALS {
         let sheet = draw(list, &rows, width);
@@ -123,8 +122,8 @@ pub fn sheet(list: &[Failure], folder: &Path) -> Result<Vec<u8>, LabError> {
 }
 
 /// The frame, the reference (white without one) and the difference of a result's picture.
-fn panels(failure: &Failure, folder: &Folder) -> Result<[RgbImage; 3], LabError> {
-    let path = folder.picture(&failure.id);
+fn panels(failure: &Failure, folder: &Path) -> Result<[RgbImage; 3], LabError> {
+    let path = folder.join(picture(&failure.id));
     let read = image::open(&path).map_err(|e| LabError::Request(format!("cannot read '{}': {e}", path.display())))?;
     let picture = read.to_rgb8();
     let names = &failure.worst.panels;

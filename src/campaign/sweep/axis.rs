@@ -1,8 +1,9 @@
 //! Axes of a sweep: lists, ranges, named settings, lists that go together, samples.
 
-use super::points::{Labels, MAX_POINTS};
+use super::points::MAX_POINTS;
 use super::sample::latin_hypercube;
-use super::settings::Setting;
+use crate::campaign::points::Labels;
+use crate::campaign::settings::{Setting, settings};
 use crate::graph::file::RawText;
 use crate::graph::source::{At, Entries, Items, Loc};
 use serde::Deserialize;
@@ -71,9 +72,13 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    pub(super) fn one(name: &Loc<String>, at: At, text: String) -> Choice {
-        let setting = Setting { name: Loc { value: name.value.clone(), at }, text };
-        Choice { labels: vec![label(&setting)], settings: vec![setting] }
+    fn one(name: &Loc<String>, at: At, text: String) -> Choice {
+        Choice::of(vec![Setting { name: Loc { value: name.value.clone(), at }, text }])
+    }
+
+    /// Settings that are their own labels.
+    pub(super) fn of(settings: Vec<Setting>) -> Choice {
+        Choice { labels: settings.iter().map(label).collect(), settings }
     }
 }
 
@@ -99,7 +104,7 @@ pub(super) fn choices(axis: &Axis) -> Result<Vec<Choice>, Wrong> {
         Axis::Settings { name, values } => {
             let choice = |(label, set): &(Loc<String>, Loc<Entries<RawText>>)| Choice {
                 labels: vec![(name.value.clone(), label.value.clone())],
-                settings: set.value.0.iter().map(|(name, text)| Setting::new(name.clone(), text)).collect(),
+                settings: settings(&set.value),
             };
             values.0.iter().map(choice).collect()
         }
@@ -157,9 +162,8 @@ fn together(lists: &Entries<Items<RawText>>) -> Result<Vec<Choice>, Wrong> {
         return Err((Some(list.at), message));
     }
     let choice = |i: usize| {
-        let setting = |(name, list): &(Loc<String>, Loc<Items<RawText>>)| Setting::new(name.clone(), &list.value.0[i]);
-        let settings: Vec<Setting> = lists.0.iter().map(setting).collect();
-        Choice { labels: settings.iter().map(label).collect(), settings }
+        let setting = |(name, list): &(Loc<String>, Loc<Items<RawText>>)| Setting::new(name, &list.value.0[i]);
+        Choice::of(lists.0.iter().map(setting).collect())
     };
     Ok((0..length).map(choice).collect())
 }
@@ -182,8 +186,7 @@ fn sample(count: usize, seed: u64, of: &Entries<Distribution>) -> Result<Vec<Cho
             let name = Loc { value: name.value.clone(), at: d.at };
             Setting { name, text: draw(&d.value, u) }
         };
-        let settings: Vec<Setting> = of.0.iter().zip(coordinates).map(setting).collect();
-        Choice { labels: settings.iter().map(label).collect(), settings }
+        Choice::of(of.0.iter().zip(coordinates).map(setting).collect())
     };
     Ok(samples.into_iter().map(choice).collect())
 }

@@ -1,9 +1,10 @@
 //! A sweep as a list of points.
 
 use super::axis::Choice;
-use super::settings::Setting;
+use crate::campaign::points::Labels;
+use crate::campaign::settings::{Setting, apply, lines};
 use crate::experiment::Experiment;
-use crate::graph::source::{At, Diagnostic, Loc};
+use crate::graph::source::Diagnostic;
 use crate::lab::LabError;
 use crate::measure::Frames;
 use crate::measure::reference::ALL_BOUNCES;
@@ -18,9 +19,6 @@ pub const SCENE: &str = "scene";
 pub const SET: &str = "set";
 /// or this where it is as it is.
 pub const NOTHING: &str = "nothing";
-
-/// The values of a point, by the names of what is varied.
-pub type Labels = Vec<(String, String)>;
 
 /// A sweep: every experiment with every combination of the axes' choices, and some experiments beside them.
 #[derive(Clone, Debug)]
@@ -55,23 +53,18 @@ impl Sweep {
         axes: &[(String, Vec<String>)],
         frames: Frames,
     ) -> Result<Sweep, LabError> {
+        if let Some((name, _)) = axes.iter().find(|a| a.1.is_empty()) {
+            return Err(LabError::Request(format!("'{name}' has no values")));
+        }
         // Messages about values point at the line of their setting.
-        let lines: Vec<String> = axes.iter().map(|(name, values)| format!("{name}={}", values.join(","))).collect();
-        let text = lines.join("\n");
+        let joined: Vec<String> = axes.iter().map(|(_, values)| values.join(",")).collect();
+        let (text, settings) = lines(axes.iter().zip(&joined).map(|(a, list)| (a.0.as_str(), list.as_str())), "=");
         for experiment in &mut experiments {
             experiment.sources.add("--axis".as_ref(), text.clone());
         }
-        let mut offset = 0;
-        let mut list = Vec::new();
-        for ((name, values), line) in axes.iter().zip(&lines) {
-            if values.is_empty() {
-                return Err(LabError::Request(format!("'{name}' has no values")));
-            }
-            let at = At { file: 0, offset };
-            let name = Loc { value: name.clone(), at };
-            list.push(values.iter().map(|v| Choice::one(&name, at, v.clone())).collect::<Vec<_>>());
-            offset += u32::try_from(line.len() + 1).unwrap_or(0);
-        }
+        let choice = |s: &Setting, value: &String| Choice::of(vec![Setting { text: value.clone(), ..s.clone() }]);
+        let axis = |(s, a): (&Setting, &(String, Vec<String>))| a.1.iter().map(|v| choice(s, v)).collect();
+        let list: Vec<Vec<Choice>> = settings.iter().zip(axes).map(axis).collect();
         let points = list.iter().fold(experiments.len(), |n, l| n.saturating_mul(l.len()));
         if points > MAX_POINTS {
             return Err(LabError::Request(format!("{points} combinations are more than the {MAX_POINTS} allowed")));
@@ -92,24 +85,12 @@ impl Sweep {
         frames: Frames,
         bounces: u32,
     ) -> Sweep {
-        let lines = || settings.iter().map(|(name, value)| format!("{name}={value}"));
-        let text = lines().collect::<Vec<_>>().join("\n");
+        let (text, settings) = lines(settings.iter().map(|(name, value)| (name.as_str(), value.as_str())), "=");
         experiment.sources.add("the settings in turn".as_ref(), text.clone());
-        let mut offset = 0;
-        let mut set = vec![Choice { labels: vec![(SET.into(), NOTHING.into())], settings: Vec::new() }];
-        for ((name, value), line) in settings.iter().zip(lines()) {
-            let name = Loc { value: name.clone(), at: At { file: 0, offset } };
-            offset += u32::try_from(line.len() + 1).unwrap_or(0);
-            let settings = vec![Setting { name, text: value.clone() }];
-            set.push(Choice { labels: vec![(SET.into(), line)], settings });
-        }
-        let scene = |name: &String| Choice {
-            labels: vec![(SCENE.into(), name.clone())],
-            settings: vec![Setting {
-                name: Loc { value: "scene".into(), at: At { file: 0, offset: 0 } },
-                text: format!("{name:?}"),
-            }],
-        };
+        let choice = |name: &str, label: String, settings| Choice { labels: vec![(name.into(), label)], settings };
+        let mut set = vec![choice(SET, NOTHING.into(), Vec::new())];
+        set.extend(settings.into_iter().map(|s| choice(SET, format!("{}={}", s.name.value, s.text), vec![s])));
+        let scene = |name: &String| choice(SCENE, name.clone(), lines([(SCENE, format!("{name:?}").as_str())], "=").1);
         Sweep {
             name: experiment.name.clone(),
             text,
@@ -156,14 +137,8 @@ impl Sweep {
             labels.push(("experiment".to_string(), experiment.name.clone()));
         }
         labels.extend(chosen.iter().flat_map(|c| c.labels.clone()));
-        let file = u32::try_from(experiment.sources.paths().count().saturating_sub(1)).unwrap_or(0);
-        let mut errors = Vec::new();
-        for setting in self.fixed.iter().chain(chosen.iter().flat_map(|c| &c.settings)) {
-            if let Err(message) = setting.apply(&mut experiment, file, &self.folder) {
-                let at = At { file, offset: setting.name.at.offset };
-                errors.push(experiment.sources.error(at, message));
-            }
-        }
+        let settings = self.fixed.iter().chain(chosen.iter().flat_map(|c| &c.settings));
+        let errors = apply(&mut experiment, settings, &self.folder);
         if errors.is_empty() { Ok((experiment, labels)) } else { Err(errors) }
     }
 }

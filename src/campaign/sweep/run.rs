@@ -1,18 +1,19 @@
 //! Measuring the points of a sweep, one after another.
 
-use super::list::{PointBuilder, SweepPoint, list};
+use super::list::list;
 use super::points::Sweep;
-use super::record::{Folder, Manifest, Outcome, POINT_SCHEMA, Record, collect, write_file};
-use super::references::References;
+use super::record::{About, Manifest, PointRecord, collect, folder, jpeg, reference};
+use crate::campaign::points::{PointBuilder, SweepPoint};
+use crate::campaign::record::{File, Folder, Outcome, write_file};
+use crate::campaign::runner::{Counts, Job, Open, Progress, Runner};
 use crate::experiment::resolved_text;
-use crate::lab::{Lab, LabError, camera_of};
-use crate::measure::reference::Gathered;
-use crate::measure::{Frames, Warm, measure};
-use crate::results::stats::DeviceStats;
+use crate::lab::{LabError, camera_of};
+use crate::measure::reference::Reference;
+use crate::measure::{Frames, Point, Wanted, measure};
 use crate::scene::Scene;
-use crate::vulkan::VulkanError;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Which of the points: every `of`-th, from the `number`-th on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +22,11 @@ pub struct Shard {
     pub number: usize,
     /// At least 1.
     pub of: usize,
+}
+
+impl Shard {
+    /// All points.
+    pub const ALL: Shard = Shard { number: 1, of: 1 };
 }
 
 /// How a sweep is run.
@@ -38,32 +44,35 @@ pub struct Options {
     pub samples: Option<u64>,
 }
 
-/// Progress that a sweep reports while it runs.
-pub enum Progress<'a> {
-    /// Points of this shard: to measure, and finished before.
-    Begins {
-        /// To measure.
-        todo: usize,
-        /// Finished before.
-        before: usize,
-    },
-    /// Something worth knowing.
-    Note(String),
-    /// A reference is being gathered.
-    Gathers(Gathered),
-    /// A point is finished.
-    Finished(&'a SweepPoint, &'a Record),
-}
+impl Job for SweepPoint {
+    type About = About;
+    type Measured = Point;
 
-/// Counts of a shard's points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Measured.
-    pub done: usize,
-    /// Failed.
-    pub failed: usize,
-    /// Not measured yet.
-    pub left: usize,
+    fn id(&self) -> &str {
+        &self.id
+    }
+
+    fn title(&self) -> String {
+        let labels: Vec<String> = self.labels.iter().map(|(name, value)| format!("{name} {value}")).collect();
+        format!("{} ({})", self.id, labels.join(", "))
+    }
+
+    fn about(&self, runner: &mut Runner, folder: &Folder) -> Result<About, LabError> {
+        let experiment = match &self.absent {
+            // Camera and light are not known.
+            Some(_) => String::new(),
+            None => {
+                let params = &runner.warm.graph(&runner.lab.home, &self.experiment.graph)?.graph.params;
+                let camera = camera_of(&self.experiment, &self.scene)?;
+                resolved_text(&self.experiment, params, &camera, &self.scene, &folder.path.join("experiment.ron"))?
+            }
+        };
+        Ok(About { experiment, subject: self.subject.clone() })
+    }
+
+    fn warnings(point: &Point) -> &[String] {
+        &point.stats.warnings
+    }
 }
 
 /// Measures every point of the shard that is not finished. Each is kept as soon as it is finished; an error that belongs
@@ -72,114 +81,83 @@ pub struct Counts {
 /// # Errors
 /// What is wrong with the sweep as a whole, before anything is measured; a folder that cannot be written to; no device.
 pub fn run(
-    reopen: &dyn Fn() -> Result<Lab, LabError>,
+    open: &Open,
     open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
     sweep: &Sweep,
     options: &Options,
     on_progress: &mut dyn FnMut(Progress),
 ) -> Result<Counts, LabError> {
-    let mut lab = reopen()?;
-    let home = lab.home.clone();
-    let mut warm = Warm::default();
+    let mut runner = Runner::open(open, on_progress)?;
+    let home = runner.lab.home.clone();
     let mut builder = PointBuilder::new(&home, open_scene);
-    let (points, equal) = list(&mut builder, &mut warm, sweep, options.frames)?;
+    let (points, equal) = list(&mut builder, &mut runner.warm, sweep, options.frames)?;
     if equal > 0 {
-        on_progress(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
+        runner.note(format!("{equal} combinations equal another one and are measured once"));
     }
-    let folder = Folder(options.folder.clone());
-    folder.clean();
-    folder.write_manifest(&Manifest::new(sweep, options.frames, &points))?;
+    let folder = folder(&options.folder);
+    folder.clean(&["points", "pictures", "errors", "references"]);
+    Manifest::new(sweep, options.frames, &points).write(&options.folder)?;
     let Shard { number, of } = options.shard;
     let mine: Vec<&SweepPoint> = points.iter().skip(number - 1).step_by(of).collect();
-    let mut references = References::new(&sweep.bounces, options.samples);
-    let mut counts = Counts::default();
-    let mut todo = Vec::new();
+    let bounces = &sweep.bounces;
     let mut elsewhere = 0;
-    for point in mine {
-        let record = folder.read(&point.id);
-        let known = match references.get(&lab, &mut warm, point, on_progress) {
+    let mut kept = |runner: &mut Runner, point: &SweepPoint| {
+        let record: Option<PointRecord> = folder.read(&point.id);
+        let known = match references(runner, point, bounces, options.samples) {
             Ok(known) => known,
             // A finished point is not given up for it. Others meet it again, and keep it, when their turn comes.
-            Err(error) if matches!(record, Some(Record { outcome: Outcome::Done(_), .. })) => return Err(error),
+            Err(error) if record.as_ref().is_some_and(|r| r.done().is_some()) => return Err(error),
             Err(_) => Vec::new(),
         };
         let samples: BTreeMap<u32, u64> = known.iter().map(|(bounces, r)| (*bounces, r.samples)).collect();
-        match record.as_ref().map(|r| (&r.outcome, &r.device)) {
-            // A reference that has come or grown since makes other scores.
-            Some((Outcome::Done(found), device)) if found.references == samples => {
-                elsewhere += usize::from(device.name != lab.gpu.info.name);
-                counts.done += 1;
-            }
-            Some((Outcome::Failed(_), _)) if !options.again => counts.failed += 1,
-            _ => todo.push(point),
+        // A reference that has come or grown since makes other scores.
+        let stays = |r: &PointRecord| match &r.outcome {
+            Outcome::Done(found) => found.references == samples,
+            Outcome::Failed(_) => !options.again,
+        };
+        let record = record.filter(stays);
+        let measured = record.as_ref().filter(|r| r.done().is_some());
+        elsewhere += usize::from(measured.is_some_and(|r| r.device.name != runner.lab.gpu.info.name));
+        Ok(record)
+    };
+    let mut measured = |runner: &mut Runner, point: &SweepPoint| {
+        if let Some(why) = &point.absent {
+            return Err(LabError::Request(why.clone()));
         }
-    }
+        let known = references(runner, point, bounces, options.samples)?;
+        let Runner { lab, warm, .. } = runner;
+        let found = measure(lab, warm, &point.experiment, &point.scene, options.frames, &known)?;
+        let files: [(String, Option<Vec<u8>>); 3] = [
+            (jpeg("pictures", &point.id), found.picture),
+            (jpeg("errors", &point.id), found.error_map),
+            (reference(&point.subject), found.reference),
+        ];
+        let files: Vec<File> = files.into_iter().filter_map(|(name, bytes)| Some((name, bytes?))).collect();
+        Ok((found.point, files))
+    };
+    let records = runner.run(&folder, &mine, &mut kept, &mut measured)?;
     if elsewhere > 0 {
-        on_progress(Progress::Note(format!(
+        runner.note(format!(
             "{elsewhere} points were measured on another device; name another folder with -o to measure them here"
-        )));
-    }
-    on_progress(Progress::Begins { todo: todo.len(), before: counts.done + counts.failed });
-    for point in todo {
-        let mut attempt = |lab: &Lab, warm: &mut Warm, on_progress: &mut dyn FnMut(Progress)| match &point.absent {
-            Some(why) => Err(LabError::Request(why.clone())),
-            None => {
-                let known = references.get(lab, warm, point, on_progress)?;
-                measure(lab, warm, &point.experiment, &point.scene, options.frames, &known)
-            }
-        };
-        let mut result = attempt(&lab, &mut warm, on_progress);
-        if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
-            // Often the point before it is to blame; if it is this one, it fails again.
-            on_progress(Progress::Note(String::from("the device was lost; it is opened again")));
-            warm.leave_device();
-            lab = reopen()?;
-            result = attempt(&lab, &mut warm, on_progress);
-        }
-        if matches!(result, Err(LabError::Vulkan(VulkanError::Lost(_)))) {
-            warm.leave_device();
-            lab = reopen()?;
-        }
-        let (outcome, measured) = match result {
-            Ok(measured) => (Outcome::Done(Box::new(measured.point.clone())), Some(measured)),
-            Err(error) => (Outcome::Failed(error.to_string()), None),
-        };
-        let record = record_of(&lab, &mut warm, options, point, outcome)?;
-        folder.write(&record, measured.as_ref())?;
-        match &record.outcome {
-            Outcome::Done(_) => counts.done += 1,
-            Outcome::Failed(_) => counts.failed += 1,
-        }
-        on_progress(Progress::Finished(point, &record));
+        ));
     }
     let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
     write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
-    Ok(counts)
+    Ok(Counts::of(&records))
 }
 
-fn record_of(
-    lab: &Lab,
-    warm: &mut Warm,
-    options: &Options,
+/// The references that a point is scored against, by bounces, as far as there are any.
+fn references(
+    runner: &mut Runner,
     point: &SweepPoint,
-    outcome: Outcome,
-) -> Result<Record, LabError> {
-    let text = match &point.absent {
-        // Camera and light are not known.
-        Some(_) => String::new(),
-        None => {
-            let params = &warm.graph(&lab.home, &point.experiment.graph)?.graph.params;
-            let camera = camera_of(&point.experiment, &point.scene)?;
-            let path = options.folder.join("experiment.ron");
-            resolved_text(&point.experiment, params, &camera, &point.scene, &path)?
-        }
-    };
-    Ok(Record {
-        schema: POINT_SCHEMA.into(),
-        id: point.id.clone(),
-        experiment: text,
-        subject: point.subject.clone(),
-        device: DeviceStats::of(&lab.gpu.info),
-        outcome,
-    })
+    bounces: &[u32],
+    samples: Option<u64>,
+) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
+    let mut list = Vec::new();
+    for bounces in bounces.iter().filter(|_| point.absent.is_none()) {
+        let wanted = Wanted { bounces: *bounces, samples, seed: None };
+        let found = runner.reference(&point.experiment, &point.scene, &format!("{:?}", point.subject), wanted)?;
+        list.extend(found.map(|r| (*bounces, r)));
+    }
+    Ok(list)
 }

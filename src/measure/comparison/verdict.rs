@@ -33,7 +33,7 @@ impl fmt::Display for Verdict {
 }
 
 /// What is no difference, in multiples of the reference's noise.
-const NOISE_FACTOR: f64 = 4.0;
+pub const NOISE_FACTOR: f64 = 4.0;
 
 /// How far a picture is from the reference by one metric; 0 is best.
 type Distance = fn(&Scores) -> f64;

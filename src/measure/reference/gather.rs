@@ -4,10 +4,8 @@ use super::store::{self, Sums};
 use super::{Reference, key};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
-use crate::metrics::Linear;
 use crate::results::picture::to_floats;
 use crate::scene::Scene;
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -54,7 +52,7 @@ pub fn gather(
     progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
 ) -> Result<Reference, LabError> {
     let (sums, folder) = Tracer::default().sums(lab, experiment, scene, bounces, goal, progress)?;
-    sums.reference(&folder)
+    sums.reference(&folder, false)
 }
 
 /// Gathers one reference after another, each on what the one before it left: the compiled graph, its pipelines, and the
@@ -66,7 +64,7 @@ pub struct Tracer {
 }
 
 impl Tracer {
-    /// [`gather`], with the means of both halves of the samples by part.
+    /// [`gather`], with the means of both halves of the samples.
     ///
     /// # Errors
     /// As [`gather`].
@@ -78,9 +76,9 @@ impl Tracer {
         bounces: u32,
         goal: Goal,
         progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
-    ) -> Result<(Reference, BTreeMap<String, [Linear; 2]>), LabError> {
+    ) -> Result<Reference, LabError> {
         let (sums, folder) = self.sums(lab, experiment, scene, bounces, goal, progress)?;
-        Ok((sums.reference(&folder)?, sums.halves()))
+        sums.reference(&folder, true)
     }
 
     fn sums(

@@ -1,9 +1,10 @@
 //! What a reference depends on, as an experiment and as one number.
 
 use crate::experiment::Experiment;
-use crate::graph::param::Params;
+use crate::files::{content_id, hex};
+use crate::graph::param::{Param, Params};
 use crate::lab::{LabError, Loaded, Workspace, camera_of, params_of};
-use crate::results::capture::{hex, scene_hash};
+use crate::results::capture::scene_hash;
 use crate::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::sync::Arc;
@@ -51,23 +52,17 @@ pub(super) fn shaders(loaded: &Loaded) -> String {
 /// 16 hexadecimal digits of everything that the samples of an experiment of [`GRAPH`] depend on: the compiled shaders,
 /// the scene's content, camera, size, time, and parameters.
 pub(super) fn key(traced: &Experiment, loaded: &Loaded, scene: &Arc<Scene>) -> Result<String, LabError> {
-    let mut hash = Sha256::new();
-    let mut put = |bytes: &[u8]| {
-        hash.update((bytes.len() as u64).to_le_bytes());
-        hash.update(bytes);
-    };
+    let mut parts: Vec<Vec<u8>> = Vec::new();
     for (link, pass) in loaded.linked.iter().zip(&loaded.graph.passes) {
-        put(pass.value.name.value.as_bytes());
-        link.stages.iter().for_each(|s| put(bytemuck::cast_slice(&s.words)));
+        parts.push(pass.value.name.value.clone().into());
+        parts.extend(link.stages.iter().map(|s| bytemuck::cast_slice(&s.words).to_vec()));
     }
-    put(scene_hash(scene).as_bytes());
-    put(format!("{:?}", camera_of(traced, scene)?).as_bytes());
-    put(format!("{:?} {:?}", traced.size, traced.time).as_bytes());
+    parts.push(scene_hash(scene).into());
+    parts.push(format!("{:?}", camera_of(traced, scene)?).into());
+    parts.push(format!("{:?} {:?}", traced.size, traced.time).into());
     let params: Params = params_of(&loaded.graph, traced)?;
-    for (param, value) in params.list.iter().zip(&params.values) {
-        if param.group != DISPLAY && !WHICH_SAMPLES.contains(&param.name.as_str()) {
-            put(format!("{} {value:?}", param.name).as_bytes());
-        }
-    }
-    Ok(hash.finalize().iter().take(8).map(|b| format!("{b:02x}")).collect())
+    let sampled = |p: &Param| p.group != DISPLAY && !WHICH_SAMPLES.contains(&p.name.as_str());
+    let values = params.list.iter().zip(&params.values).filter(|(p, _)| sampled(p));
+    parts.extend(values.map(|(p, value)| format!("{} {value:?}", p.name).into()));
+    Ok(content_id(parts, 16))
 }

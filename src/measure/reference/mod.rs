@@ -32,6 +32,14 @@ pub struct Reference {
     pub folder: PathBuf,
 }
 
+impl Reference {
+    /// What it takes of memory.
+    pub fn bytes(&self) -> usize {
+        let pictures = |p: &ReferencePart| if p.halves.is_some() { 3 } else { 1 };
+        self.parts.values().map(|p| pictures(p) * std::mem::size_of_val(&p.mean.rgb[..])).sum()
+    }
+}
+
 /// A part of a reference.
 #[derive(Clone, Debug)]
 pub struct ReferencePart {
@@ -39,6 +47,8 @@ pub struct ReferencePart {
     pub mean: Linear,
     /// What its own noise scores.
     pub noise: Noise,
+    /// Means of the even and of the odd samples, where [`Tracer::gather`] made it: they take twice the memory again.
+    pub halves: Option<[Linear; 2]>,
 }
 
 /// Noise floor of a part of a reference, from the means of its even and of its odd samples.
@@ -74,7 +84,7 @@ pub fn find(
     let key = key::key(&traced, &loaded, scene)?;
     let folder = home.root.join("captures/reference").join(&key);
     match store::read(&folder, traced.size, &loaded.graph)? {
-        Some(sums) => Ok(Some(sums.reference(&folder)?)),
+        Some(sums) => Ok(Some(sums.reference(&folder, false)?)),
         None => Ok(None),
     }
 }

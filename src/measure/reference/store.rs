@@ -3,11 +3,10 @@
 
 use super::{Noise, Reference, ReferencePart};
 use crate::experiment::Experiment;
-use crate::files::{check_input, read_input};
+use crate::files::{check_input, hex, read_input};
 use crate::graph::load::Graph;
 use crate::lab::LabError;
 use crate::metrics::{Linear, MetricError, relmse, structure_noise};
-use crate::results::capture::hex;
 use crate::vulkan::DeviceInfo;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
@@ -98,13 +97,8 @@ impl Sums {
         relmse(&even, &odd).map_err(|e| wrong(part, &e))
     }
 
-    /// Means of the even and of the odd samples, by part.
-    pub fn halves(&self) -> BTreeMap<String, [Linear; 2]> {
-        self.parts.keys().map(|p| (p.clone(), [self.mean(p, &[0]), self.mean(p, &[1])])).collect()
-    }
-
-    /// Means and noise of all parts.
-    pub fn reference(&self, folder: &Path) -> Result<Reference, LabError> {
+    /// Means and noise of all parts; `halves`: also the means of the even and of the odd samples.
+    pub fn reference(&self, folder: &Path, halves: bool) -> Result<Reference, LabError> {
         let part = |name: &String| {
             let (even, odd) = (self.mean(name, &[0]), self.mean(name, &[1]));
             let failed = |e: MetricError| wrong(name, &e);
@@ -112,7 +106,8 @@ impl Sums {
                 relmse: relmse(&even, &odd).map_err(failed)?,
                 structure: structure_noise(&even, &odd).map_err(failed)?,
             };
-            Ok((name.clone(), ReferencePart { mean: self.mean(name, &[0, 1]), noise }))
+            let halves = halves.then_some([even, odd]);
+            Ok((name.clone(), ReferencePart { mean: self.mean(name, &[0, 1]), noise, halves }))
         };
         let parts = self.parts.keys().map(part).collect::<Result<_, LabError>>()?;
         Ok(Reference { size: self.size, samples: self.samples, parts, folder: folder.to_path_buf() })

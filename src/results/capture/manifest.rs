@@ -2,6 +2,7 @@
 
 use super::{EXPERIMENT, MANIFEST, failed};
 use crate::experiment::check_size;
+use crate::files::hex;
 use crate::lab::LabError;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -151,23 +152,6 @@ pub(super) fn hash_file(path: &Path) -> std::io::Result<String> {
     }
 }
 
-/// Bytes in hexadecimal.
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|b| format!("{b:02x}")).collect()
-}
-
-/// 32 hexadecimal digits of SHA-256 over texts and their lengths: what names a result by all that it depends on.
-pub(crate) fn id_of<T: AsRef<str>>(facts: impl IntoIterator<Item = T>) -> String {
-    let mut hash = Sha256::new();
-    for fact in facts {
-        hash.update((fact.as_ref().len() as u64).to_le_bytes());
-        hash.update(fact.as_ref());
-    }
-    let mut id = hex(&hash.finalize());
-    id.truncate(32);
-    id
-}
-
 /// All files below a folder by their paths in it, links left out.
 pub(super) fn files_below(folder: &Path) -> std::io::Result<Vec<String>> {
     let mut list = Vec::new();
@@ -187,39 +171,4 @@ pub(super) fn files_below(folder: &Path) -> std::io::Result<Vec<String>> {
     }
     list.sort();
     Ok(list)
-}
-
-/// A moment as RFC 3339 in UTC, to the second.
-pub(crate) fn rfc3339(seconds: u64) -> String {
-    let (days, rest) = (seconds / 86_400, seconds % 86_400);
-    // Days are counted in eras of 400 years that begin on a 1st of March, so that leap days come last.
-    let shifted = days + 719_468;
-    let (era, day) = (shifted / 146_097, shifted % 146_097);
-    let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    let month = (5 * day + 2) / 153;
-    let (d, m) = (day - (153 * month + 2) / 5 + 1, if month < 10 { month + 3 } else { month - 9 });
-    let y = era * 400 + year + u64::from(m <= 2);
-    format!("{y:04}-{m:02}-{d:02}T{:02}:{:02}:{:02}Z", rest / 3600, rest / 60 % 60, rest % 60)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::rfc3339;
-
-    #[test]
-    fn moments_are_those_of_the_calendar() {
-        let known = [
-            (0, "1970-01-01T00:00:00Z"),
-            (951_782_399, "2000-02-28T23:59:59Z"),
-            (951_782_400, "2000-02-29T00:00:00Z"),
-            (951_868_800, "2000-03-01T00:00:00Z"),
-            (1_000_000_000, "2001-09-09T01:46:40Z"),
-            (1_735_689_599, "2024-12-31T23:59:59Z"),
-            (4_107_542_400, "2100-03-01T00:00:00Z"),
-        ];
-        for (seconds, text) in known {
-            assert_eq!(rfc3339(seconds), text);
-        }
-    }
 }

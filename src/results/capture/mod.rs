@@ -9,7 +9,6 @@ mod take;
 
 pub use list::{Summary, list, sweep_partials};
 pub use manifest::{Image, Manifest, SCHEMA, SceneRecord};
-pub(crate) use manifest::{hex, id_of};
 pub use parts::parts;
 pub use replay::{Difference, Replay, changes, replay};
 pub use scene_hash::scene_hash;

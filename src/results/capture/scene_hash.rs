@@ -1,6 +1,6 @@
 //! A scene's content as one number.
 
-use super::manifest::hex;
+use crate::files::hex;
 use crate::scene::{LightKind, Material, Scene};
 use sha2::{Digest, Sha256};
 

@@ -1,6 +1,6 @@
 //! Taking a capture.
 
-use super::manifest::{check_frames, files_below, hash_file, rfc3339};
+use super::manifest::{check_frames, files_below, hash_file};
 use super::{
     EXPERIMENT, Image, MANIFEST, Manifest, Rendered, SCHEMA, SOURCES, SceneRecord, experiment_of, failed, render,
     scene_hash,
@@ -113,13 +113,12 @@ pub fn take(
         let hash = hash_file(&path.join(&file)).map_err(|e| failed(path, e))?;
         files.insert(file, hash);
     }
-    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     let manifest = Manifest {
         schema: SCHEMA.into(),
         version: stats.version.clone(),
         device: stats.device.name.clone(),
         driver: stats.device.driver.clone(),
-        when: rfc3339(since.as_secs()),
+        when: humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string(),
         experiment: experiment.name.clone(),
         graph: graph_file,
         scene: SceneRecord { spec: experiment.scene.clone(), name: scene_name, sha256 },
