@@ -1,25 +1,40 @@
 //! Tables: rows, and columns that say what stands in them.
 
 use crate::lab::LabError;
+use maud::{Markup, html};
 use std::fmt::Display;
 
 /// A table that is made column by column.
 pub struct Table<'r, R> {
     rows: &'r [R],
-    /// The titles, then a line for each row.
-    lines: Vec<Vec<String>>,
+    columns: Vec<Column>,
+}
+
+struct Column {
+    title: String,
+    /// The text of each row, with its class on pages.
+    cells: Vec<(String, Option<&'static str>)>,
 }
 
 impl<'r, R> Table<'r, R> {
     /// A table of some rows, without columns.
     pub fn new(rows: &'r [R]) -> Table<'r, R> {
-        Table { rows, lines: vec![Vec::new(); rows.len() + 1] }
+        Table { rows, columns: Vec::new() }
     }
 
     /// Adds a column.
-    pub fn column(&mut self, title: impl Into<String>, cell: impl Fn(&R) -> String) -> &mut Table<'r, R> {
-        self.lines[0].push(title.into());
-        self.lines.iter_mut().skip(1).zip(self.rows).for_each(|(line, row)| line.push(cell(row)));
+    pub fn column(&mut self, title: impl Into<String>, cell: impl Fn(&R) -> String) {
+        self.marked(title, |row| (cell(row), None));
+    }
+
+    /// Adds a column whose cells have classes on pages.
+    pub fn marked(&mut self, title: impl Into<String>, cell: impl Fn(&R) -> (String, Option<&'static str>)) {
+        self.columns.push(Column { title: title.into(), cells: self.rows.iter().map(cell).collect() });
+    }
+
+    /// Leaves out columns in which nothing stands.
+    pub fn without_empty(mut self) -> Table<'r, R> {
+        self.columns.retain(|c| c.cells.iter().any(|cell| !cell.0.is_empty()));
         self
     }
 
@@ -30,9 +45,26 @@ impl<'r, R> Table<'r, R> {
     pub fn csv(&self) -> Result<String, LabError> {
         let failed = |e: String| LabError::Request(format!("cannot make the table: {e}"));
         let mut out = csv::Writer::from_writer(Vec::new());
-        self.lines.iter().try_for_each(|l| out.write_record(l)).map_err(|e| failed(e.to_string()))?;
+        out.write_record(self.columns.iter().map(|c| &c.title)).map_err(|e| failed(e.to_string()))?;
+        for i in 0..self.rows.len() {
+            out.write_record(self.columns.iter().map(|c| &c.cells[i].0)).map_err(|e| failed(e.to_string()))?;
+        }
         let bytes = out.into_inner().map_err(|e| failed(e.to_string()))?;
         String::from_utf8(bytes).map_err(|e| failed(e.to_string()))
+    }
+
+    /// For a page.
+    pub fn html(&self) -> Markup {
+        html! {
+            div.wide {
+                table {
+                    tr { @for column in &self.columns { th { (column.title) } } }
+                    @for i in 0..self.rows.len() {
+                        tr { @for (text, class) in self.columns.iter().map(|c| &c.cells[i]) { td class=[*class] { (text) } } }
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -60,6 +92,11 @@ pub fn cell(value: Option<impl Display>) -> String {
 /// A number that is one; empty otherwise.
 pub fn number(value: Option<f64>) -> String {
     cell(value.filter(|v| v.is_finite()))
+}
+
+/// A number that is one, with at most three digits; empty otherwise.
+pub fn shortly(value: Option<f64>) -> String {
+    cell(value.filter(|v| v.is_finite()).map(short))
 }
 
 /// Bytes in MiB, to a hundredth.

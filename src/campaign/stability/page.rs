@@ -3,9 +3,9 @@
 use super::chart::Chart;
 use super::plot::Plot;
 use super::record::{CaseRecord, Report, picture};
-use super::table::{COLUMNS, Value, parts};
+use super::table::{COLUMNS, parts};
 use crate::campaign::page::{figure, page as whole_page};
-use crate::campaign::table::short;
+use crate::campaign::table::{Table, cell, short, shortly};
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 
@@ -75,38 +75,14 @@ fn worst(record: &CaseRecord) -> Markup {
 
 /// A row for each method; columns that nobody has are left out.
 fn table(part: &str, records: &[&CaseRecord]) -> Markup {
-    let found = |r: &CaseRecord, value: Value| r.part(part).and_then(value).filter(|v| v.is_finite());
-    let recall = |r: &CaseRecord| r.done().and_then(|m| m.voxels.as_ref()?.recall);
-    let columns = COLUMNS.iter().filter_map(|(_, title, value)| Some(((*title)?, *value)));
-    let columns: Vec<(&str, Value)> = columns.filter(|c| records.iter().any(|r| found(r, c.1).is_some())).collect();
-    let voxels = records.iter().any(|r| recall(r).is_some());
-    let number = |v: Option<f64>| v.map_or(String::new(), short);
-    let noisy = |r: &CaseRecord, title: &str| {
-        (title == "E_t" && r.part(part).is_some_and(|p| p.told_apart == Some(false))).then_some("noise")
-    };
-    html! {
-        div.wide {
-            table {
-                tr {
-                    th { (part) }
-                    @for (title, _) in &columns { th { (title) } }
-                    @if voxels { th { "voxel recall" } }
-                }
-                @for r in records {
-                    tr {
-                        td { (r.about.method) }
-                        @match r.error() {
-                            Some(why) => { td.bad colspan=(columns.len() + usize::from(voxels)) { (why) } }
-                            None => {
-                                @for (title, value) in &columns {
-                                    td class=[noisy(r, title)] { (number(found(r, *value))) }
-                                }
-                                @if voxels { td { (number(recall(r))) } }
-                            }
-                        }
-                    }
-                }
-            }
-        }
+    let mut table = Table::new(records);
+    table.column(part, |r| r.about.method.clone());
+    for (_, title, value) in COLUMNS {
+        let Some(title) = title else { continue };
+        let noisy = |r: &CaseRecord| title == "E_t" && r.part(part).is_some_and(|p| p.told_apart == Some(false));
+        table.marked(title, |r| (shortly(r.part(part).and_then(value)), noisy(r).then_some("noise")));
     }
+    table.column("voxel recall", |r| shortly(r.done().and_then(|m| m.voxels.as_ref()?.recall)));
+    table.marked("failed", |r| (cell(r.error()), Some("bad")));
+    table.without_empty().html()
 }

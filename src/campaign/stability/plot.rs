@@ -5,7 +5,7 @@ use super::cost::Cost;
 use super::record::{PartResult, Report};
 use crate::campaign::charts::{Axis, color, cut, drawn, plane, text};
 use crate::campaign::page::figure;
-use crate::campaign::table::{Table, cell, mebibytes, number, short};
+use crate::campaign::table::{Table, cell, mebibytes, number, shortly};
 use crate::lab::LabError;
 use crate::measure::comparison::{NOISE_FACTOR, within_noise};
 use maud::{Markup, html};
@@ -85,7 +85,6 @@ impl Plot<'_> {
     /// Chart and tables, HTML.
     pub fn html(&self) -> Markup {
         let CostChart { part, error, motions, equal_time, .. } = self.spec;
-        let shown = |v: Option<f64>| v.map_or(String::new(), short);
         let off = self.groups.iter().flat_map(|g| &g.1).any(|r| r.off);
         html! {
             h2 { "What stability costs" }
@@ -100,36 +99,29 @@ impl Plot<'_> {
                 Some(svg) => (figure(svg)),
                 None => p { "No chart: no method has results in all of these cases." }
             }
-            @for (group, rows) in &self.groups {
-                div.wide {
-                    table {
-                        tr {
-                            th { (group) }
-                            @for title in ["setting", "GPU ms", "of the first's", "MiB", "relMSE", "noise", "E_t", "noise"] {
-                                th { (title) }
-                            }
-                        }
-                        @for r in rows {
-                            tr {
-                                td { (r.method) }
-                                td { (r.setting) }
-                                td { (shown(r.ms)) }
-                                td class=[r.off.then_some("bad")] { (cell(r.ratio.map(|v| format!("{v:.2}")))) }
-                                td { (cell(r.memory_bytes.map(mebibytes))) }
-                                @for score in [r.error, r.change] {
-                                    td class=[score.filter(Score::noisy).map(|_| "noise")] { (shown(score.map(|s| s.value))) }
-                                    td { (shown(score.map(|s| s.noise))) }
-                                }
-                            }
-                        }
-                    }
-                }
-            }
+            @for (group, rows) in &self.groups { (table(group, rows)) }
             @if let Some(equal) = equal_time.as_ref().filter(|_| off) {
                 p.bad { "Red: no value comes within " (format!("{:.0}", 100.0 * equal.tolerance)) " % of the first's time." }
             }
         }
     }
+}
+
+/// A row for each method of a group.
+fn table(group: &str, rows: &[Row]) -> Markup {
+    let mut table = Table::new(rows);
+    table.column(group, |r| r.method.clone());
+    table.column("setting", |r| r.setting.clone());
+    table.column("GPU ms", |r| shortly(r.ms));
+    table.marked("of the first's", |r| (cell(r.ratio.map(|v| format!("{v:.2}"))), r.off.then_some("bad")));
+    table.column("MiB", |r| cell(r.memory_bytes.map(mebibytes)));
+    let scores: [(&str, fn(&Row) -> Option<Score>); 2] = [("relMSE", |r| r.error), ("E_t", |r| r.change)];
+    for (title, score) in scores {
+        let noisy = |s: Option<Score>| s.is_some_and(|s| s.noisy()).then_some("noise");
+        table.marked(title, |r| (shortly(score(r).map(|s| s.value)), noisy(score(r))));
+        table.column("noise", |r| shortly(score(r).map(|s| s.noise)));
+    }
+    table.html()
 }
 
 impl Score {
