@@ -172,31 +172,3 @@ pub fn slower(compared: &[Compared]) -> Option<String> {
 pub fn percent(part: f64) -> String {
     format!("{} %", (part * 1e4).round() / 100.0)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_stage_is_slower_when_it_is_beyond_tolerance_floor_and_scatter() {
-        let cases: [(&[f64], &[f64], Verdict); 9] = [
-            (&[5.0, 5.1, 5.0], &[5.4, 5.6, 5.5], Verdict::Same),
-            (&[5.0, 5.1, 5.0], &[5.6, 5.7, 5.6], Verdict::Slower),
-            (&[5.0, 5.1, 5.0], &[4.5, 4.6, 4.4], Verdict::Faster),
-            // One good round is enough: what disturbs only adds time.
-            (&[5.0, 5.1, 5.0], &[9.0, 5.2, 7.0], Verdict::Same),
-            // One bad recorded round hides nothing.
-            (&[5.0, 9.0, 5.1], &[6.8, 6.9, 6.8], Verdict::Slower),
-            // A recording of which half was disturbed says little.
-            (&[5.0, 9.0, 8.0], &[6.8, 6.9, 6.8], Verdict::Noisy),
-            // Twice as long, but 10 us.
-            (&[0.01, 0.01, 0.01], &[0.02, 0.02, 0.02], Verdict::Same),
-            (&[0.0], &[0.01], Verdict::Same),
-            (&[0.0], &[1.0], Verdict::Slower),
-        ];
-        for (recorded, now, verdict) in cases {
-            assert_eq!(judge(recorded, now, 0.1), verdict, "{recorded:?} {now:?}");
-        }
-        assert_eq!(judge(&[5.0], &[5.6], 0.2), Verdict::Same);
-    }
-}

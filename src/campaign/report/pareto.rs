@@ -14,27 +14,3 @@ pub fn pareto(points: &[(f64, f64)]) -> Vec<usize> {
     });
     order
 }
-
-#[cfg(test)]
-mod tests {
-    use super::pareto;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// Against the definition, by comparing all pairs.
-        #[test]
-        fn nothing_beats_the_front_and_it_beats_or_equals_the_rest(
-            points in prop::collection::vec((0u8..20, 0u8..20), 0..60),
-        ) {
-            let points: Vec<(f64, f64)> = points.iter().map(|p| (f64::from(p.0), f64::from(p.1))).collect();
-            let beats = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;
-            let front = pareto(&points);
-            for (i, p) in points.iter().enumerate() {
-                let beaten = points.iter().any(|q| beats(*q, *p));
-                let first = points.iter().position(|q| q == p) == Some(i);
-                prop_assert_eq!(front.contains(&i), !beaten && first);
-            }
-            prop_assert!(front.windows(2).all(|w| points[w[0]].0 < points[w[1]].0));
-        }
-    }
-}

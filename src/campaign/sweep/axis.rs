@@ -1,11 +1,11 @@
 //! Axes of a sweep: lists, ranges, named settings, lists that go together, samples.
 
 use super::points::MAX_POINTS;
-use super::sample::latin_hypercube;
 use crate::campaign::points::Labels;
 use crate::campaign::settings::{Setting, settings};
 use crate::graph::file::RawText;
 use crate::graph::source::{At, Entries, Items, Loc};
+use crate::scene::splitmix;
 use serde::Deserialize;
 
 /// An axis as it stands in the file.
@@ -189,6 +189,24 @@ fn sample(count: usize, seed: u64, of: &Entries<Distribution>) -> Result<Vec<Cho
         Choice::of(of.0.iter().zip(coordinates).map(setting).collect())
     };
     Ok(samples.into_iter().map(choice).collect())
+}
+
+/// `count` points in the unit cube of `dimensions` dimensions: along every axis each of `count` equal intervals holds
+/// one point (McKay, Beckman and Conover 1979). The same on every machine.
+fn latin_hypercube(count: usize, dimensions: usize, seed: u64) -> Vec<Vec<f64>> {
+    let mut state = seed;
+    let mut points = vec![Vec::with_capacity(dimensions); count];
+    for _ in 0..dimensions {
+        let mut order: Vec<usize> = (0..count).collect();
+        for i in (1..count).rev() {
+            order.swap(i, (splitmix(&mut state) % (i as u64 + 1)) as usize);
+        }
+        for (point, interval) in points.iter_mut().zip(order) {
+            let inside = (splitmix(&mut state) >> 11) as f64 / (1u64 << 53) as f64;
+            point.push((interval as f64 + inside) / count as f64);
+        }
+    }
+    points
 }
 
 /// The value at `u` in [0, 1) of a distribution's range.

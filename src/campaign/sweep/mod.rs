@@ -7,7 +7,6 @@ mod list;
 mod points;
 mod record;
 mod run;
-mod sample;
 mod table;
 
 pub use super::points::Subject;
