@@ -2,6 +2,7 @@
 
 use super::table::short;
 use crate::lab::LabError;
+use indexmap::IndexSet;
 use plotters::chart::ChartContext;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
@@ -233,12 +234,7 @@ impl Bar {
 /// # Errors
 /// As [`drawn`].
 pub fn bars(title: &str, unit: &str, shown: fn(f64) -> String, bars: &[Bar]) -> Result<String, LabError> {
-    let mut names: Vec<&str> = Vec::new();
-    for (name, _) in bars.iter().flat_map(|b| &b.parts) {
-        if !names.contains(&name.as_str()) {
-            names.push(name);
-        }
-    }
+    let names: IndexSet<&str> = bars.iter().flat_map(|b| &b.parts).map(|p| p.0.as_str()).collect();
     // The legend stands in rows of four.
     let pixels = |rows: usize| ROW.saturating_mul(i32::try_from(rows).unwrap_or(i32::MAX));
     let top = 44 + pixels(names.len().div_ceil(4));
@@ -263,7 +259,7 @@ pub fn bars(title: &str, unit: &str, shown: fn(f64) -> String, bars: &[Bar]) -> 
             area.draw(&Text::new(cut(&bar.label, LABEL), (LEFT - 8, y + ROW / 2), label))?;
             let mut from = 0.0;
             for (name, length) in &bar.parts {
-                let color = color(names.iter().position(|n| n == name).unwrap_or(0));
+                let color = color(names.get_index_of(name.as_str()).unwrap_or(0));
                 let style = if bar.hollow { color.stroke_width(1) } else { color.filled() };
                 area.draw(&Rectangle::new([(x(from), y + 3), (x(from + length), y + ROW - 3)], style))?;
                 from += length;

@@ -13,11 +13,23 @@ use std::sync::Arc;
 /// The values of a point, by the names of what is varied.
 pub type Labels = Vec<(String, String)>;
 
+/// Values with their names, for people; an experiment's name says enough.
+pub fn labelled<'l>(labels: impl IntoIterator<Item = (&'l String, &'l String)>) -> String {
+    let label = |(n, v): (&String, &String)| if n == "experiment" { v.clone() } else { format!("{n} {v}") };
+    labels.into_iter().map(label).collect::<Vec<_>>().join(", ")
+}
+
+/// Parts of the light, each once: the total, then what it is made of by name.
+pub fn total_first<'p>(parts: impl Iterator<Item = &'p String>) -> Vec<String> {
+    let parts: BTreeSet<(bool, &String)> = parts.map(|p| (p != "total", p)).collect();
+    parts.into_iter().map(|p| p.1.clone()).collect()
+}
+
 /// Digits of a point's number.
 pub const DIGITS: usize = 32;
 
 /// A picture, whatever method makes it.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Subject {
     /// The scene's name.
     pub scene: String,

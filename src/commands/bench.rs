@@ -16,6 +16,7 @@ use crate::measure::{Frames, Warm};
 use crate::results::stats::DeviceStats;
 use crate::scene::SceneError;
 use clap::Args;
+use indexmap::IndexSet;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `bench`.
@@ -124,12 +125,8 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
     let mut warm = Warm::default();
     let Again { found, skipped, mut broken } = again(&lab.home, &mut warm, chosen, frames);
     let (recorded, points): (Vec<&Recorded>, Vec<SweepPoint>) = found.into_iter().unzip();
-    let mut names: Vec<String> = Vec::new();
-    for (name, _) in points.iter().flat_map(|p| &p.labels) {
-        if !names.contains(name) {
-            names.push(name.clone());
-        }
-    }
+    let names: IndexSet<String> = points.iter().flat_map(|p| &p.labels).map(|l| l.0.clone()).collect();
+    let names = names.into_iter().collect();
     let result = measured(&lab, &mut warm, names, &points, rounds, frames)?;
     let mut compared: Vec<Compared> = Vec::new();
     for ((recorded, point), now) in recorded.iter().zip(&points).zip(&result.configurations) {

@@ -3,7 +3,9 @@
 use super::tables::{Row, columns, rows, stage_of, stages};
 use super::{Bench, Configuration};
 use crate::campaign::charts::{Axis, Bar, Line, bars, file_name, lines};
+use crate::campaign::points::labelled;
 use crate::lab::LabError;
+use indexmap::IndexSet;
 
 /// File names (without `.svg`) and charts: the stages of every configuration as stacked bars, and for every stage its
 /// time against what the columns of the tables vary, at the largest size.
@@ -23,12 +25,7 @@ pub fn charts(bench: &Bench) -> Result<Vec<(String, String)>, LabError> {
     let rows = rows(bench);
     let most = rows.iter().map(Row::pixels).max().unwrap_or(0);
     let rows: Vec<&Row> = rows.iter().filter(|r| r.pixels() == most).collect();
-    let mut names: Vec<String> = Vec::new();
-    for stage in rows.iter().flat_map(|r| stages(r)) {
-        if !names.contains(&stage) {
-            names.push(stage);
-        }
-    }
+    let names: IndexSet<String> = rows.iter().flat_map(|r| stages(r)).collect();
     let (low, high) = numbers.iter().fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
     let x = Axis::log(&column, (low / 1.1, high * 1.1)).marked(numbers.clone());
     for stage in names {
@@ -48,10 +45,9 @@ pub fn charts(bench: &Bench) -> Result<Vec<(String, String)>, LabError> {
 }
 
 fn bar(configuration: &Configuration) -> Bar {
-    let labels = configuration.labels.iter().filter(|(name, _)| *name != "size");
-    let labels: Vec<String> = labels.map(|(n, v)| format!("{n} {v}")).collect();
+    let labels = labelled(configuration.labels.iter().filter(|(name, _)| *name != "size"));
     let (w, h) = configuration.size;
     let stages = configuration.times.iter().flat_map(|t| &t.stages);
     let parts = stages.map(|(n, s)| (n.clone(), s.median)).collect();
-    Bar { label: format!("{w}x{h} {}", labels.join(", ")), parts, hollow: false }
+    Bar { label: format!("{w}x{h} {labels}"), parts, hollow: false }
 }

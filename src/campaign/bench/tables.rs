@@ -1,10 +1,12 @@
 //! A benchmark as tables.
 
 use super::{Bench, Configuration};
+use crate::campaign::points::labelled;
 use crate::campaign::record::first_line;
 use crate::campaign::table::{Table, cell};
 use crate::lab::LabError;
 use crate::results::stats::Spread;
+use indexmap::{IndexMap, IndexSet};
 use std::fmt::Write;
 
 /// Configurations that stand in one row of a table: those that differ in nothing but what the columns vary.
@@ -30,45 +32,26 @@ impl Row<'_> {
 /// Name and values of what the columns vary: the first setting that is no size and no experiment.
 pub(super) fn columns(bench: &Bench) -> (String, Vec<String>) {
     let name = bench.names.iter().find(|n| *n != "size" && *n != "experiment").cloned().unwrap_or_default();
-    let mut values: Vec<String> = Vec::new();
-    for configuration in &bench.configurations {
-        let value = configuration.labels.get(&name).cloned().unwrap_or_default();
-        if !values.contains(&value) {
-            values.push(value);
-        }
-    }
-    (name, values)
+    let values: IndexSet<String> = bench.configurations.iter().map(|c| cell(c.labels.get(&name))).collect();
+    (name, values.into_iter().collect())
 }
 
 pub(super) fn rows(bench: &Bench) -> Vec<Row<'_>> {
     let (column, values) = columns(bench);
     let varies = |name: &String| {
-        let mut values = bench.configurations.iter().map(|c| c.labels.get(name));
-        let first = values.next();
-        values.any(|v| Some(v) != first)
+        let values: IndexSet<_> = bench.configurations.iter().map(|c| c.labels.get(name)).collect();
+        values.len() > 1
     };
-    let mut rows: Vec<Row> = Vec::new();
-    for configuration in &bench.configurations {
-        let others =
-            configuration.labels.iter().filter(|(name, _)| **name != column && *name != "size" && varies(name));
-        let parts: Vec<String> =
-            others.map(|(n, v)| if n == "experiment" { v.clone() } else { format!("{n} {v}") }).collect();
-        let title = if parts.is_empty() { configuration.experiment.clone() } else { parts.join(", ") };
-        let same = |r: &&mut Row| r.title == title && r.size == configuration.size;
-        let row = match rows.iter_mut().find(same) {
-            Some(row) => row,
-            None => {
-                rows.push(Row { title, size: configuration.size, cells: vec![None; values.len()] });
-                let last = rows.len() - 1;
-                &mut rows[last]
-            }
-        };
-        let value = configuration.labels.get(&column).cloned().unwrap_or_default();
-        if let Some(cell) = values.iter().position(|v| *v == value) {
-            row.cells[cell] = Some(configuration);
+    let mut rows: IndexMap<(String, (u32, u32)), Vec<Option<&Configuration>>> = IndexMap::new();
+    for c in &bench.configurations {
+        let title = labelled(c.labels.iter().filter(|(n, _)| **n != column && *n != "size" && varies(n)));
+        let title = if title.is_empty() { c.experiment.clone() } else { title };
+        let cells = rows.entry((title, c.size)).or_insert_with(|| vec![None; values.len()]);
+        if let Some(at) = values.iter().position(|v| *v == cell(c.labels.get(&column))) {
+            cells[at] = Some(c);
         }
     }
-    rows
+    rows.into_iter().map(|((title, size), cells)| Row { title, size, cells }).collect()
 }
 
 /// The tables for people: the stages of each configuration at the last size, the totals by size, and the totals of every
@@ -120,22 +103,16 @@ pub fn text(bench: &Bench) -> String {
         }
     }
     for failed in bench.configurations.iter().filter(|c| c.error.is_some()) {
-        let labels: Vec<String> = failed.labels.iter().map(|(n, v)| format!("{n} {v}")).collect();
         let error = failed.error.as_deref().map_or("", first_line);
-        let _ = writeln!(out, "failed: {}: {error}", labels.join(", "));
+        let _ = writeln!(out, "failed: {}: {error}", labelled(&failed.labels));
     }
     out
 }
 
 /// Names of the stages of a row's configurations, in the order of the graph.
-pub(super) fn stages(row: &Row) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for times in row.cells.iter().flatten().filter_map(|c| c.times.as_ref()) {
-        for stage in times.stages.keys().filter(|s| !names.contains(s)).cloned().collect::<Vec<_>>() {
-            names.push(stage);
-        }
-    }
-    names
+pub(super) fn stages(row: &Row) -> IndexSet<String> {
+    let times = row.cells.iter().flatten().filter_map(|c| c.times.as_ref());
+    times.flat_map(|t| t.stages.keys()).cloned().collect()
 }
 
 pub(super) fn stage_of(configuration: &Configuration, stage: &str) -> Option<Spread> {

@@ -1,6 +1,7 @@
 //! What the page and its charts show, taken from the records of sweeps.
 
 use crate::campaign::charts::file_name;
+use crate::campaign::points::{labelled, total_first};
 use crate::campaign::record::Outcome;
 use crate::campaign::sweep::{Collected, Subject, parts_of};
 use crate::measure::comparison::within_noise;
@@ -95,18 +96,10 @@ pub struct Data {
     pub left: usize,
 }
 
-impl Failed {
-    /// Its values.
-    pub fn title(&self) -> String {
-        self.labels.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")
-    }
-}
-
 impl Dot {
     /// Some of its values.
     pub fn title(&self, names: &[&String]) -> String {
-        let values = names.iter().filter_map(|n| Some(format!("{n} {}", self.labels.get(*n)?)));
-        let text = values.collect::<Vec<_>>().join(", ");
+        let text = labelled(names.iter().filter_map(|n| Some((*n, self.labels.get(*n)?))));
         if text.is_empty() { self.id.chars().take(8).collect() } else { text }
     }
 }
@@ -203,11 +196,7 @@ impl Data {
                 error_map: picture("errors"),
             });
         }
-        // Total first, then the parts that it is made of.
-        let mut parts: Vec<String> = data.dots.iter().flat_map(|d| d.scores.keys().cloned()).collect();
-        parts.sort_by_key(|p| (p != "total", p.clone()));
-        parts.dedup();
-        data.parts = parts;
+        data.parts = total_first(data.dots.iter().flat_map(|d| d.scores.keys()));
         data.keys = keys.into_iter().map(|(subject, device)| (subject.clone(), device.clone())).collect();
         data
     }

@@ -4,6 +4,7 @@ use super::data::{Chart, Data, Dot};
 use super::scenes::Scenes;
 use crate::campaign::charts::COLORS;
 use crate::campaign::page::{page as whole_page, url};
+use crate::campaign::points::labelled;
 use crate::campaign::record::first_line;
 use crate::lab::LabError;
 use maud::{PreEscaped, html};
@@ -94,7 +95,7 @@ pub fn page(
         div.wide { table id="points" {} }
         @if !data.failed.is_empty() {
             h2 { "Failed" }
-            ul { @for failed in &data.failed { li { (failed.title()) ": " (first_line(&failed.error)) } } }
+            ul { @for failed in &data.failed { li { (labelled(&failed.labels)) ": " (first_line(&failed.error)) } } }
         }
         div id="tip" hidden {}
         script type="application/json" id="data" { (PreEscaped(json)) }

@@ -3,10 +3,12 @@
 
 use super::data::{Data, Dot};
 use crate::campaign::page::url;
+use crate::campaign::points::labelled;
 use crate::campaign::record::first_line;
 use crate::campaign::sweep::Subject;
 use crate::campaign::table::{Table, cell, short};
 use crate::lab::LabError;
+use indexmap::{IndexMap, IndexSet};
 use maud::{Markup, html};
 
 /// What tells rows apart; everything else that is varied tells methods apart.
@@ -44,32 +46,22 @@ impl Scenes {
     /// None where there are not several scenes.
     pub fn of(data: &Data) -> Option<Scenes> {
         let names: Vec<&String> = data.names.iter().filter(|n| !OF_A_ROW.contains(&n.as_str())).collect();
-        let method = |labels: &indexmap::IndexMap<String, String>| {
-            let values = names.iter().filter_map(|n| Some((n.as_str(), labels.get(*n)?)));
-            let text = values.map(|(n, v)| if n == "experiment" { v.clone() } else { format!("{n} {v}") });
-            text.collect::<Vec<_>>().join(", ")
-        };
+        let method =
+            |labels: &IndexMap<String, String>| labelled(names.iter().filter_map(|n| Some((*n, labels.get(*n)?))));
         let measured = data.dots.iter().enumerate().map(|(i, dot)| {
             let key = data.keys[dot.subject].clone();
             (key, method(&dot.labels), Cell::Measured(i))
         });
         let failed = data.failed.iter().map(|f| (f.key.clone(), method(&f.labels), Cell::Failed(f.error.clone())));
         let all: Vec<_> = measured.chain(failed).collect();
-        let mut methods: Vec<String> = Vec::new();
-        for (_, method, _) in &all {
-            if !methods.contains(method) && methods.len() < MAX_METHODS {
-                methods.push(method.clone());
-            }
-        }
-        let mut rows: Vec<Row> = Vec::new();
+        let methods: IndexSet<String> = all.iter().map(|a| a.1.clone()).collect();
+        let methods: Vec<String> = methods.into_iter().take(MAX_METHODS).collect();
+        let mut rows: IndexMap<(Subject, String), Vec<Cell>> = IndexMap::new();
         for (key, method, cell) in all {
             let Some(column) = methods.iter().position(|m| *m == method) else { continue };
-            let row = rows.iter().position(|r| r.key == key).unwrap_or_else(|| {
-                rows.push(Row { key, cells: vec![Cell::Left; methods.len()] });
-                rows.len() - 1
-            });
-            rows[row].cells[column] = cell;
+            rows.entry(key).or_insert_with(|| vec![Cell::Left; methods.len()])[column] = cell;
         }
+        let mut rows: Vec<Row> = rows.into_iter().map(|(key, cells)| Row { key, cells }).collect();
         let several = rows.iter().any(|r| r.key.0.scene != rows[0].key.0.scene);
         // Stable: scenes that the first method has no score of come last, in the order of the sweep.
         rows.sort_by(|a, b| match (a.worst(data), b.worst(data)) {

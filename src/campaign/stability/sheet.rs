@@ -10,6 +10,7 @@ use egui::{Color32, FontId};
 use image::codecs::jpeg::JpegEncoder;
 use image::imageops::{FilterType, crop_imm, resize};
 use image::{Rgb, RgbImage};
+use indexmap::IndexSet;
 use std::path::Path;
 
 /// Largest file, bytes.
@@ -45,15 +46,10 @@ pub struct Failure {
 /// The worst case of each method among those of one frame, by relMSE, and among those of several, by E_t: of those that are
 /// told apart from the reference's noise, if any is.
 pub fn failures(report: &Report) -> Vec<Failure> {
-    let mut methods: Vec<&str> = Vec::new();
-    for about in report.results.iter().map(|r| &r.about) {
-        if !methods.contains(&about.method.as_str()) {
-            methods.push(&about.method);
-        }
-    }
+    let methods: IndexSet<&str> = report.results.iter().map(|r| r.about.method.as_str()).collect();
     let kinds = [false, true].map(|moving| methods.iter().filter_map(move |m| worst(report, m, moving)));
     let mut list: Vec<Failure> = kinds.into_iter().flatten().collect();
-    list.sort_by_key(|f| methods.iter().position(|m| *m == f.method));
+    list.sort_by_key(|f| methods.get_index_of(f.method.as_str()));
     list
 }
 

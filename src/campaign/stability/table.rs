@@ -2,6 +2,7 @@
 //! everything else is the same on one device.
 
 use super::record::{CaseRecord, FrameScore, Measured, PartResult, Report};
+use crate::campaign::points::total_first;
 use crate::campaign::table::{Table, cell, mebibytes, number};
 use crate::lab::LabError;
 
@@ -31,13 +32,9 @@ pub(super) const COLUMNS: [(&str, Option<&str>, Value); 19] = [
     ("over-occluded", Some("over-occluded"), |p| p.scores.as_ref().map(|s| s.over_occluded)),
 ];
 
-/// All parts that results have: the total, then the others.
+/// All parts that results have.
 pub(super) fn parts(report: &Report) -> Vec<String> {
-    let measured = report.results.iter().filter_map(|r| r.done());
-    let mut parts: Vec<String> = measured.flat_map(|m| m.parts.keys().cloned()).collect();
-    parts.sort_by_key(|p| (p != "total", p.clone()));
-    parts.dedup();
-    parts
+    total_first(report.results.iter().filter_map(|r| r.done()).flat_map(|m| m.parts.keys()))
 }
 
 /// A row for every method in every case.

@@ -6,7 +6,7 @@ use crate::campaign::record::{Folder, Record, json, read_json, write_file};
 use crate::files::{content_id, read_input};
 use crate::lab::LabError;
 use crate::measure::{Frames, Point};
-use indexmap::IndexMap;
+use indexmap::{IndexMap, IndexSet};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -142,17 +142,12 @@ impl Collected {
 /// A folder without a list of points, or with a damaged one.
 pub fn collect(folders: &[PathBuf]) -> Result<Collected, LabError> {
     let mut out = Collected::default();
+    let (mut sweeps, mut names) = (IndexSet::new(), IndexSet::new());
     let mut at: HashMap<String, usize> = HashMap::new();
     for path in folders {
         let manifest = Manifest::read(path)?;
-        if !out.sweeps.contains(&manifest.name) {
-            out.sweeps.push(manifest.name);
-        }
-        for name in manifest.names {
-            if !out.names.contains(&name) {
-                out.names.push(name);
-            }
-        }
+        sweeps.insert(manifest.name);
+        names.extend(manifest.names);
         let folder = folder(path);
         for point in manifest.points {
             let id = point.id.clone();
@@ -170,5 +165,6 @@ pub fn collect(folders: &[PathBuf]) -> Result<Collected, LabError> {
             }
         }
     }
+    (out.sweeps, out.names) = (sweeps.into_iter().collect(), names.into_iter().collect());
     Ok(out)
 }

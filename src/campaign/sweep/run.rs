@@ -3,7 +3,7 @@
 use super::list::list;
 use super::points::Sweep;
 use super::record::{About, Manifest, PointRecord, collect, folder, jpeg, reference};
-use crate::campaign::points::{PointBuilder, SweepPoint};
+use crate::campaign::points::{PointBuilder, SweepPoint, labelled};
 use crate::campaign::record::{File, Folder, Outcome, write_file};
 use crate::campaign::runner::{Counts, Job, Open, Progress, Runner};
 use crate::experiment::resolved_text;
@@ -53,8 +53,7 @@ impl Job for SweepPoint {
     }
 
     fn title(&self) -> String {
-        let labels: Vec<String> = self.labels.iter().map(|(name, value)| format!("{name} {value}")).collect();
-        format!("{} ({})", self.id, labels.join(", "))
+        format!("{} ({})", self.id, labelled(self.labels.iter().map(|(name, value)| (name, value))))
     }
 
     fn about(&self, runner: &mut Runner, folder: &Folder) -> Result<About, LabError> {

@@ -6,6 +6,7 @@ use crate::lab::LabError;
 use crate::measure::Point;
 use crate::metrics::Scores;
 use crate::results::stats::Stats;
+use indexmap::IndexSet;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Scores of a point, by part and metric.
@@ -44,12 +45,8 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     let points = collected.points.iter();
     let rows: Vec<Row> =
         points.map(|(planned, record)| Row { planned, record: record.as_ref(), parts: parts(record) }).collect();
-    let mut passes: Vec<&str> = Vec::new();
-    for pass in rows.iter().filter_map(Row::point).flat_map(|p| &p.stats.passes) {
-        if !passes.contains(&pass.name.as_str()) {
-            passes.push(&pass.name);
-        }
-    }
+    let points = rows.iter().filter_map(Row::point);
+    let passes: IndexSet<&str> = points.flat_map(|p| &p.stats.passes).map(|p| p.name.as_str()).collect();
     let parts = rows.iter().flat_map(|r| &r.parts);
     let scores: BTreeSet<(&str, &str)> =
         parts.flat_map(|(part, m)| m.keys().map(|m| (part.as_str(), m.as_str()))).collect();
@@ -82,7 +79,7 @@ pub fn csv(collected: &Collected) -> Result<String, LabError> {
     for (part, metric) in scores {
         table.column(format!("{part} {metric}"), |r| cell(r.parts.get(part).and_then(|p| p.get(metric))));
     }
-    for name in passes.iter().copied() {
+    for name in passes {
         table.column(format!("{name} ms"), |r| {
             let pass = r.point().and_then(|p| p.stats.passes.iter().find(|p| p.name == name));
             cell(pass.map(|p| p.gpu_ms.median))
