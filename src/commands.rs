@@ -13,6 +13,7 @@ macro_rules! say_part {
 mod ablate;
 mod adapt;
 mod bench;
+mod campaign_bar;
 mod capture;
 mod check;
 mod compare;

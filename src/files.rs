@@ -72,6 +72,24 @@ pub fn write_checked(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     })
 }
 
+/// Bytes in hexadecimal.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
+}
+
+/// So many hexadecimal digits (at most 64) of SHA-256 over parts and their lengths: what names a result by all that it
+/// depends on.
+pub fn content_id<T: AsRef<[u8]>>(parts: impl IntoIterator<Item = T>, digits: usize) -> String {
+    let mut hash = Sha256::new();
+    for part in parts {
+        hash.update((part.as_ref().len() as u64).to_le_bytes());
+        hash.update(part.as_ref());
+    }
+    let mut id = hex(&hash.finalize());
+    id.truncate(digits);
+    id
+}
+
 /// Reads a cache file; `None` when it is absent, too large (256 MiB) or not what was written.
 pub fn read_checked(path: &Path) -> Option<Vec<u8>> {
     let mut bytes = read_input(path, 256 << 20).ok()?;

@@ -2,31 +2,21 @@
 //!
 //! Knowledge flows one way: [`vulkan`], [`shader`], [`graph`] know no scene; [`scene`] knows no device; [`lab`] joins
 //! them to run an [`experiment`]; the commands and the [`workbench`] in its [`window`] are thin users of the lab.
-pub mod ablation;
-pub mod bench;
 pub mod camera_path;
-pub mod capture;
+pub mod campaign;
 pub mod commands;
-pub mod comparison;
 pub mod excerpt;
 pub mod experiment;
 pub mod files;
-pub mod fit;
 pub mod graph;
 pub mod lab;
 pub mod measure;
 pub mod metrics;
-pub mod oracle;
 pub mod panics;
-pub mod picture;
-pub mod reference;
-pub mod report;
+pub mod results;
 pub mod scene;
 pub mod screenshot;
 pub mod shader;
-pub mod stability;
-pub mod stats;
-pub mod sweep;
 pub mod timers;
 pub mod vulkan;
 pub mod window;

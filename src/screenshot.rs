@@ -2,7 +2,7 @@
 //! window's, for pictures in documents and for measuring what the interface itself costs.
 
 use crate::lab::LabError;
-use crate::stats::{Spread, spread};
+use crate::results::stats::{Spread, spread};
 use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels};
 use crate::workbench::{NewPixels, Options, PICTURES, Workbench};
 use crossbeam_channel::{Receiver, unbounded};

@@ -3,7 +3,7 @@
 use crate::graph::load::Graph;
 use crate::graph::param::Params;
 use crate::lab::Texels;
-use crate::picture;
+use crate::results::picture;
 use crate::vulkan::{Format, Gpu, Painter as GpuPainter, PixelSource, Pixels, Result};
 use egui::ecolor::Hsva;
 use egui::{Align2, Color32, FontId, Painter, Pos2, RawInput, Rect, Vec2};

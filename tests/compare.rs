@@ -4,7 +4,7 @@ mod common;
 
 use common::{conelab, fails, root, succeeds};
 use conelab::metrics::Linear;
-use conelab::picture;
+use conelab::results::picture;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;

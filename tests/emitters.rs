@@ -4,7 +4,7 @@ mod common;
 
 use common::{assert_clean, copy, experiment, floats, lab, mean, root, scene};
 use conelab::experiment::{CameraChoice, PlacedCamera};
-use conelab::reference::{Goal, gather};
+use conelab::measure::reference::{Goal, gather};
 use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Texture, TextureFormat, Vertex};
 use glam::{Mat4, Quat, Vec3, Vec4};
 use std::ops::ControlFlow;

@@ -11,14 +11,14 @@ mod mutate;
 mod seeds;
 
 use common::{number, root};
-use conelab::bench;
 use conelab::camera_path::CameraPath;
-use conelab::capture;
+use conelab::campaign::bench;
+use conelab::campaign::stability::Suite;
+use conelab::campaign::sweep::{self, Sweep};
 use conelab::experiment::Experiment;
 use conelab::graph::load::{Folders, Graph, load};
+use conelab::results::capture;
 use conelab::scene::Scene;
-use conelab::stability::Suite;
-use conelab::sweep::{self, Sweep};
 use mutate::{Random, mutated};
 use seeds::{Kind, Seed};
 use std::collections::BTreeMap;
@@ -69,7 +69,7 @@ fn read(kind: Kind, path: &Path, graph: &Graph) -> Result<(), String> {
         Kind::Capture => capture::Manifest::read(path.parent().unwrap()).map(drop).map_err(|e| e.to_string()),
         Kind::Points => sweep::collect(&[path.parent().unwrap().into()]).map(drop).map_err(|e| e.to_string()),
         Kind::Times => bench::Record::read(path).map(drop).map_err(|e| e.to_string()),
-        Kind::Picture => conelab::picture::read_linear(path).map(drop).map_err(|e| e.to_string()),
+        Kind::Picture => conelab::results::picture::read_linear(path).map(drop).map_err(|e| e.to_string()),
     }
 }
 

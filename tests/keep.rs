@@ -4,11 +4,11 @@ mod common;
 
 use common::{conelab, device, fails, lab, root, scene, succeeds};
 use conelab::camera_path::{self, CameraPath, Key};
-use conelab::capture;
 use conelab::experiment::{CameraChoice, Experiment, LightChange, PlacedCamera, checked_name, write};
 use conelab::graph::load::{Folders, load};
 use conelab::graph::param::{Kind, Params};
 use conelab::graph::source::{At, Loc};
+use conelab::results::capture;
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -480,15 +480,15 @@ fn the_method_is_captured_and_replayed() {
     let mut session = common::prepare(&lab, &experiment_lit(&experiment), &["display"]);
     session.frame(0.0).unwrap();
     let texels = session.texels("display", 0, 0).unwrap();
-    let unlit = conelab::picture::rgb8(&texels);
-    let kept = conelab::picture::read(&path.join("picture.png"), (48, 32)).unwrap();
+    let unlit = conelab::results::picture::rgb8(&texels);
+    let kept = conelab::results::picture::read(&path.join("picture.png"), (48, 32)).unwrap();
     assert_ne!(unlit.iter().map(|v| f32::from(*v)).collect::<Vec<_>>(), kept, "the lamp was changed");
     drop(session);
     let lit = experiment.adapted(scene("cornell")).unwrap();
     let (mut session, _) = lab.prepare(&experiment, lit, |_| Ok(vec!["display".into()])).unwrap();
     assert!(manifest.frames > 8, "its light has settled");
     (0..manifest.frames).for_each(|_| _ = session.frame(0.0).unwrap());
-    let lit = conelab::picture::rgb8(&session.texels("display", 0, 0).unwrap());
+    let lit = conelab::results::picture::rgb8(&session.texels("display", 0, 0).unwrap());
     assert_eq!(lit.iter().map(|v| f32::from(*v)).collect::<Vec<_>>(), kept);
     drop(session);
     // Another scene is another hash.
@@ -760,7 +760,7 @@ fn a_sequence_is_written_once_and_follows_the_path() {
     let stats: serde_json::Value = serde_json::from_str(&project.text("s.json")).unwrap();
     assert_eq!(stats["passes"][0]["frames"], 4);
     // The shader puts the camera's place into the light: that of the fourth frame, at 0.75 s.
-    let found = conelab::picture::read(&project.path("last.exr"), (64, 64)).unwrap();
+    let found = conelab::results::picture::read(&project.path("last.exr"), (64, 64)).unwrap();
     succeeds(
         project
             .command(&[
@@ -776,7 +776,7 @@ fn a_sequence_is_written_once_and_follows_the_path() {
             ])
             .arg(still(&bent(false).at(0.75))),
     );
-    let still = conelab::picture::read(&project.path("still.exr"), (64, 64)).unwrap();
+    let still = conelab::results::picture::read(&project.path("still.exr"), (64, 64)).unwrap();
     assert_eq!(found, still);
     let message = fails(&mut sequence(&["--sequence", "film"]));
     assert_eq!(message, "error: cannot write frames to 'film': it has 'frame-00000.png'; choose an empty folder\n");

@@ -7,7 +7,7 @@ use base64::Engine;
 use common::{assert_clean, experiment, floats, lab, mean};
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
 use conelab::lab::Lab;
-use conelab::reference::{Goal, gather};
+use conelab::measure::reference::{Goal, gather};
 use conelab::scene::{Material, Scene};
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
@@ -268,7 +268,7 @@ fn exported_files_have_the_same_dielectrics() {
     ];
     let placed: Vec<(Value, f32, f32)> = materials.into_iter().map(|m| (m, 1.0, 0.0)).collect();
     let scene = open(&squares(dir.path(), &placed, |_| {}));
-    let hash = |s: &Scene| conelab::capture::scene_hash(s);
+    let hash = |s: &Scene| conelab::results::capture::scene_hash(s);
     for file in ["a.glb", "b.gltf", "c.obj"] {
         scene.export(&dir.path().join(file)).unwrap();
         let again = open(&dir.path().join(file));

@@ -6,7 +6,7 @@ mod common;
 use common::{assert_clean, conelab, experiment, fails, lab, root, scene, succeeds};
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
 use conelab::lab::{Lab, Workspace};
-use conelab::reference::{Goal, Reference, find, gather};
+use conelab::measure::reference::{Goal, Reference, find, gather};
 use conelab::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::ops::ControlFlow;

@@ -7,7 +7,7 @@ use common::triangles::{meets, world};
 use common::{assert_clean, experiment, floats, lab, mean, root, scene};
 use conelab::experiment::{Experiment, PlacedCamera};
 use conelab::lab::{Lab, Session};
-use conelab::reference::{Goal, gather};
+use conelab::measure::reference::{Goal, gather};
 use conelab::scene::{Camera, Instance, LightKind, Mesh, Scene, Submesh, Vertex};
 use glam::{DVec3, EulerRot, Mat4, Quat, Vec3};
 use std::ops::ControlFlow;

@@ -81,7 +81,7 @@ fn render(lab: &Lab, graph: &str, scene: &str, settings: &[(&str, &str)]) -> Res
     wrong.extend(session.failed_checks()?.into_iter().filter(|check| check.contains("NaN")));
     // Contributions are not all shown: light itself is looked at too, and where it comes from.
     for name in LIGHT {
-        let light = conelab::picture::to_floats(&session.texels(name, 0, 0)?);
+        let light = conelab::results::picture::to_floats(&session.texels(name, 0, 0)?);
         let bad = light.iter().flat_map(|t| &t[..3]).filter(|v| !v.is_finite() || **v < 0.0).count();
         if bad > 0 {
             wrong.push(format!("{bad} numbers of '{name}' are negative or not finite"));

@@ -3,12 +3,12 @@
 mod common;
 
 use common::{assert_clean, experiment, lab, root, scene};
-use conelab::capture::scene_hash;
 use conelab::experiment::{EnvironmentChange, Experiment, write};
 use conelab::graph::run::Redo;
 use conelab::graph::source::{At, Loc};
 use conelab::lab::{Lab, Session};
-use conelab::reference::{Goal, Reference, gather};
+use conelab::measure::reference::{Goal, Reference, gather};
+use conelab::results::capture::scene_hash;
 use conelab::scene::{SUN, Scene, SceneError};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};

@@ -3,9 +3,9 @@
 mod common;
 
 use common::{conelab, fails, root, succeeds, table};
+use conelab::campaign::stability::{Suite, change, flicker, settling, step};
 use conelab::metrics::colour::display;
 use conelab::metrics::{Kind, Linear};
-use conelab::stability::{Suite, change, flicker, settling, step};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{conelab, fails, root, succeeds, table};
-use conelab::sweep::Sweep;
+use conelab::campaign::sweep::Sweep;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;

@@ -6,7 +6,7 @@ mod common;
 use common::closed_meshes::{cube, placed, poses, torus};
 use common::{assert_clean, conelab, experiment, fails, lab, prepare, root, scene, succeeds};
 use conelab::lab::Session;
-use conelab::oracle::{
+use conelab::measure::oracle::{
     Axes, Cell, Grid, Neighbours, Overlap, Score, Surfaces, clip, compare, exact, flood, read, triangles_of,
 };
 use conelab::scene::{Material, Mesh, Scene, Submesh, Vertex};
@@ -254,7 +254,7 @@ fn closed_meshes_in_a_hundred_poses() {
         let mut sum = Sum::default();
         for (b, (name, mesh)) in meshes.iter().enumerate() {
             let experiment = experiment("cornell", (16, 16), &[&base[..], mode.set].concat());
-            let graph_wants = |g: &_| conelab::oracle::wanted(g);
+            let graph_wants = |g: &_| conelab::measure::oracle::wanted(g);
             let (mut session, _) = lab.prepare(&experiment, mesh.clone(), graph_wants).unwrap();
             for pose in 0..POSES {
                 session.set_time(pose as f64);

@@ -8,7 +8,7 @@ use conelab::experiment::PlacedCamera;
 use conelab::graph::source::{At, Loc};
 use conelab::graph::table::{Cell, decode};
 use conelab::lab::{Lab, Session};
-use conelab::oracle::{Score, Surfaces, compare, exact, read, triangles_of};
+use conelab::measure::oracle::{Score, Surfaces, compare, exact, read, triangles_of};
 use conelab::scene::{Material, Scene};
 use glam::{DMat3, DVec3, Quat, Vec3};
 use std::sync::Arc;
@@ -366,7 +366,7 @@ fn density_is_told_by_hue() {
 /// The voxels of a frame against the exact cells.
 fn score(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Score {
     let experiment = experiment("cornell", (16, 16), settings);
-    let (mut session, _) = lab.prepare(&experiment, scene.clone(), conelab::oracle::wanted).unwrap();
+    let (mut session, _) = lab.prepare(&experiment, scene.clone(), conelab::measure::oracle::wanted).unwrap();
     session.frame(0.0).unwrap();
     session.finish().unwrap();
     assert_eq!(session.failed_checks().unwrap(), Vec::<String>::new(), "{settings:?}");

@@ -5,11 +5,12 @@ mod steps;
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use super::sweep::run_with_bar;
-use crate::ablation::{changes, csv, markdown, rows};
+use crate::campaign::ablation::{changes, csv, markdown, rows};
+use crate::campaign::record::write_files;
+use crate::campaign::sweep::{Options, Shard, Sweep};
 use crate::lab::{LabError, Workspace, params_of};
 use crate::measure::Frames;
-use crate::reference::ALL_BOUNCES;
-use crate::sweep::{Options, Shard, Sweep, write_file};
+use crate::measure::reference::ALL_BOUNCES;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -80,8 +81,8 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
             _ => Vec::new(),
         };
         let sweep = Sweep::one_at_a_time(experiment.clone(), &scenes, &settings, frames, args.bounces);
-        let shard = Shard { number: 1, of: 1 };
-        let options = Options { folder: folder.clone(), shard, frames, again: false, samples: Some(args.spp) };
+        let options =
+            Options { folder: folder.clone(), shard: Shard::ALL, frames, again: false, samples: Some(args.spp) };
         failed += run_with_bar(&home, &args.device, &sweep, &options)?.failed;
     }
 
@@ -97,8 +98,7 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
         frames.count,
         args.runs
     );
-    write_file(&folder.join("ablation.md"), text.as_bytes())?;
-    write_file(&folder.join("ablation.csv"), csv(&rows)?.as_bytes())?;
+    write_files(&folder, &[("ablation.md".into(), text.into()), ("ablation.csv".into(), csv(&rows)?.into())])?;
     say!("{table}\nwrote {}", super::shown(&folder).display());
     match failed {
         0 => Ok(()),

@@ -1,5 +1,6 @@
 //! What several commands let the command line change of an experiment.
 
+use crate::campaign::settings::named;
 use crate::excerpt::excerpt;
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, PlacedCamera, check_size};
 use crate::graph::source::{At, Loc};
@@ -78,10 +79,8 @@ impl Changes {
         // Later settings win, and messages about them point at the command line.
         for setting in &self.set {
             let file = experiment.sources.add(format!("--set {}", excerpt(setting, 80)).as_ref(), setting.clone());
-            let Some((name, value)) = setting.split_once('=') else {
-                return Err(LabError::Request(format!("--set {setting}: expected NAME=VALUE")));
-            };
-            experiment.params.push((Loc { value: name.trim().into(), at: At { file, offset: 0 } }, value.into()));
+            let (name, value) = named("--set", setting, "NAME=VALUE")?;
+            experiment.params.push((Loc { value: name.into(), at: At { file, offset: 0 } }, value.into()));
         }
         Ok(experiment)
     }

@@ -2,16 +2,21 @@
 
 use super::DeviceArgs;
 use super::adapt::{check_frames, parse_size};
-use crate::bench::{
+use super::campaign_bar::bar;
+use crate::campaign::bench::{
     Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, percent, record_file, slower, text,
 };
+use crate::campaign::points::{PointBuilder, SweepPoint};
+use crate::campaign::record::{json, write_file, write_files};
+use crate::campaign::settings::{named, values};
+use crate::campaign::sweep::{Sweep, list};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::{Frames, Warm};
+use crate::results::stats::DeviceStats;
 use crate::scene::SceneError;
-use crate::stats::DeviceStats;
-use crate::sweep::{PointBuilder, Sweep, SweepPoint, list, write_file};
 use clap::Args;
+use indexmap::IndexSet;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `bench`.
@@ -86,14 +91,14 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     }
     let result = measured(&lab, &mut warm, sweep.names, &points, rounds, frames)?;
     say_part!("{}", text(&result));
-    write_files(args, &lab.home, &sweep.name, &result)?;
+    write(args, &lab.home, &sweep.name, &result)?;
     super::validated(&lab)?;
     let failed = result.configurations.iter().filter(|c| c.error.is_some()).count();
     if failed > 0 {
         return Err(LabError::Request(format!("{failed} configurations failed")));
     }
     if let Some(path) = record {
-        write_file(&path, Record::of(&result, &points, &lab.home)?.text()?.as_bytes())?;
+        write_file(&path, &json(&Record::of(&result, &points, &lab.home)?)?)?;
         say!("recorded {} configurations in {}", points.len(), super::shown(&path).display());
     }
     Ok(())
@@ -120,12 +125,8 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
     let mut warm = Warm::default();
     let Again { found, skipped, mut broken } = again(&lab.home, &mut warm, chosen, frames);
     let (recorded, points): (Vec<&Recorded>, Vec<SweepPoint>) = found.into_iter().unzip();
-    let mut names: Vec<String> = Vec::new();
-    for (name, _) in points.iter().flat_map(|p| &p.labels) {
-        if !names.contains(name) {
-            names.push(name.clone());
-        }
-    }
+    let names: IndexSet<String> = points.iter().flat_map(|p| &p.labels).map(|l| l.0.clone()).collect();
+    let names = names.into_iter().collect();
     let result = measured(&lab, &mut warm, names, &points, rounds, frames)?;
     let mut compared: Vec<Compared> = Vec::new();
     for ((recorded, point), now) in recorded.iter().zip(&points).zip(&result.configurations) {
@@ -145,7 +146,7 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
         return Err(LabError::Request(format!("nothing of '{}' could be measured again (see above)", path.display())));
     }
     let stem = path.file_stem().map_or("against".into(), |s| s.to_string_lossy());
-    write_files(args, &lab.home, &stem, &result)?;
+    write(args, &lab.home, &stem, &result)?;
     super::validated(&lab)?;
     let most = percent(args.tolerance);
     let mut wrong: Vec<String> = Vec::new();
@@ -184,9 +185,8 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     }
     let settings = args.axis.iter().map(|a| ("--axis", a, "NAME=VALUE,VALUE"));
     for (option, text, form) in settings.chain(args.set.iter().map(|s| ("--set", s, "NAME=VALUE"))) {
-        let wrong = || LabError::Request(format!("{option} {text}: expected {form}"));
-        let (name, values) = text.split_once('=').ok_or_else(wrong)?;
-        axes.push((name.trim().to_string(), split(values)));
+        let (name, list) = named(option, text, form)?;
+        axes.push((name.to_string(), values(list)));
     }
     Sweep::of(experiments, &axes, frames)
 }
@@ -246,24 +246,18 @@ fn measured(
     rounds: usize,
     frames: Frames,
 ) -> Result<Bench, LabError> {
-    let bar = indicatif::ProgressBar::new((points.len() * rounds) as u64).with_style(
-        indicatif::ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left")
-            .unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()),
-    );
+    let bar = bar(points.len() * rounds);
     let result = bench(lab, warm, names, points, rounds, frames, &|| bar.inc(1));
     bar.finish_and_clear();
     result
 }
 
 /// Writes numbers and charts.
-fn write_files(args: &BenchArgs, home: &Workspace, name: &str, result: &Bench) -> Result<(), LabError> {
+fn write(args: &BenchArgs, home: &Workspace, name: &str, result: &Bench) -> Result<(), LabError> {
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/bench").join(name));
-    let json = serde_json::to_vec_pretty(result).map_err(|e| LabError::Request(e.to_string()))?;
-    let mut files = vec![("bench.json".to_string(), json), ("bench.csv".to_string(), csv(result)?.into_bytes())];
+    let mut files = vec![("bench.json".to_string(), json(result)?), ("bench.csv".into(), csv(result)?.into_bytes())];
     files.extend(charts(result)?.into_iter().map(|(name, svg)| (format!("{name}.svg"), svg.into_bytes())));
-    for (name, bytes) in &files {
-        write_file(&folder.join(name), bytes)?;
-    }
+    write_files(&folder, &files)?;
     say!("wrote {} files to {}", files.len(), super::shown(&folder).display());
     Ok(())
 }
@@ -278,22 +272,4 @@ fn size(text: &str) -> Result<(u32, u32), LabError> {
         "2160p" => Ok((3840, 2160)),
         other => parse_size(other),
     }
-}
-
-/// Values between commas; those inside brackets belong to a value.
-fn split(text: &str) -> Vec<String> {
-    let (mut values, mut depth) = (vec![String::new()], 0usize);
-    for c in text.chars() {
-        match c {
-            '(' | '[' => depth += 1,
-            ')' | ']' => depth = depth.saturating_sub(1),
-            _ => {}
-        }
-        match (c, depth, values.last_mut()) {
-            (',', 0, _) => values.push(String::new()),
-            (c, _, Some(last)) => last.push(c),
-            (_, _, None) => {}
-        }
-    }
-    values
 }

@@ -1,6 +1,7 @@
 //! `conelab check`.
 
-use crate::bench::check_record;
+use crate::campaign::bench::check_record;
+use crate::campaign::{stability, sweep};
 use crate::experiment::Experiment;
 use crate::files::read_input_text;
 use crate::graph::file::GraphFile;
@@ -111,18 +112,23 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
         let findings = match kind(&name) {
             FileKind::Graph => home.check(&name),
             FileKind::Path => crate::camera_path::CameraPath::read(file).err().unwrap_or_default(),
-            FileKind::Sweep => crate::sweep::check(&home, file).err().unwrap_or_default(),
-            FileKind::Stability => crate::stability::check(&home, file).err().unwrap_or_default(),
             FileKind::Experiment => check_experiment(&home, file),
-            FileKind::Times => match check_record(&home, file) {
-                Err(LabError::Input(errors)) => errors,
-                Err(e) => {
-                    wrong += 1;
-                    say!("{e}");
-                    Vec::new()
+            campaign @ (FileKind::Sweep | FileKind::Stability | FileKind::Times) => {
+                let checked = match campaign {
+                    FileKind::Sweep => sweep::check(&home, file),
+                    FileKind::Stability => stability::check(&home, file),
+                    _ => check_record(&home, file),
+                };
+                match checked {
+                    Err(LabError::Input(errors)) => errors,
+                    Err(e) => {
+                        wrong += 1;
+                        say!("{e}");
+                        Vec::new()
+                    }
+                    Ok(()) => Vec::new(),
                 }
-                Ok(()) => Vec::new(),
-            },
+            }
             FileKind::Scene => {
                 match crate::scene::Scene::open(&name, &|_, _| ControlFlow::Continue(())) {
                     // Models are no part of the program; asked for by name, they must be there.

@@ -4,13 +4,13 @@ mod sides;
 
 use super::adapt::Changes;
 use super::{DeviceArgs, writable};
-use crate::comparison::{Request, Side, compare, table};
 use crate::lab::LabError;
+use crate::measure::comparison::{Request, Side, compare, table};
+use crate::measure::reference::ALL_BOUNCES;
 use crate::metrics::MetricError;
 use crate::metrics::maps::MapFile;
 use crate::metrics::region::Region;
-use crate::picture;
-use crate::reference::ALL_BOUNCES;
+use crate::results::picture;
 use clap::Args;
 use sides::Sources;
 use std::path::{Path, PathBuf};

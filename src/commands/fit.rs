@@ -2,11 +2,12 @@
 
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
+use crate::campaign::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
+use crate::campaign::settings::{named, values};
 use crate::experiment::Experiment;
-use crate::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
 use crate::lab::{Lab, LabError, Workspace, params_of};
 use crate::measure::Frames;
-use crate::reference::{self, ALL_BOUNCES};
+use crate::measure::reference::{self, ALL_BOUNCES};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -176,18 +177,13 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
 
 /// `NAME=VALUE,VALUE`; values with commas in parentheses stay whole.
 fn axis(text: &str) -> Result<Axis, LabError> {
-    let wrong = || LabError::Request(format!("--vary {text}: expected NAME=VALUE,VALUE"));
-    let (name, list) = text.split_once('=').ok_or_else(wrong)?;
-    let mut depth = 0;
-    let split = |c: char| {
-        depth += i32::from(c == '(') - i32::from(c == ')');
-        c == ',' && depth == 0
-    };
-    let values: Vec<String> = list.split(split).map(|v| v.trim().to_string()).collect();
-    if name.trim().is_empty() || values.iter().any(String::is_empty) {
-        return Err(wrong());
+    let form = "NAME=VALUE,VALUE";
+    let (name, list) = named("--vary", text, form)?;
+    let values = values(list);
+    match name.is_empty() || values.iter().any(String::is_empty) {
+        true => Err(LabError::Request(format!("--vary {text}: expected {form}"))),
+        false => Ok(Axis { name: name.into(), values }),
     }
-    Ok(Axis { name: name.trim().into(), values })
 }
 
 fn names(axes: &[Axis], place: &[usize]) -> String {

@@ -1,5 +1,6 @@
 //! `conelab graph`.
 
+use crate::campaign::settings::named;
 use crate::experiment::Experiment;
 use crate::graph::outline::outline;
 use crate::graph::plan::{PlanInput, plan};
@@ -68,9 +69,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         None => graph.params.clone(),
     };
     for setting in &args.set {
-        let (name, value) = setting
-            .split_once('=')
-            .ok_or_else(|| LabError::Request(format!("--set {setting}: expected NAME=VALUE")))?;
+        let (name, value) = named("--set", setting, "NAME=VALUE")?;
         params.set(name, value).map_err(LabError::Request)?;
     }
     let size = match &args.size {

@@ -3,7 +3,7 @@
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
 use crate::lab::{Lab, LabError, Workspace};
-use crate::reference::{ALL_BOUNCES, Gathered, Goal, Reference, gather};
+use crate::measure::reference::{ALL_BOUNCES, Gathered, Goal, Reference, gather};
 use clap::Args;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -63,7 +63,7 @@ pub fn run(args: &ReferenceArgs) -> Result<(), LabError> {
             let all: Vec<&str> = reference.parts.keys().map(String::as_str).collect();
             LabError::Request(format!("no part '{}'; there are {}", args.part, all.join(", ")))
         })?;
-        crate::picture::write_linear(path, &part.mean)?;
+        crate::results::picture::write_linear(path, &part.mean)?;
         say!("wrote {}", path.display());
     }
     super::validated(&lab)

@@ -1,8 +1,8 @@
 //! `conelab replay`.
 
 use super::DeviceArgs;
-use crate::capture::{Manifest, changes, replay};
 use crate::lab::{Lab, LabError, Workspace};
+use crate::results::capture::{Manifest, changes, replay};
 use clap::Args;
 use std::path::PathBuf;
 

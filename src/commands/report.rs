@@ -1,8 +1,8 @@
 //! `conelab report`.
 
+use crate::campaign::report::{METRICS, write};
+use crate::campaign::sweep::collect;
 use crate::lab::LabError;
-use crate::report::{METRICS, write};
-use crate::sweep::collect;
 use clap::Args;
 use std::path::PathBuf;
 

@@ -108,7 +108,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     crate::files::write_whole(&args.output, file.get_ref())
         .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", args.output.display())))?;
     if args.measure > 0 || shot.pace.is_some() || shot.edit_ms.is_some() {
-        let row = |name: &str, s: &crate::stats::Spread| {
+        let row = |name: &str, s: &crate::results::stats::Spread| {
             say!("{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);
         };
         say!("{:<28}{:>10}{:>10}{:>10}", "ms", "min", "median", "p95");

@@ -2,11 +2,12 @@
 
 use super::DeviceArgs;
 use super::adapt::parse_size;
-use crate::files::write_whole;
+use super::campaign_bar::with_bar;
+use crate::campaign::record::write_file;
+use crate::campaign::stability::{Options, Suite, failure_table, failures, run as run_suite, sheet};
+use crate::campaign::table::short;
 use crate::lab::{Lab, LabError, Workspace};
-use crate::stability::{Options, Outcome, Progress, Suite, failure_table, failures, run as run_suite, sheet};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 
 /// Arguments of `stability`.
@@ -72,53 +73,20 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         reference: !args.no_reference,
         only: args.only.clone(),
     };
-    let bar = ProgressBar::new(0).with_style(
-        ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far {msg}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
-    let mut doing = String::new();
-    let mut on_progress = |progress: Progress| match progress {
-        Progress::Begins { todo, before } => {
-            if before > 0 {
-                bar.suspend(|| say!("{before} are finished already, {todo} to go"));
-            }
-            bar.set_length(todo as u64);
-        }
-        Progress::Times { method, done, of } => bar.set_message(format!("timing {method}, {done} of {of}")),
-        Progress::Runs(job) => {
-            doing = format!("{} {}: {}", job.case.name, job.case.variant, job.method);
-            bar.set_message(doing.clone());
-        }
-        Progress::Gathers(now) => {
-            bar.set_message(format!("{doing}, reference {} of {} samples", now.samples, now.goal))
-        }
-        Progress::Finished(record) => {
-            let say = |text: &str| {
-                let first = text.lines().next().unwrap_or_default();
-                bar.suspend(|| eprintln!("{}, {}: {first}", record.title(), record.method));
-            };
-            match &record.outcome {
-                Outcome::Failed(error) => say(&format!("failed: {error}")),
-                Outcome::Done(measured) => measured.warnings.iter().for_each(|w| say(&format!("warning: {w}"))),
-            }
-            bar.inc(1);
-        }
-    };
     let reopen = || Lab::open(home.clone(), args.device.options());
-    let result = run_suite(&reopen, &super::open_scene, &suite, &options, &mut on_progress);
-    bar.finish_and_clear();
-    let (counts, report) = result?;
+    let run = |on_progress: &mut dyn FnMut(_)| run_suite(&reopen, &super::open_scene, &suite, &options, on_progress);
+    let (counts, report) = with_bar("", run)?;
     for r in &report.results {
-        let Some(total) = r.measured().and_then(|m| m.parts.get("total")) else { continue };
-        let number = |v: Option<f64>| v.map_or("-".into(), crate::report::short);
+        let Some(total) = r.part("total") else { continue };
+        let number = |v: Option<f64>| v.map_or("-".into(), short);
         let noise = if total.told_apart == Some(false) { " (within noise)" } else { "" };
         say!(
             "{:32} {:24} E_t {}{noise}, jump {}/255, flicker {}, relMSE {}",
-            r.title(),
-            r.method,
+            r.about.title(),
+            r.about.method,
             number(total.e),
             number(total.jump),
-            number(total.flicker.filter(|_| r.frames > 1).map(|f| f.mean)),
+            number(total.flicker.map(|f| f.mean)),
             number(total.scores.as_ref().map(|s| s.relmse))
         );
     }
@@ -126,7 +94,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
     if let Some(path) = &args.sheet {
         let list = failures(&report);
         let bytes = sheet(&list, &options.folder)?;
-        write_whole(path, &bytes).map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
+        write_file(path, &bytes)?;
         say!("\n{}\nwrote {}", failure_table(&list), path.display());
     }
     say!("{} done, {} failed", counts.done, counts.failed);

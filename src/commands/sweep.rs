@@ -1,11 +1,12 @@
 //! `conelab sweep`.
 
 use super::DeviceArgs;
+use super::campaign_bar::with_bar;
+use crate::campaign::runner::Counts;
+use crate::campaign::sweep::{Options, Shard, Sweep, run as run_sweep};
 use crate::lab::{Lab, LabError, Workspace};
 use crate::measure::Frames;
-use crate::sweep::{Counts, Options, Outcome, Progress, Shard, Sweep, run as run_sweep};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 
 /// Arguments of `sweep`.
@@ -39,17 +40,17 @@ pub struct SweepArgs {
 /// Runs a sweep; an error if points failed.
 pub fn run(args: &SweepArgs) -> Result<(), LabError> {
     let sweep = Sweep::read(&super::found(&args.sweep)).map_err(LabError::Input)?;
-    let shard = args.shard.as_deref().map_or(Ok(Shard { number: 1, of: 1 }), parse_shard)?;
+    let shard = args.shard.as_deref().map_or(Ok(Shard::ALL), parse_shard)?;
     let frames =
         Frames { warmup: args.warmup.unwrap_or(sweep.frames.warmup), count: args.frames.unwrap_or(sweep.frames.count) };
     super::adapt::check_frames(frames.count, frames.warmup, 0.0)?;
     let home = Workspace::find()?;
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/sweeps").join(&sweep.name));
     let options = Options { folder, shard, frames, again: args.again, samples: args.reference };
-    let Counts { done, failed, left } = run_with_bar(&home, &args.device, &sweep, &options)?;
+    let Counts { done, failed } = run_with_bar(&home, &args.device, &sweep, &options)?;
     let of = if shard.of > 1 { format!("shard {}/{}: ", shard.number, shard.of) } else { String::new() };
     say!("wrote {}", super::shown(&options.folder).display());
-    say!("{of}{} points: {done} done, {failed} failed, {left} left", done + failed + left);
+    say!("{of}{} points: {done} done, {failed} failed, 0 left", done + failed);
     match failed {
         0 => Ok(()),
         n => Err(LabError::Request(format!("{n} points failed: their errors are in sweep.csv"))),
@@ -63,45 +64,8 @@ pub fn run_with_bar(
     sweep: &Sweep,
     options: &Options,
 ) -> Result<Counts, LabError> {
-    let bar = ProgressBar::new(0).with_style(
-        ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left {msg}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
-    let mut on_progress = |progress: Progress| match progress {
-        Progress::Begins { todo, before } => {
-            if before > 0 {
-                bar.suspend(|| say!("{before} points are finished already, {todo} to go"));
-            }
-            bar.reset();
-            bar.set_length(todo as u64);
-            bar.set_message("points");
-        }
-        Progress::Gathers(now) => {
-            bar.set_length(now.goal);
-            bar.set_position(now.samples);
-            bar.set_message("samples of a reference");
-        }
-        Progress::Note(text) => bar.suspend(|| eprintln!("{text}")),
-        Progress::Finished(point, record) => {
-            let say = |text: &str| {
-                let first = text.lines().next().unwrap_or_default();
-                bar.suspend(|| eprintln!("{} ({}) {first}", point.id, shown(&point.labels)));
-            };
-            match &record.outcome {
-                Outcome::Failed(error) => say(&format!("failed: {error}")),
-                Outcome::Done(measured) => measured.stats.warnings.iter().for_each(|w| say(&format!("warning: {w}"))),
-            }
-            bar.inc(1);
-        }
-    };
     let reopen = || Lab::open(home.clone(), device.options());
-    let counts = run_sweep(&reopen, &super::open_scene, sweep, options, &mut on_progress);
-    bar.finish_and_clear();
-    counts
-}
-
-fn shown(labels: &[(String, String)]) -> String {
-    labels.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")
+    with_bar("points ", |on_progress| run_sweep(&reopen, &super::open_scene, sweep, options, on_progress))
 }
 
 fn parse_shard(text: &str) -> Result<Shard, LabError> {

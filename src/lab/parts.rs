@@ -3,7 +3,7 @@
 use super::{LabError, Session};
 use crate::graph::load::Graph;
 use crate::metrics::Linear;
-use crate::picture;
+use crate::results::picture;
 use std::collections::BTreeMap;
 
 /// The (part, texture) pairs of a graph; one without parts has its linear picture as `total`.

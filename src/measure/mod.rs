@@ -1,19 +1,24 @@
 //! One experiment, measured: times of its passes, memory, failed checks, and how far its light is from a reference.
 
+pub mod comparison;
+pub mod oracle;
 mod pictures;
+pub mod reference;
+mod warm;
 mod warm_up;
 
+pub use warm::{Wanted, Warm};
 pub use warm_up::WarmUp;
 
 use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
+use crate::measure::reference::Reference;
 use crate::metrics::{Compared, Kind, Linear, Scores};
-use crate::reference::Reference;
+use crate::results::stats::{self, Stats};
 use crate::scene::Scene;
-use crate::stats::{self, Stats};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Frames of a measurement: warm-up and measured ones.
@@ -51,34 +56,6 @@ pub struct Measured {
     pub error_map: Option<Vec<u8>>,
     /// The first reference, displayed with the default tone map.
     pub reference: Option<Vec<u8>>,
-}
-
-/// What one measurement leaves to the next: compiled graphs, pipelines, the scene on the device. No content of textures:
-/// a point's result does not depend on the points before it.
-#[derive(Default)]
-pub struct Warm {
-    loaded: HashMap<String, Loaded>,
-    timed: Option<ReusableParts>,
-    scored: Option<(Arc<Scene>, ReusableParts)>,
-}
-
-impl Warm {
-    /// A graph, compiled once.
-    ///
-    /// # Errors
-    /// All mistakes of graph and shaders.
-    pub fn graph(&mut self, home: &crate::lab::Workspace, name: &str) -> Result<&Loaded, LabError> {
-        if !self.loaded.contains_key(name) {
-            let loaded = home.load(name).map_err(LabError::Input)?;
-            self.loaded.insert(name.to_string(), loaded);
-        }
-        self.loaded.get(name).ok_or_else(|| LabError::Request(format!("graph '{name}' is gone")))
-    }
-
-    /// Lets go of everything on a device that was lost.
-    pub fn leave_device(&mut self) {
-        (self.timed, self.scored) = (None, None);
-    }
 }
 
 /// Measures an experiment on its scene (with the experiment's light, see [`Experiment::adapted`]). The frames that are

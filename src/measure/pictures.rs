@@ -3,7 +3,7 @@
 use crate::lab::{LabError, Texels};
 use crate::metrics::colour::display;
 use crate::metrics::{Kind, Linear};
-use crate::picture::rgb8;
+use crate::results::picture::rgb8;
 use image::codecs::jpeg::JpegEncoder;
 use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgb, RgbImage};

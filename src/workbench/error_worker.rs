@@ -4,14 +4,14 @@
 use super::guard::guarded;
 use super::report::Report;
 use super::request::LightState;
-use crate::capture::scene_hash;
+use crate::campaign::report::error_of;
+use crate::campaign::sweep::{Subject, numbers};
 use crate::experiment::{Experiment, placed_text};
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of, params_of};
+use crate::measure::reference::{GRAPH, Reference, find};
 use crate::metrics::{Compared, Kind, Linear, relmse, structure};
-use crate::reference::{GRAPH, Reference, find};
-use crate::report::error_of;
+use crate::results::capture::scene_hash;
 use crate::scene::Scene;
-use crate::sweep::{Subject, numbers};
 use crossbeam_channel::Receiver;
 use std::sync::Arc;
 

@@ -2,9 +2,9 @@
 
 use super::engine::Order;
 use super::{Workbench, save, short};
-use crate::capture::{self, Summary};
 use crate::experiment::{Experiment, checked_name};
 use crate::lab::LabError;
+use crate::results::capture::{self, Summary};
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{ColorImage, TextureHandle, Ui, Vec2};
 use std::collections::HashMap;

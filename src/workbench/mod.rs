@@ -227,7 +227,7 @@ impl Workbench {
             ..RenderRequest::default()
         };
         watch.scene(&desired.scene);
-        crate::capture::sweep_partials(&root.join("captures"));
+        crate::results::capture::sweep_partials(&root.join("captures"));
         let trouble = watch.trouble.clone();
         Ok(Workbench {
             engine,

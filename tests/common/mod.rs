@@ -128,7 +128,7 @@ pub fn assert_clean(lab: &Lab) {
 /// Texels of a texture, four floats each.
 #[track_caller]
 pub fn floats(session: &mut Session, name: &str, mip: u32) -> Vec<[f32; 4]> {
-    conelab::picture::to_floats(&session.texels(name, mip, 0).unwrap())
+    conelab::results::picture::to_floats(&session.texels(name, mip, 0).unwrap())
 }
 
 /// Mean of the red, green and blue of some texels.

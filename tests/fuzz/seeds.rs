@@ -102,7 +102,7 @@ pub fn write(folder: &Path) {
     let sky = Rgb32FImage::from_fn(16, 8, |x, y| image::Rgb([x as f32, y as f32 * 0.5, 1.0]));
     put("sky.hdr", &encoded(&DynamicImage::ImageRgb32F(sky.clone()), ImageFormat::Hdr));
     let linear = Linear { size: (16, 8), rgb: sky.pixels().map(|p| p.0).collect() };
-    conelab::picture::write_linear(&folder.join("sky.exr"), &linear).unwrap();
+    conelab::results::picture::write_linear(&folder.join("sky.exr"), &linear).unwrap();
     put("scene.ron", SCENE.as_bytes());
     put("sky.ron", b"(models: [(builtin: \"cornell\")], environment: (file: \"sky.hdr\", rotation: 30, intensity: 2))");
     put(

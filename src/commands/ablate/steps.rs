@@ -3,8 +3,8 @@
 use super::super::{adapt, reference, validated, writable, write_json};
 use super::AblateArgs;
 use crate::lab::{Lab, LabError, Workspace, parts_of};
+use crate::measure::reference::{Goal, Reference};
 use crate::metrics::{Linear, relative_distance, relmse};
-use crate::reference::{Goal, Reference};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -67,7 +67,7 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
         let parts = session.parts()?;
         if let Some(folder) = &args.pictures {
             for (part, light) in &parts {
-                crate::picture::write_linear(&folder.join(format!("{}-{part}.exr", step.title)), light)?;
+                crate::results::picture::write_linear(&folder.join(format!("{}-{part}.exr", step.title)), light)?;
             }
         }
         let mut errors = BTreeMap::new();

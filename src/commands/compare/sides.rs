@@ -1,13 +1,14 @@
 //! Pictures from files, experiments and captures.
 
 use super::super::{DeviceArgs, open_scene, shown, validated};
-use crate::capture::{self, Manifest};
 use crate::commands::adapt::Changes;
-use crate::comparison::Side;
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace, parts_of};
+use crate::measure::comparison::Side;
+use crate::measure::reference;
+use crate::results::capture::{self, Manifest};
+use crate::results::picture;
 use crate::scene::Scene;
-use crate::{picture, reference};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! The figures as text.
 
 use super::Report;
-use crate::oracle::SHAPES;
+use crate::measure::oracle::SHAPES;
 
 pub(super) fn print(report: &Report) {
     let [x, y, z] = report.size;

@@ -1,8 +1,8 @@
 //! What of a sweep is charted.
 
 use super::folder::Folder;
-use crate::reference::ALL_BOUNCES;
-use crate::report::{Data, Scored, pareto};
+use crate::campaign::report::{Data, Scored, pareto};
+use crate::measure::reference::ALL_BOUNCES;
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! A sweep's folder, read on a thread.
 
+use crate::campaign::report::Data;
+use crate::campaign::sweep::{Subject, collect};
 use crate::lab::LabError;
-use crate::report::Data;
-use crate::sweep::{Subject, collect};
 use crossbeam_channel::{Receiver, unbounded};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

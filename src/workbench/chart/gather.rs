@@ -2,7 +2,7 @@
 
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace};
-use crate::reference::{Gathered, Goal, gather};
+use crate::measure::reference::{Gathered, Goal, gather};
 use crate::scene::Scene;
 use crate::vulkan::GpuOptions;
 use crossbeam_channel::{Receiver, unbounded};

@@ -10,9 +10,9 @@ mod thumbnail;
 
 use super::Workbench;
 use super::control::named;
+use crate::campaign::report::{Data, Dot, axis_title};
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
-use crate::report::{Data, Dot, axis_title};
 use choice::{Choice, Chosen, METRICS};
 use egui::Ui;
 use folder::Folder;

@@ -1,7 +1,8 @@
 //! Error against time, both logarithmic: dots of a sweep, their Pareto front, and where the workbench is.
 
 use super::choice::Chosen;
-use crate::report::{short, ticks};
+use crate::campaign::charts::ticks;
+use crate::campaign::table::short;
 use egui::{Color32, Pos2, Ui};
 use egui_plot::{GridInput, GridMark, Line, MarkerShape, Plot, PlotPoint, PlotPoints, Points};
 

@@ -3,7 +3,7 @@
 use super::super::Workbench;
 use super::super::control::spin;
 use super::plot::{LIVE, Live};
-use crate::comparison::within_noise;
+use crate::measure::comparison::within_noise;
 use egui::{Button, DragValue, ProgressBar, Ui};
 
 impl Workbench {

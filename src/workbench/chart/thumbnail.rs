@@ -1,6 +1,6 @@
 //! What is said of the dot under the pointer, with its picture.
 
-use crate::report::Dot;
+use crate::campaign::report::Dot;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{ColorImage, Response, TextureHandle};
 use std::sync::Arc;

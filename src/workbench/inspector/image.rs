@@ -1,7 +1,7 @@
 //! Texels as a picture, and the values behind it.
 
 use crate::lab::Texels;
-use crate::picture;
+use crate::results::picture;
 use crate::vulkan::Format;
 use crate::vulkan::format::Channels;
 use crate::workbench::request::InspectTarget;

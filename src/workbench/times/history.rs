@@ -1,6 +1,6 @@
 //! The times of the last frames, and what they say as a table.
 
-use crate::stats::{Spread, spread};
+use crate::results::stats::{Spread, spread};
 use crate::workbench::report::PictureReport;
 use std::collections::VecDeque;
 

@@ -7,7 +7,7 @@ mod history;
 use super::report::{GraphInfo, PassUses, PictureReport};
 use super::{Tab, Workbench};
 use crate::graph::run::Redo;
-use crate::stats::spread;
+use crate::results::stats::spread;
 use crate::timers;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
 use history::{Frame, History, Row};

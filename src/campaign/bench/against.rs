@@ -1,0 +1,174 @@
+//! A benchmark against a recorded one: what became slower.
+//!
+//! Other programs, heat and waking clocks only ever add time, so the least of the rounds' medians says best what a stage
+//! costs, and it is what is compared. Timestamps of very short stages jitter by more than a tenth of them, so a stage
+//! must also lose [`FLOOR_MS`]; and where recorded rounds scatter, its best round must be beyond the recorded middle.
+
+use super::record::{Record, Recorded, plain};
+use super::{Bench, Times};
+use crate::results::stats::{DeviceStats, spread};
+use std::fmt::Write;
+
+/// What a stage must lose or win to count, ms.
+pub const FLOOR_MS: f64 = 0.02;
+
+/// Most settings that are named one by one.
+const MAX_NAMED: usize = 8;
+
+/// A stage's time compared with the recorded one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Within the tolerance.
+    Same,
+    /// Beyond it.
+    Slower,
+    /// As far beyond it on the good side.
+    Faster,
+    /// Beyond it, but so were half of the recorded rounds.
+    Noisy,
+    /// Not in the record.
+    New,
+    /// Only in the record.
+    Gone,
+}
+
+/// One stage, or the whole frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Name of the stage; `total`.
+    pub stage: String,
+    /// Least of the rounds' medians, ms.
+    pub recorded: Option<f64>,
+    /// The time measured today.
+    pub now: Option<f64>,
+    /// The comparison of the two.
+    pub verdict: Verdict,
+}
+
+/// One configuration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// Title of the configuration.
+    pub title: String,
+    /// The stages in the order of today's graph, those that are gone, the total.
+    pub rows: Vec<Row>,
+    /// What besides the program differs from the recording.
+    pub notes: Vec<String>,
+}
+
+/// Compares times with recorded ones. `sha256` is that of today's scene.
+pub fn compare(recorded: &Recorded, times: &Times, sha256: &str, tolerance: f64) -> Compared {
+    let row = |stage: &str, before: Option<&Vec<f64>>, now: Option<&Vec<f64>>| Row {
+        stage: stage.into(),
+        recorded: before.map(|list| least(list)),
+        now: now.map(|list| least(list)),
+        verdict: match (before, now) {
+            (Some(before), Some(now)) => judge(before, now, tolerance),
+            (None, _) => Verdict::New,
+            (_, None) => Verdict::Gone,
+        },
+    };
+    let mut rows: Vec<Row> =
+        times.stage_rounds.iter().map(|(stage, now)| row(stage, recorded.stages.get(stage), Some(now))).collect();
+    let gone = recorded.stages.iter().filter(|(stage, _)| !times.stage_rounds.contains_key(*stage));
+    rows.extend(gone.map(|(stage, before)| row(stage, Some(before), None)));
+    rows.push(row("total", Some(&recorded.total), Some(&times.rounds)));
+    Compared { title: recorded.title(), rows, notes: notes(recorded, times, sha256) }
+}
+
+/// How the medians of some rounds stand to recorded ones, ms; `tolerance` is a part of the recorded time.
+pub fn judge(recorded: &[f64], now: &[f64], tolerance: f64) -> Verdict {
+    let (before, after) = (least(recorded), least(now));
+    let beyond = |a: f64, b: f64| b > a * (1.0 + tolerance) && b - a > FLOOR_MS;
+    if beyond(before, after) {
+        let middle = spread(recorded.to_vec()).median;
+        return if after > middle { Verdict::Slower } else { Verdict::Noisy };
+    }
+    if beyond(after, before) { Verdict::Faster } else { Verdict::Same }
+}
+
+fn least(list: &[f64]) -> f64 {
+    list.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+fn notes(recorded: &Recorded, times: &Times, sha256: &str) -> Vec<String> {
+    let mut notes = Vec::new();
+    if recorded.scene_sha256 != sha256 {
+        notes.push("the scene is not the recorded one: its content differs".to_string());
+    }
+    let differing = recorded.params.iter().filter_map(|(name, before)| match times.stats.params.get(name) {
+        None => Some(format!("{name} (was {before}) is gone")),
+        Some(now) if plain(now) != *before => Some(format!("{name} was {before}, is {}", plain(now))),
+        Some(_) => None,
+    });
+    let differing: Vec<String> = differing.collect();
+    notes.extend(differing.iter().take(MAX_NAMED).cloned());
+    if differing.len() > MAX_NAMED {
+        notes.push(format!("{} more parameters differ", differing.len() - MAX_NAMED));
+    }
+    notes
+}
+
+/// The tables for people.
+pub fn against_text(record: &Record, bench: &Bench, compared: &[Compared]) -> String {
+    let DeviceStats { name, driver, .. } = &bench.device;
+    let mut out = format!(
+        "{name} ({driver}), {} rounds of {} frames after at least {} of warm-up; GPU ms, least of the rounds' medians\n",
+        bench.rounds, bench.frames.count, bench.frames.warmup
+    );
+    if record.device.driver != *driver {
+        let _ = writeln!(out, "note: the driver was {}, is {driver}", record.device.driver);
+    }
+    let names = compared.iter().flat_map(|c| &c.rows).map(|r| r.stage.chars().count());
+    let width = names.max().unwrap_or(0) + 2;
+    for Compared { title, rows, notes } in compared {
+        let _ = writeln!(out, "\n{title}\n{:width$}{:>10}{:>10}{:>8}", "", "recorded", "now", "ratio");
+        for row in rows {
+            let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.3}"));
+            let ratio = row.ratio().map_or("-".into(), |r| format!("{r:.2}"));
+            let line = format!("{:width$}{:>10}{:>10}{ratio:>8}", row.stage, ms(row.recorded), ms(row.now));
+            let _ = writeln!(out, "{line}{}", word(row.verdict));
+        }
+        for note in notes {
+            let _ = writeln!(out, "note: {note}");
+        }
+    }
+    out
+}
+
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Same => "",
+        Verdict::Slower => "  slower",
+        Verdict::Faster => "  faster",
+        Verdict::Noisy => "  slower, but the recorded rounds scatter as far",
+        Verdict::New => "  new",
+        Verdict::Gone => "  gone",
+    }
+}
+
+impl Row {
+    /// Today's time in recorded ones.
+    pub fn ratio(&self) -> Option<f64> {
+        self.recorded.zip(self.now).filter(|(before, _)| *before > 0.0).map(|(before, now)| now / before)
+    }
+}
+
+/// The stages that became slower, configuration by configuration, in one line; `None` without any.
+pub fn slower(compared: &[Compared]) -> Option<String> {
+    let line = |row: &Row| match row.ratio() {
+        Some(ratio) => format!("{} {ratio:.2} times", row.stage),
+        None => row.stage.clone(),
+    };
+    let of = |c: &Compared| {
+        let list: Vec<String> = c.rows.iter().filter(|r| r.verdict == Verdict::Slower).map(line).collect();
+        (!list.is_empty()).then(|| format!("{} ({})", list.join(", "), c.title))
+    };
+    let list: Vec<String> = compared.iter().filter_map(of).collect();
+    (!list.is_empty()).then(|| list.join("; "))
+}
+
+/// A part as per cent, for people.
+pub fn percent(part: f64) -> String {
+    format!("{} %", (part * 1e4).round() / 100.0)
+}

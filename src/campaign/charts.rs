@@ -1,0 +1,277 @@
+//! Charts as SVG.
+
+use super::table::short;
+use crate::lab::LabError;
+use indexmap::IndexSet;
+use plotters::chart::ChartContext;
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::ops::Range;
+
+/// Colours in the order in which they are given out, told apart by people who see red and green alike (Okabe and Ito).
+pub const COLORS: [RGBColor; 10] = [
+    RGBColor(0, 114, 178),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(213, 94, 0),
+    RGBColor(240, 228, 66),
+    RGBColor(110, 110, 110),
+    RGBColor(150, 100, 50),
+    RGBColor(180, 180, 180),
+];
+/// Of lines that are there to compare with.
+const GREY: RGBColor = RGBColor(120, 120, 120);
+/// Of all texts.
+pub const FONT: &str = "sans-serif";
+/// Width of bars with their labels, pixels; of the labels alone, and the characters that fit.
+const WIDTH: i32 = 1100;
+const LEFT: i32 = 400;
+const LABEL: usize = 60;
+/// Right of the longest bar, pixels.
+const RIGHT: i32 = 70;
+/// Height of a bar, or of a line of a legend, pixels.
+const ROW: i32 = 22;
+/// Size of a chart of lines, pixels, and the part of its width that is no legend.
+const LINES: (u32, u32) = (900, 420);
+const PLOT: u32 = 680;
+
+/// What is drawn on.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Axes that are drawn on.
+pub type Plane<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
+/// What can go wrong.
+pub type Failure = Box<dyn std::error::Error>;
+
+/// A chart of so many pixels.
+///
+/// # Errors
+/// Drawing into memory gives none, whatever the data.
+pub fn drawn(
+    title: &str,
+    size: (u32, u32),
+    draw: impl FnOnce(&Area) -> Result<(), Failure>,
+) -> Result<String, LabError> {
+    let mut svg = String::new();
+    let whole = |area: &Area| {
+        area.fill(&WHITE)?;
+        draw(area)?;
+        Ok(area.present()?)
+    };
+    whole(&SVGBackend::with_string(&mut svg, size).into_drawing_area())
+        .map_err(|e: Failure| LabError::Request(format!("cannot draw '{title}': {e}")))?;
+    Ok(svg)
+}
+
+/// A name as that of a file.
+pub fn file_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect()
+}
+
+/// Text of so many pixels.
+pub fn text(size: i32, h: HPos, v: VPos) -> TextStyle<'static> {
+    TextStyle::from((FONT, size)).pos(Pos::new(h, v))
+}
+
+/// A text with at most so many characters.
+pub fn cut(text: &str, most: usize) -> String {
+    match text.chars().count() <= most {
+        true => text.to_string(),
+        false => text.chars().take(most - 1).chain(['…']).collect(),
+    }
+}
+
+/// An axis, linear or logarithmic.
+#[derive(Clone)]
+pub struct Axis {
+    title: String,
+    log: bool,
+    range: (f64, f64),
+    marks: Vec<f64>,
+}
+
+impl Axis {
+    /// At equal distances.
+    pub fn linear(title: &str, range: (f64, f64)) -> Axis {
+        Axis { title: title.into(), log: false, range, marks: steps(range) }
+    }
+
+    /// At equal ratios: both ends are above 0.
+    pub fn log(title: &str, range: (f64, f64)) -> Axis {
+        Axis { title: format!("{title} (log)"), log: true, range, marks: ticks(range) }
+    }
+
+    /// With these numbers written to it.
+    pub fn marked(self, marks: Vec<f64>) -> Axis {
+        Axis { marks, ..self }
+    }
+}
+
+impl Ranged for Axis {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    /// What is below a logarithmic axis lies at its end.
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let (low, high) = self.range;
+        let part = match self.log {
+            true => (value.max(low) / low).ln() / (high / low).ln(),
+            false => (value - low) / (high - low),
+        };
+        limit.0 + (f64::from(limit.1 - limit.0) * part).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        if hint.weight().allow_light_points() { Vec::new() } else { self.marks.clone() }
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.range.0..self.range.1
+    }
+}
+
+/// Round numbers of a range at equal distances, at most about six.
+fn steps((low, high): (f64, f64)) -> Vec<f64> {
+    let rough = (high - low) / 5.0;
+    let decade = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|s| s * decade).into_iter().find(|s| *s >= rough).unwrap_or(rough);
+    let first = (low / step).ceil();
+    (0..=6).map(|i| step * (first + f64::from(i))).filter(|v| *v <= high).collect()
+}
+
+/// Round numbers in a range at equal ratios, 3 to about 12 of them.
+pub fn ticks((low, high): (f64, f64)) -> Vec<f64> {
+    let inside = |steps: &[f64]| -> Vec<f64> {
+        let decades = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
+        let all = decades.flat_map(|e| steps.iter().map(move |s| s * 10f64.powi(e)));
+        all.filter(|v| (low..=high).contains(v)).collect()
+    };
+    let tenths: Vec<f64> = (10..100).map(|i| f64::from(i) / 10.0).collect();
+    let halves: Vec<f64> = (2..20).map(|i| f64::from(i) / 2.0).collect();
+    let sets: [&[f64]; 5] = [&[1.0], &[1.0, 3.0], &[1.0, 2.0, 3.0, 5.0, 7.0], &halves, &tenths];
+    sets.iter().map(|s| inside(s)).find(|t| t.len() >= 4).unwrap_or_else(|| inside(&tenths))
+}
+
+/// Axes with their titles and numbers.
+///
+/// # Errors
+/// As [`drawn`].
+pub fn plane<'a, 'b>(area: &'a Area<'b>, title: &str, x: &Axis, y: &Axis) -> Result<Plane<'a, 'b>, Failure> {
+    let mut chart = ChartBuilder::on(area)
+        .margin(12)
+        .caption(title, (FONT, 18))
+        .x_label_area_size(48)
+        .y_label_area_size(76)
+        .build_cartesian_2d(x.clone(), y.clone())?;
+    chart
+        .configure_mesh()
+        .x_desc(&x.title)
+        .y_desc(&y.title)
+        .x_label_formatter(&|v| short(*v))
+        .y_label_formatter(&|v| short(*v))
+        .axis_desc_style((FONT, 15))
+        .label_style((FONT, 13))
+        .light_line_style(WHITE)
+        .bold_line_style(RGBColor(225, 225, 225))
+        .draw()?;
+    Ok(chart)
+}
+
+/// A line of a chart.
+pub struct Line {
+    /// What it is.
+    pub name: String,
+    /// From left to right.
+    pub points: Vec<(f64, f64)>,
+    /// Whether it is there to compare with: thin and grey.
+    pub grey: bool,
+}
+
+/// Lines on axes, with their names beside them.
+///
+/// # Errors
+/// As [`drawn`].
+pub fn lines(title: &str, x: &Axis, y: &Axis, lines: &[Line]) -> Result<String, LabError> {
+    drawn(title, LINES, |area| {
+        let (plot, legend) = area.split_horizontally(PLOT);
+        let mut chart = plane(&plot, title, x, y)?;
+        for (i, Line { name, points, grey }) in lines.iter().enumerate() {
+            let color = if *grey { GREY } else { color(i) };
+            let style = color.stroke_width(if *grey { 1 } else { 2 });
+            chart.draw_series([PathElement::new(points.clone(), style)])?;
+            chart.draw_series(points.iter().map(|p| Circle::new(*p, 2, color.filled())))?;
+            let y = 50 + ROW * i32::try_from(i)?;
+            legend.draw(&Rectangle::new([(4, y), (16, y + 4)], color.filled()))?;
+            legend.draw(&Text::new(cut(name, 30), (22, y + 2), text(13, HPos::Left, VPos::Center)))?;
+        }
+        Ok(())
+    })
+}
+
+/// A bar.
+#[derive(Clone, Debug)]
+pub struct Bar {
+    /// What it is.
+    pub label: String,
+    /// Names and lengths, from left to right.
+    pub parts: Vec<(String, f64)>,
+    /// Whether only its outline is drawn: it is not told apart from noise.
+    pub hollow: bool,
+}
+
+impl Bar {
+    fn length(&self) -> f64 {
+        self.parts.iter().map(|p| p.1).sum()
+    }
+}
+
+/// Horizontal bars, one below the other, on one scale, with the names of their parts above them. Numbers at the scale are
+/// of a `unit`; those at the bars are written by `shown`.
+///
+/// # Errors
+/// As [`drawn`].
+pub fn bars(title: &str, unit: &str, shown: fn(f64) -> String, bars: &[Bar]) -> Result<String, LabError> {
+    let names: IndexSet<&str> = bars.iter().flat_map(|b| &b.parts).map(|p| p.0.as_str()).collect();
+    // The legend stands in rows of four.
+    let pixels = |rows: usize| ROW.saturating_mul(i32::try_from(rows).unwrap_or(i32::MAX));
+    let top = 44 + pixels(names.len().div_ceil(4));
+    let bottom = top.saturating_add(pixels(bars.len()));
+    let size = (WIDTH.unsigned_abs(), bottom.saturating_add(40).unsigned_abs());
+    drawn(title, size, |area| {
+        area.draw(&Text::new(title.to_string(), (12, 12), (FONT, 20)))?;
+        for (i, name) in names.iter().enumerate() {
+            let at = (12 + i32::try_from(i % 4)? * 260, 42 + i32::try_from(i / 4)? * ROW);
+            area.draw(&Rectangle::new([at, (at.0 + 12, at.1 + 12)], color(i).filled()))?;
+            area.draw(&Text::new((*name).to_string(), (at.0 + 18, at.1), (FONT, 15)))?;
+        }
+        let most = bars.iter().map(Bar::length).fold(0.0, f64::max).max(1e-9);
+        let x = |v: f64| LEFT + (v * f64::from(WIDTH - LEFT - RIGHT) / most).round() as i32;
+        for value in steps((0.0, most)) {
+            area.draw(&PathElement::new([(x(value), top), (x(value), bottom)], RGBColor(220, 220, 220)))?;
+            let number = format!("{}{unit}", short(value));
+            area.draw(&Text::new(number, (x(value), bottom + 6), text(14, HPos::Center, VPos::Top)))?;
+        }
+        for (y, bar) in (0i32..).map(|i| top + i * ROW).zip(bars) {
+            let label = text(14, HPos::Right, VPos::Center);
+            area.draw(&Text::new(cut(&bar.label, LABEL), (LEFT - 8, y + ROW / 2), label))?;
+            let mut from = 0.0;
+            for (name, length) in &bar.parts {
+                let color = color(names.get_index_of(name.as_str()).unwrap_or(0));
+                let style = if bar.hollow { color.stroke_width(1) } else { color.filled() };
+                area.draw(&Rectangle::new([(x(from), y + 3), (x(from + length), y + ROW - 3)], style))?;
+                from += length;
+            }
+            let number = text(14, HPos::Left, VPos::Center);
+            area.draw(&Text::new(shown(from), (x(from) + 6, y + ROW / 2), number))?;
+        }
+        Ok(())
+    })
+}
+
+/// The colour of the i-th of some things.
+pub fn color(i: usize) -> RGBColor {
+    COLORS[i % COLORS.len()]
+}

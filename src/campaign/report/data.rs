@@ -1,0 +1,222 @@
+//! What the page and its charts show, taken from the records of sweeps.
+
+use crate::campaign::charts::file_name;
+use crate::campaign::points::{labelled, total_first};
+use crate::campaign::record::Outcome;
+use crate::campaign::sweep::{Collected, Subject, parts_of};
+use crate::measure::comparison::within_noise;
+use indexmap::IndexMap;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Bytes of pictures that go into a page.
+const MAX_PICTURES: usize = 64 << 20;
+
+/// A measured point.
+#[derive(Clone, Debug, Serialize)]
+pub struct Dot {
+    pub id: String,
+    pub labels: IndexMap<String, String>,
+    /// Number of what is looked at, among those of [`Data`].
+    pub subject: usize,
+    /// GPU time of a frame, median and 95th percentile, ms.
+    pub ms: f64,
+    pub p95: f64,
+    /// Device memory of the graph.
+    pub bytes: u64,
+    /// Median of each stage, ms, in the order of the graph.
+    pub stages: Vec<(String, f64)>,
+    /// By part and metric.
+    pub scores: BTreeMap<String, BTreeMap<String, f64>>,
+    /// By part.
+    pub noise: BTreeMap<String, f64>,
+    pub warnings: Vec<String>,
+    /// The experiment, to be saved and run.
+    pub experiment: String,
+    /// JPEG.
+    #[serde(skip)]
+    pub picture: Option<Vec<u8>>,
+    #[serde(skip)]
+    pub error_map: Option<Vec<u8>>,
+}
+
+/// A point that could not be measured.
+pub struct Failed {
+    pub labels: IndexMap<String, String>,
+    /// What is looked at, and the device's name.
+    pub key: (Subject, String),
+    pub error: String,
+}
+
+/// A chart of the page; its points are drawn in this order.
+pub struct Chart {
+    /// File name without its ending.
+    pub name: String,
+    pub subject: usize,
+    pub part: String,
+    pub metric: String,
+    /// Numbers of dots.
+    pub points: Vec<usize>,
+    pub svg: String,
+}
+
+/// A dot of a chart.
+pub struct Scored {
+    /// Number of the dot.
+    pub index: usize,
+    pub ms: f64,
+    /// 0 is perfect.
+    pub error: f64,
+    /// Whether its relMSE is not told apart from the reference's noise.
+    pub noisy: bool,
+    /// Name of the experiment that it is a variant of; empty where there is one alone.
+    pub experiment: String,
+}
+
+/// Everything that is shown.
+pub struct Data {
+    pub sweeps: Vec<String>,
+    pub names: Vec<String>,
+    pub dots: Vec<Dot>,
+    /// Scene, size and device: only points of one subject can be compared.
+    pub subjects: Vec<String>,
+    /// What is looked at, and the device's name, of each subject.
+    pub keys: Vec<(Subject, String)>,
+    /// Bounces of the reference that all parts of each subject are scored against.
+    pub bounces: Vec<Option<u32>>,
+    /// Bounces and samples of a pixel of the references of each subject.
+    pub samples: Vec<Vec<(u32, u64)>>,
+    /// How each subject was measured, one line.
+    pub settings: Vec<String>,
+    pub parts: Vec<String>,
+    /// The reference of each subject, displayed: JPEG.
+    pub references: Vec<Option<Vec<u8>>>,
+    pub failed: Vec<Failed>,
+    /// Points without a result.
+    pub left: usize,
+}
+
+impl Dot {
+    /// Some of its values.
+    pub fn title(&self, names: &[&String]) -> String {
+        let text = labelled(names.iter().filter_map(|n| Some((*n, self.labels.get(*n)?))));
+        if text.is_empty() { self.id.chars().take(8).collect() } else { text }
+    }
+}
+
+/// The distance from perfection: a ratio is as far from 1 as its inverse, everything else is perfect at 0.
+pub fn error_of(metric: &str, value: f64) -> f64 {
+    if metric == "energy_ratio" { value.ln().abs() } else { value }
+}
+
+impl Data {
+    pub fn new(collected: &Collected) -> Data {
+        let mut data = Data {
+            sweeps: collected.sweeps.clone(),
+            names: collected.names.clone(),
+            dots: Vec::new(),
+            subjects: Vec::new(),
+            keys: Vec::new(),
+            bounces: Vec::new(),
+            samples: Vec::new(),
+            settings: Vec::new(),
+            parts: Vec::new(),
+            references: Vec::new(),
+            failed: Vec::new(),
+            left: 0,
+        };
+        let mut keys = Vec::new();
+        let mut room = MAX_PICTURES;
+        for (planned, record) in &collected.points {
+            let Some(record) = record else {
+                data.left += 1;
+                continue;
+            };
+            let point = match &record.outcome {
+                Outcome::Done(point) => point,
+                Outcome::Failed(error) => {
+                    let key = (record.about.subject.clone(), record.device.name.clone());
+                    data.failed.push(Failed { labels: planned.labels.clone(), key, error: error.clone() });
+                    continue;
+                }
+            };
+            let key = (&record.about.subject, &record.device.name);
+            let subject = keys.iter().position(|k| *k == key).unwrap_or_else(|| {
+                keys.push(key);
+                let (s, device) = (&record.about.subject, &record.device);
+                let same = keys.iter().filter(|k| k.0.scene == s.scene && k.0.size == s.size && k.1 == key.1).count();
+                let number = if same > 1 { format!(" ({same})") } else { String::new() };
+                data.subjects.push(format!("{}{number} at {}x{}, {}", s.scene, s.size.0, s.size.1, device.name));
+                let references: Vec<String> =
+                    point.references.iter().map(|(bounces, n)| format!("{n} samples a pixel of {bounces} bounces")).collect();
+                data.samples.push(point.references.iter().map(|(bounces, n)| (*bounces, *n)).collect());
+                let samples = match references.is_empty() {
+                    true => String::from("no reference"),
+                    false => format!("reference: {}", references.join("; ")),
+                };
+                let beside = |b: &&u32| point.scores.contains_key(&format!("total, {b} bounces"));
+                let reference = collected.reference(record).filter(|b| b.len() <= room);
+                room -= reference.as_ref().map_or(0, Vec::len);
+                data.references.push(reference);
+                data.bounces.push(point.references.keys().find(|b| !beside(b)).copied());
+                let frames = point.stats.passes.first().map_or(0, |p| p.frames);
+                let alike = collected.points.iter().filter_map(|(_, r)| r.as_ref());
+                let alike = alike.filter(|r| (&r.about.subject, &r.device.name) == key);
+                let warmups = alike.filter_map(|r| Some(r.done()?.stats.warmup));
+                let (least, most) = warmups.fold((usize::MAX, 0), |(a, b), n| (a.min(n), b.max(n)));
+                let warmup = if least < most { format!("{least} to {most}") } else { most.to_string() };
+                data.settings.push(format!(
+                    "camera {}, time {} s; {}, Vulkan {}; conelab {}; {frames} frames after {warmup} of warm-up; every pass in every frame; {samples}",
+                    s.camera, s.time, device.driver, device.api, point.stats.version
+                ));
+                keys.len() - 1
+            });
+            let mut stages: IndexMap<&str, f64> = IndexMap::new();
+            for pass in &point.stats.passes {
+                *stages.entry(&pass.stage).or_default() += pass.gpu_ms.median;
+            }
+            let mut picture = |kind| {
+                let bytes = collected.picture(kind, &record.id).filter(|b| b.len() <= room)?;
+                room -= bytes.len();
+                Some(bytes)
+            };
+            data.dots.push(Dot {
+                id: record.id.clone(),
+                labels: planned.labels.clone(),
+                subject,
+                ms: point.stats.total_gpu_ms.median,
+                p95: point.stats.total_gpu_ms.p95,
+                bytes: point.stats.total_bytes,
+                stages: stages.into_iter().map(|(name, ms)| (name.to_string(), ms)).collect(),
+                scores: parts_of(point),
+                noise: point.noise.clone(),
+                warnings: point.stats.warnings.clone(),
+                experiment: record.about.experiment.clone(),
+                picture: picture("pictures"),
+                error_map: picture("errors"),
+            });
+        }
+        data.parts = total_first(data.dots.iter().flat_map(|d| d.scores.keys()));
+        data.keys = keys.into_iter().map(|(subject, device)| (subject.clone(), device.clone())).collect();
+        data
+    }
+
+    /// The points of a subject that have a score, in order.
+    pub fn scored(&self, subject: usize, part: &str, metric: &str) -> Vec<Scored> {
+        let dots = self.dots.iter().enumerate().filter(|d| d.1.subject == subject);
+        dots.filter_map(|(index, dot)| {
+            let scores = dot.scores.get(part)?;
+            let error = error_of(metric, *scores.get(metric)?);
+            let noisy = within_noise(*scores.get("relmse").unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
+            let experiment = dot.labels.get("experiment").cloned().unwrap_or_default();
+            (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy, experiment })
+        })
+        .collect()
+    }
+
+    /// A file's name for a subject.
+    pub fn name(&self, what: &str, subject: usize) -> String {
+        let what = file_name(what);
+        if self.subjects.len() > 1 { format!("{what}-{}", subject + 1) } else { what }
+    }
+}

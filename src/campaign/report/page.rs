@@ -1,0 +1,105 @@
+//! The page: data, charts, style and script in one file.
+
+use super::data::{Chart, Data, Dot};
+use super::scenes::Scenes;
+use crate::campaign::charts::COLORS;
+use crate::campaign::page::{page as whole_page, url};
+use crate::campaign::points::labelled;
+use crate::campaign::record::first_line;
+use crate::lab::LabError;
+use maud::{PreEscaped, html};
+use serde::Serialize;
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+#[derive(Serialize)]
+struct PageDot<'a> {
+    #[serde(flatten)]
+    dot: &'a Dot,
+    picture: Option<String>,
+    error_map: Option<String>,
+}
+
+#[derive(Serialize)]
+struct PageChart<'a> {
+    subject: usize,
+    part: &'a str,
+    metric: &'a str,
+    points: &'a [usize],
+}
+
+#[derive(Serialize)]
+struct PageData<'a> {
+    names: &'a [String],
+    subjects: &'a [String],
+    settings: &'a [String],
+    parts: &'a [String],
+    colors: Vec<String>,
+    charts: Vec<PageChart<'a>>,
+    dots: Vec<PageDot<'a>>,
+}
+
+/// The page as HTML.
+///
+/// # Errors
+/// Writing to memory gives none, whatever the data.
+pub fn page(
+    data: &Data,
+    charts: &[Chart],
+    passes: &[(String, String)],
+    table: &str,
+    scenes: Option<&Scenes>,
+) -> Result<String, LabError> {
+    let jpeg = |bytes: &Option<Vec<u8>>| bytes.as_ref().map(|b| url("image/jpeg", b));
+    let dots =
+        data.dots.iter().map(|dot| PageDot { dot, picture: jpeg(&dot.picture), error_map: jpeg(&dot.error_map) });
+    let charted =
+        charts.iter().map(|c| PageChart { subject: c.subject, part: &c.part, metric: &c.metric, points: &c.points });
+    let shown = PageData {
+        names: &data.names,
+        subjects: &data.subjects,
+        settings: &data.settings,
+        parts: &data.parts,
+        colors: COLORS.iter().map(|c| format!("rgb({},{},{})", c.0, c.1, c.2)).collect(),
+        charts: charted.collect(),
+        dots: dots.collect(),
+    };
+    // Nothing in a string can end the element that the data stands in.
+    let json = serde_json::to_string(&shown).map_err(|e| LabError::Request(e.to_string()))?.replace('<', "\\u003c");
+    let title = data.sweeps.join(", ");
+    let body = html! {
+        h1 { (title) }
+        p {
+            (data.dots.len()) " points measured, " (data.failed.len()) " failed, " (data.left) " left. Times are GPU \
+             milliseconds of a frame, medians. Errors are against a path-traced reference. Only points of one scene, camera, \
+             size and device are put on one chart. Hollow: less than 4 times the noise of the reference. "
+            a download="points.csv" href=(url("text/csv", table.as_bytes())) { "points.csv" }
+        }
+        @if let Some(scenes) = scenes { (scenes.html(data)) }
+        div id="controls" {}
+        p id="settings" {}
+        div id="filters" {}
+        div id="charts" {
+            @if charts.is_empty() {
+                p {
+                    "No point has a reference to be compared with: make one with " code { "conelab reference" } " and run \
+                     the sweep again."
+                }
+            }
+            @for (i, chart) in charts.iter().enumerate() { figure data-chart=(i) hidden { (PreEscaped(&chart.svg)) } }
+        }
+        h2 { "Passes" }
+        @for (i, (_, svg)) in passes.iter().enumerate() { figure data-passes=(i) hidden { (PreEscaped(svg)) } }
+        h2 { "Points" }
+        div.wide { table id="points" {} }
+        @if !data.failed.is_empty() {
+            h2 { "Failed" }
+            ul { @for failed in &data.failed { li { (labelled(&failed.labels)) ": " (first_line(&failed.error)) } } }
+        }
+        div id="tip" hidden {}
+        script type="application/json" id="data" { (PreEscaped(json)) }
+        script { (PreEscaped(SCRIPT)) }
+    };
+    Ok(whole_page(&format!("{title}: error against time"), STYLE, &body))
+}

@@ -1,0 +1,119 @@
+//! Error against time, both logarithmic, with the Pareto front.
+
+use super::data::Scored;
+use super::pareto::pareto;
+use crate::campaign::charts::{Area, Axis, FONT, Failure, drawn, plane};
+use crate::lab::LabError;
+use plotters::prelude::*;
+
+const SIZE: (u32, u32) = (900, 560);
+/// Of the dots of each experiment, in turns.
+const DOTS: [RGBColor; 5] = [
+    RGBColor(70, 110, 160),
+    RGBColor(220, 150, 40),
+    RGBColor(90, 150, 80),
+    RGBColor(140, 90, 160),
+    RGBColor(110, 110, 110),
+];
+const FRONT: RGBColor = RGBColor(200, 60, 40);
+
+/// A metric by its usual name.
+pub fn axis_title(metric: &str) -> String {
+    match metric {
+        "relmse" => "relMSE".into(),
+        "rmse" => "RMSE".into(),
+        "flip" => "FLIP".into(),
+        "hdr_flip" => "HDR-FLIP".into(),
+        "smape" => "SMAPE".into(),
+        "energy_ratio" => "|ln energy ratio|".into(),
+        other => other.replace('_', " "),
+    }
+}
+
+/// The chart as SVG: its circles are the dots in their order, of a colour for each experiment; those on the front are larger and
+/// joined by a red line, and red where there is one experiment; those that are not told apart from the reference's noise are
+/// hollow.
+pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, LabError> {
+    drawn(title, SIZE, |area| draw(area, title, metric, dots))
+}
+
+fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), Failure> {
+    // A perfect point has no logarithm: it is drawn at the bottom, a tenth below the others.
+    let least = dots.iter().map(|d| d.error).filter(|e| *e > 0.0).fold(f64::INFINITY, f64::min).min(1.0);
+    let place = |d: &Scored| (d.ms, d.error.max(least / 10.0));
+    let (xs, ys) = (around(dots.iter().map(|d| place(d).0)), around(dots.iter().map(|d| place(d).1)));
+    let (x, y) = (Axis::log("GPU time of a frame, ms, median", xs), Axis::log(metric, ys));
+    let title = format!("{title}, {metric} against time ({} points)", dots.len());
+    let mut chart = plane(area, &title, &x, &y)?;
+    let pairs: Vec<(f64, f64)> = dots.iter().map(|d| (d.ms, d.error)).collect();
+    let front = pareto(&pairs);
+    let mut steps: Vec<(f64, f64)> = Vec::new();
+    for i in &front {
+        let at = place(&dots[*i]);
+        steps.extend(steps.last().map(|last| (at.0, last.1)));
+        steps.push(at);
+    }
+    chart.draw_series(std::iter::once(PathElement::new(steps, FRONT.stroke_width(1))))?;
+    let mut experiments: Vec<&str> = dots.iter().map(|d| d.experiment.as_str()).collect();
+    experiments.sort_unstable();
+    experiments.dedup();
+    let color_of = |name: &str| DOTS[experiments.iter().position(|e| *e == name).unwrap_or(0) % DOTS.len()];
+    chart.draw_series(dots.iter().enumerate().map(|(i, d)| {
+        let on_front = front.contains(&i);
+        let color = if on_front && experiments.len() < 2 { FRONT } else { color_of(&d.experiment) };
+        let style = if d.noisy { color.stroke_width(2) } else { color.mix(0.85).filled() };
+        Circle::new(place(d), if on_front { 6 } else { 4 }, style)
+    }))?;
+    if experiments.len() > 1 {
+        for name in &experiments {
+            let color = color_of(name);
+            // No circle: those are the dots.
+            let key = move |(x, y)| Rectangle::new([(x, y - 5), (x + 10, y + 5)], color.filled());
+            chart.draw_series(std::iter::empty::<Circle<(f64, f64), i32>>())?.label(*name).legend(key);
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::LowerLeft)
+            .background_style(WHITE.mix(0.8))
+            .border_style(BLACK.mix(0.2))
+            .label_font((FONT, 15))
+            .draw()?;
+    }
+    Ok(())
+}
+
+/// The range of some numbers above 0 with room on both sides, at least a factor of 2.
+fn around(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
+    let room = (high / low).powf(0.05).max(1.5 / (high / low).sqrt()).max(1.05);
+    (low / room, high * room)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn experiments_have_colours_and_a_key() {
+        let dot = |ms: f64, error: f64, experiment: &str| Scored {
+            index: 0,
+            ms,
+            error,
+            noisy: false,
+            experiment: experiment.into(),
+        };
+        let dots = [dot(1.0, 0.2, "threads"), dot(2.0, 0.1, "threads"), dot(3.0, 0.3, "raster")];
+        let svg = scatter("Sponza", "relMSE", &dots).unwrap();
+        assert_eq!(svg.matches("<circle").count(), dots.len());
+        let fills = |svg: &str| -> Vec<String> {
+            let circles = svg.lines().filter(|l| l.starts_with("<circle"));
+            circles.filter_map(|l| Some(l.split("fill=\"").nth(1)?.split('"').next()?.to_string())).collect()
+        };
+        let colours = fills(&svg);
+        assert!(colours[0] == colours[1] && colours[1] != colours[2], "{colours:?}");
+        assert!(["threads", "raster"].iter().all(|name| svg.contains(name)));
+        // The front is red where there is one experiment, and there is no key.
+        let one = scatter("Sponza", "relMSE", &dots[..2]).unwrap();
+        assert!(fills(&one).iter().all(|c| *c != colours[0]) && !one.contains("threads"));
+    }
+}

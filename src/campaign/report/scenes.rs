@@ -1,0 +1,202 @@
+//! A table with one row for each scene, worst first: what every method shows of it, and how far that is from the
+//! reference.
+
+use super::data::{Data, Dot};
+use crate::campaign::page::url;
+use crate::campaign::points::labelled;
+use crate::campaign::record::first_line;
+use crate::campaign::sweep::Subject;
+use crate::campaign::table::{Table, cell, short};
+use crate::lab::LabError;
+use indexmap::{IndexMap, IndexSet};
+use maud::{Markup, html};
+
+/// What tells rows apart; everything else that is varied tells methods apart.
+const OF_A_ROW: [&str; 4] = ["scene", "camera", "size", "time"];
+/// Most methods beside each other.
+const MAX_METHODS: usize = 12;
+/// Scores in the table: title and metric.
+const SCORES: [(&str, &str); 3] = [("energy", "energy_ratio"), ("relMSE", "relmse"), ("FLIP", "flip")];
+
+/// The table.
+pub struct Scenes {
+    methods: Vec<String>,
+    rows: Vec<Row>,
+}
+
+/// A scene, or another view of one.
+struct Row {
+    /// What is looked at, and the device's name.
+    key: (Subject, String),
+    /// By method.
+    cells: Vec<Cell>,
+}
+
+/// What one method did there.
+#[derive(Clone)]
+enum Cell {
+    /// Number of the dot.
+    Measured(usize),
+    Failed(String),
+    /// Not finished.
+    Left,
+}
+
+impl Scenes {
+    /// None where there are not several scenes.
+    pub fn of(data: &Data) -> Option<Scenes> {
+        let names: Vec<&String> = data.names.iter().filter(|n| !OF_A_ROW.contains(&n.as_str())).collect();
+        let method =
+            |labels: &IndexMap<String, String>| labelled(names.iter().filter_map(|n| Some((*n, labels.get(*n)?))));
+        let measured = data.dots.iter().enumerate().map(|(i, dot)| {
+            let key = data.keys[dot.subject].clone();
+            (key, method(&dot.labels), Cell::Measured(i))
+        });
+        let failed = data.failed.iter().map(|f| (f.key.clone(), method(&f.labels), Cell::Failed(f.error.clone())));
+        let all: Vec<_> = measured.chain(failed).collect();
+        let methods: IndexSet<String> = all.iter().map(|a| a.1.clone()).collect();
+        let methods: Vec<String> = methods.into_iter().take(MAX_METHODS).collect();
+        let mut rows: IndexMap<(Subject, String), Vec<Cell>> = IndexMap::new();
+        for (key, method, cell) in all {
+            let Some(column) = methods.iter().position(|m| *m == method) else { continue };
+            rows.entry(key).or_insert_with(|| vec![Cell::Left; methods.len()])[column] = cell;
+        }
+        let mut rows: Vec<Row> = rows.into_iter().map(|(key, cells)| Row { key, cells }).collect();
+        let several = rows.iter().any(|r| r.key.0.scene != rows[0].key.0.scene);
+        // Stable: scenes that the first method has no score of come last, in the order of the sweep.
+        rows.sort_by(|a, b| match (a.worst(data), b.worst(data)) {
+            (Some(a), Some(b)) => b.total_cmp(&a),
+            (a, b) => b.is_some().cmp(&a.is_some()),
+        });
+        several.then_some(Scenes { methods, rows })
+    }
+
+    /// As a section of the page. Its pictures are filled in by the script, from the points' data.
+    pub fn html(&self, data: &Data) -> Markup {
+        html! {
+            h2 { "Scenes" }
+            p {
+                "Worst first, by FLIP of the total of the first method. Beside each picture is where its light differs from \
+                 the reference: black at 0 to white at 1, relative."
+            }
+            div.wide {
+                table id="scenes" {
+                    thead {
+                        tr {
+                            th { "scene" }
+                            th { "reference" }
+                            @for method in &self.methods { th { (method) } }
+                        }
+                    }
+                    tbody { @for row in &self.rows { (row.html(data)) } }
+                }
+            }
+        }
+    }
+
+    /// As comma-separated values (RFC 4180), a line for each scene, method and number of bounces.
+    ///
+    /// # Errors
+    /// Writing to memory gives none, whatever the data.
+    pub fn csv(&self, data: &Data) -> Result<String, LabError> {
+        let mut lines: Vec<Line> = Vec::new();
+        for row in &self.rows {
+            for (method, cell) in self.methods.iter().zip(&row.cells) {
+                let line = |(bounces, scores)| Line { row, method, cell, bounces, scores };
+                match cell {
+                    Cell::Measured(i) => lines.extend(scores(data, &data.dots[*i]).into_iter().map(line)),
+                    Cell::Failed(_) => lines.push(line((String::new(), [None; 3]))),
+                    Cell::Left => {}
+                }
+            }
+        }
+        let mut table = Table::new(&lines);
+        table.column("scene", |l| l.row.key.0.scene.clone());
+        table.column("camera", |l| l.row.key.0.camera.clone());
+        table.column("width", |l| l.row.key.0.size.0.to_string());
+        table.column("height", |l| l.row.key.0.size.1.to_string());
+        table.column("method", |l| l.method.to_string());
+        table.column("bounces", |l| l.bounces.clone());
+        for (i, (_, metric)) in SCORES.into_iter().enumerate() {
+            table.column(metric, |l| cell(l.scores[i]));
+        }
+        table.column("median ms", |l| match l.cell {
+            Cell::Measured(i) => data.dots[*i].ms.to_string(),
+            _ => String::new(),
+        });
+        table.column("error", |l| match l.cell {
+            Cell::Failed(error) => first_line(error).to_string(),
+            _ => String::new(),
+        });
+        table.csv()
+    }
+}
+
+/// A line of the comma-separated values.
+struct Line<'s> {
+    row: &'s Row,
+    method: &'s str,
+    cell: &'s Cell,
+    bounces: String,
+    scores: [Option<f64>; 3],
+}
+
+impl Row {
+    fn html(&self, data: &Data) -> Markup {
+        let (subject, device) = &self.key;
+        let about = format!("camera {}, time {} s, {device}", subject.camera, subject.time);
+        let reference = data.keys.iter().position(|k| *k == self.key).and_then(|s| data.references[s].as_ref());
+        html! {
+            tr {
+                th title=(about) { (subject.scene) br; small { (subject.size.0) "x" (subject.size.1) } }
+                td { @if let Some(bytes) = reference { img alt="reference" src=(url("image/jpeg", bytes)); } }
+                @for cell in &self.cells { td { (cell.html(data)) } }
+            }
+        }
+    }
+
+    /// What rows are sorted by: FLIP of the total of the first method, against the reference of most bounces.
+    fn worst(&self, data: &Data) -> Option<f64> {
+        match self.cells.first()? {
+            Cell::Measured(i) => scores(data, &data.dots[*i]).first()?.1[2],
+            _ => None,
+        }
+    }
+}
+
+impl Cell {
+    fn html(&self, data: &Data) -> Markup {
+        let i = match self {
+            Cell::Measured(i) => *i,
+            Cell::Failed(error) => return html! { p { "failed: " (first_line(error)) } },
+            Cell::Left => return html! { "not measured yet" },
+        };
+        let number = |v: Option<f64>| v.map_or("no number".into(), short);
+        html! {
+            img alt="picture" data-dot=(i) data-kind="picture";
+            img alt="error" data-dot=(i) data-kind="error_map";
+            table {
+                tr { th { "bounces" } @for (title, _) in SCORES { th { (title) } } }
+                @for (bounces, values) in scores(data, &data.dots[i]) {
+                    tr { td { (bounces) } @for value in values { td { (number(value)) } } }
+                }
+            }
+            (short(data.dots[i].ms)) " ms"
+        }
+    }
+}
+
+/// Scores of a point's total by the bounces of the reference, most first.
+fn scores(data: &Data, dot: &Dot) -> Vec<(String, [Option<f64>; 3])> {
+    let mut list: Vec<(u32, [Option<f64>; 3])> = Vec::new();
+    for (part, metrics) in &dot.scores {
+        // All parts are scored against the first reference; the total's other scores say against which.
+        let bounces = match part.as_str() {
+            "total" => data.bounces[dot.subject],
+            _ => part.strip_prefix("total, ").and_then(|rest| rest.strip_suffix(" bounces")?.parse().ok()),
+        };
+        list.extend(bounces.map(|b| (b, SCORES.map(|(_, metric)| metrics.get(metric).copied()))));
+    }
+    list.sort_by_key(|s| std::cmp::Reverse(s.0));
+    list.into_iter().map(|(bounces, values)| (bounces.to_string(), values)).collect()
+}

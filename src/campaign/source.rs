@@ -1,0 +1,82 @@
+//! Reading the files of campaigns: sweeps and suites.
+
+use crate::experiment::Experiment;
+use crate::graph::source::{At, Diagnostic, Loc, Severity, Sources};
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+
+/// A file that is read, and what is wrong with it.
+pub struct Source {
+    path: PathBuf,
+    sources: Sources,
+    /// All mistakes.
+    pub errors: Vec<Diagnostic>,
+}
+
+impl Source {
+    /// Reads a file; `help` says what to give instead of one that is not there.
+    ///
+    /// # Errors
+    /// No such file; all mistakes that keep it from being understood.
+    pub fn read<T: DeserializeOwned>(path: &Path, help: &str) -> Result<(T, Source), Vec<Diagnostic>> {
+        let mut sources = Sources::default();
+        let file = sources.read(path).map_err(|e| vec![e.help(Some(help.into()))])?;
+        let mut errors = Vec::new();
+        let parsed = sources.parse::<T>(file, &mut errors, &mut Vec::new());
+        match parsed.filter(|_| !errors.iter().any(|e| e.severity == Severity::Error)) {
+            Some(parsed) => Ok((parsed, Source { path: path.into(), sources, errors })),
+            None => Err(errors),
+        }
+    }
+
+    /// The file's stem.
+    pub fn name(&self) -> String {
+        self.path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned())
+    }
+
+    /// The file's text.
+    pub fn text(&self) -> String {
+        self.sources.texts().next().map_or(String::new(), |t| t.1.to_string())
+    }
+
+    /// The file's folder: others are looked up in it.
+    pub fn folder(&self) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new(".")).to_path_buf()
+    }
+
+    /// Keeps a mistake.
+    pub fn wrong(&mut self, at: At, message: impl Into<String>) {
+        self.errors.push(self.sources.error(at, message));
+    }
+
+    /// A number of frames, within bounds.
+    pub fn frames(&mut self, value: &Option<Loc<usize>>, default: usize, (least, most): (usize, usize)) -> usize {
+        match value {
+            Some(v) if v.value < least || v.value > most => {
+                self.wrong(v.at, format!("frames must be {least} to {most}"));
+                default
+            }
+            Some(v) => v.value,
+            None => default,
+        }
+    }
+
+    /// An experiment that the file names. The file is the last of its sources, so that settings keep their places.
+    pub fn experiment(&mut self, name: &Loc<String>) -> Option<Experiment> {
+        match Experiment::read(&self.folder().join(&name.value)) {
+            Ok(mut experiment) => {
+                experiment.sources.add(&self.path, self.text());
+                return Some(experiment);
+            }
+            // A file that cannot be read is a mistake of this one.
+            Err(found) if found.iter().all(|d| d.place.line == 0) => {
+                for d in found {
+                    let message = format!("{}: {}", d.place.file.display(), d.message);
+                    self.errors.push(self.sources.error(name.at, message).help(d.help));
+                }
+            }
+            Err(found) => self.errors.extend(found),
+        }
+        None
+    }
+}

@@ -1,0 +1,94 @@
+//! Charts of a suite, SVG.
+
+use super::record::{CaseRecord, FrameScore, PartResult, Report};
+use crate::campaign::charts::{Axis, Bar, Line, bars, file_name, lines};
+use crate::campaign::table::short;
+use crate::lab::LabError;
+
+/// A chart.
+pub(super) struct Chart {
+    /// File name without its ending.
+    pub name: String,
+    /// The case that it belongs to; none is for the whole suite.
+    pub case: Option<String>,
+    /// The chart.
+    pub svg: String,
+}
+
+/// Bars over everything: part, name, title, value.
+type Bars = (&'static str, &'static str, &'static str, fn(&PartResult) -> Option<f64>);
+const BARS: [Bars; 4] = [
+    ("total", "all E_t", "E_t of the total, radiance", |p| p.e),
+    ("diffuse", "all E_t of diffuse", "E_t of diffuse light, radiance", |p| p.e),
+    ("diffuse", "all flicker of diffuse", "Flicker index of diffuse light, mean over pixels", |p| {
+        p.flicker.map(|f| f.mean)
+    }),
+    ("total", "all relMSE", "relMSE of the total, last frame", |p| p.scores.as_ref().map(|s| s.relmse)),
+];
+
+/// Over the frames of each case E_t, after a switch or a cut the error, for a switched light its response; bars over
+/// everything.
+pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
+    let mut out = Vec::new();
+    for (part, name, title, value) in BARS {
+        let bar = |r: &CaseRecord| {
+            let part = r.part(part)?;
+            let hollow = title.starts_with("E_t") && part.told_apart == Some(false);
+            let method = r.about.method.clone();
+            Some(Bar { label: format!("{}, {method}", r.about.title()), parts: vec![(method, value(part)?)], hollow })
+        };
+        let list: Vec<Bar> = report.results.iter().filter_map(bar).collect();
+        if list.iter().any(|b| b.parts[0].1 > 0.0) {
+            out.push(Chart { name: file_name(name), case: None, svg: bars(title, "", short, &list)? });
+        }
+    }
+    for (case, of) in report.cases() {
+        let over_frames = |value: &dyn Fn(&FrameScore) -> Option<f64>, part: &str| -> Vec<Line> {
+            let line = |r: &&CaseRecord| {
+                let points = r.part(part)?.frames.iter().filter_map(|f| Some((f.frame as f64, value(f)?)));
+                let points: Vec<(f64, f64)> = points.collect();
+                (points.len() > 1).then(|| Line { name: r.about.method.clone(), points, grey: false })
+            };
+            of.iter().filter_map(line).collect()
+        };
+        // The first method's: it is the same for all.
+        let grey = |lines: Vec<Line>, name: &str| {
+            lines.into_iter().next().map(|l| Line { name: name.into(), grey: true, ..l })
+        };
+        let mut add = |name: &str, what: &str, unit: &str, lines: Vec<Line>| {
+            let title = format!("{case}: {what}");
+            let svg = frames_chart(&title, unit, &lines)?;
+            let chart = |svg| Chart { name: file_name(&format!("{case} {name}")), case: Some(case.clone()), svg };
+            out.extend(svg.map(chart));
+            Ok::<(), LabError>(())
+        };
+        for part in ["total", "diffuse"] {
+            let mut lines = over_frames(&|f| f.change.map(|c| c.rms), part);
+            lines.extend(grey(over_frames(&|f| f.noise, part), "noise of the reference"));
+            let what = format!("E_t of {part}");
+            add(&what, &what, "radiance", lines)?;
+        }
+        let measured = || of.iter().filter_map(|r| r.done());
+        if measured().any(|m| m.event.is_some()) {
+            add("error", "relMSE of diffuse light", "relMSE", over_frames(&|f| f.relmse, "diffuse"))?;
+        }
+        if measured().any(|m| m.parts.values().any(|p| p.step.is_some())) {
+            let mut lines = over_frames(&|f| f.mean, "diffuse");
+            lines.extend(grey(over_frames(&|f| f.reference_mean, "diffuse"), "reference"));
+            add("response", "mean luminance of diffuse light", "radiance", lines)?;
+        }
+    }
+    Ok(out)
+}
+
+/// Values over frames; nothing where all of them are 0.
+fn frames_chart(title: &str, unit: &str, list: &[Line]) -> Result<Option<String>, LabError> {
+    let points = || list.iter().flat_map(|l| &l.points);
+    let most = points().map(|p| p.1).fold(0.0, f64::max);
+    if most <= 0.0 {
+        return Ok(None);
+    }
+    let (first, last) = points().fold((f64::INFINITY, 0.0f64), |(a, b), p| (a.min(p.0), b.max(p.0)));
+    let x = Axis::linear("frame", (first, last.max(first + 1.0)));
+    lines(title, &x, &Axis::linear(unit, (0.0, most * 1.08)), list).map(Some)
+}

@@ -1,0 +1,120 @@
+//! The chart that a suite asks for: a dot for each method, static error against stability, with what it costs.
+
+use super::file::{Case, Method};
+use crate::campaign::settings::Setting;
+use crate::graph::file::RawText;
+use crate::graph::source::{At, Entries, Loc};
+use serde::Deserialize;
+
+/// Most values that are timed for one method.
+const MAX_VALUES: usize = 64;
+
+/// Static error against stability.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CostChart {
+    /// Cases whose mean relMSE goes to the right.
+    pub error: Vec<String>,
+    /// Cases whose root mean square of E_t goes up. Methods are timed in the first of them.
+    pub motions: Vec<String>,
+    /// The part of the light.
+    #[serde(default = "diffuse")]
+    pub part: String,
+    /// Panels: titles and methods.
+    #[serde(default)]
+    pub groups: Entries<Vec<String>>,
+    /// Methods that are made as fast as the suite's first.
+    #[serde(default)]
+    pub equal_time: Option<EqualTime>,
+}
+
+/// What makes methods as fast as the suite's first one.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EqualTime {
+    /// One parameter
+    pub parameter: Loc<String>,
+    /// at each of its values.
+    pub values: Vec<RawText>,
+    /// The methods.
+    pub methods: Vec<String>,
+    /// How far a time may be from the first's, part of it, before tables say so.
+    #[serde(default = "near")]
+    pub tolerance: f64,
+}
+
+fn diffuse() -> String {
+    "diffuse".into()
+}
+
+fn near() -> f64 {
+    0.05
+}
+
+impl CostChart {
+    /// Checks names and numbers. Without groups all methods are one.
+    ///
+    /// # Errors
+    /// The text for the user.
+    pub fn checked(mut self, methods: &[Method], cases: &[Case]) -> Result<CostChart, String> {
+        if self.error.is_empty() || self.motions.is_empty() {
+            return Err("a chart needs at least one case for `error` and one for `motions`".into());
+        }
+        if self.groups.0.is_empty() {
+            let at = At::default();
+            let all = methods.iter().map(|m| m.name.clone()).collect();
+            self.groups.0.push((Loc { value: String::new(), at }, Loc { value: all, at }));
+        }
+        let grouped = || self.groups.0.iter().flat_map(|g| &g.1.value);
+        for name in grouped().chain(self.equal_time.iter().flat_map(|e| &e.methods)) {
+            if !methods.iter().any(|m| m.name == *name) {
+                return Err(format!("the chart names the method '{name}', which is none of the suite's"));
+            }
+        }
+        let first = methods.first().map(|m| &m.name);
+        for name in self.error.iter().chain(&self.motions) {
+            let case = cases.iter().find(|c| c.name == *name);
+            let case =
+                case.ok_or_else(|| format!("the chart names the case '{name}', which is none of the suite's"))?;
+            if let Some(m) = grouped().chain(first).find(|m| !case.is_for(m)) {
+                return Err(format!("the chart needs the method '{m}' in the case '{name}', which leaves it out"));
+            }
+        }
+        if let Some(equal) = &self.equal_time {
+            if let Some(first) = first.filter(|first| equal.methods.contains(first)) {
+                return Err(format!("'{first}' is the suite's first method: others are made as fast as it is"));
+            }
+            if let (Some(m), Some(first)) = (equal.methods.iter().find(|m| !grouped().any(|g| g == *m)), first) {
+                return Err(format!("'{m}' is made as fast as '{first}', but in none of the chart's groups"));
+            }
+            if equal.values.is_empty() || equal.values.len() > MAX_VALUES {
+                return Err(format!("equal_time needs 1 to {MAX_VALUES} values"));
+            }
+            if !(0.0..=1.0).contains(&equal.tolerance) {
+                return Err("the tolerance must be 0 to 1".into());
+            }
+        }
+        Ok(self)
+    }
+
+    /// Leaves out methods that do not stay.
+    pub(super) fn keep(&mut self, stays: &dyn Fn(&String) -> bool) {
+        self.groups.0.iter_mut().for_each(|g| g.1.value.retain(stays));
+        self.groups.0.retain(|g| !g.1.value.is_empty());
+        self.equal_time.iter_mut().for_each(|e| e.methods.retain(stays));
+    }
+
+    /// What a method is timed at, if it is one of those that are made as fast as the first.
+    pub fn varied(&self, method: &str) -> Vec<Setting> {
+        let own = self.equal_time.iter().filter(|e| e.methods.iter().any(|m| m == method));
+        let setting = |e: &EqualTime, v: &RawText| Setting { name: e.parameter.clone(), text: v.0.clone() };
+        own.flat_map(|e| e.values.iter().map(move |v| setting(e, v))).collect()
+    }
+
+    /// A method at each of its values, or as it is.
+    pub fn variants(&self, method: &Method) -> Vec<Method> {
+        let settings = self.varied(&method.name);
+        let with = |s| Method { set: method.set.iter().chain([s]).cloned().collect(), ..method.clone() };
+        if settings.is_empty() { vec![method.clone()] } else { settings.iter().map(with).collect() }
+    }
+}

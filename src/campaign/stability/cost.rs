@@ -1,0 +1,278 @@
+//! What methods cost: GPU time and memory of the frames that make the picture and nothing else, one method after another in
+//! several rounds, so that a device whose clock drifts is as unfair to all. For methods that are to be as fast as the first,
+//! the values of a parameter are taken to be in the order of their costs: halving finds the two between which the first's
+//! time lies, and the nearer is taken.
+
+use super::chart_spec::CostChart;
+use super::file::{Method, Suite};
+use super::plan::{Job, Options, plan};
+use super::sequence::{cell_of, median, place};
+use crate::campaign::points::PointBuilder;
+use crate::campaign::record::{first_line, json, read_json, write_file};
+use crate::campaign::runner::{Progress, Runner};
+use crate::lab::LabError;
+use crate::measure::{WarmUp, oracle};
+use crate::vulkan::VulkanError;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// How often every candidate is timed that is not passed over.
+const ROUNDS: usize = 3;
+/// Frames before those that are timed, in each round, at least.
+const WARMUP: usize = 4;
+/// Frames that are timed, in each round.
+const FRAMES: i64 = 12;
+/// Version of `cost.json`.
+const SCHEMA: &str = "conelab-stability-cost-1";
+/// Largest `cost.json` that is read, bytes.
+const MAX_FILE: u64 = 16 << 20;
+
+/// A method at one value of the parameter.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// The value, RON; empty where nothing is varied.
+    pub value: String,
+    /// [`Job::work`].
+    pub work: String,
+    /// Sum of a frame's passes, ms: the median of each round.
+    pub ms: Vec<f64>,
+    /// The first method's in the same rounds.
+    pub first_ms: Vec<f64>,
+    /// Bytes of all resources of the graph.
+    pub memory_bytes: u64,
+    /// Why it could not be timed.
+    pub failed: Option<String>,
+}
+
+/// What a method costs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// The method.
+    pub method: String,
+    /// What is varied; empty where nothing is.
+    pub parameter: String,
+    /// [`Job::work`] of the first method.
+    pub first: String,
+    /// At every value, or the method as it is.
+    pub candidates: Vec<Candidate>,
+    /// The one that is nearest to the first method's time.
+    pub chosen: Option<usize>,
+}
+
+/// `cost.json`.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    schema: String,
+    costs: Vec<Cost>,
+}
+
+impl Candidate {
+    /// Median of the rounds, ms.
+    pub fn time(&self) -> Option<f64> {
+        (!self.ms.is_empty()).then(|| median(self.ms.clone()))
+    }
+
+    /// Its time over that of the first method: median of the rounds' ratios.
+    pub fn ratio(&self) -> Option<f64> {
+        let ratios: Vec<f64> = self.ms.iter().zip(&self.first_ms).map(|(own, first)| own / first).collect();
+        (!ratios.is_empty()).then(|| median(ratios)).filter(|r| r.is_finite() && *r > 0.0)
+    }
+}
+
+impl Cost {
+    /// The one that was taken.
+    pub fn taken(&self) -> Option<&Candidate> {
+        self.candidates.get(self.chosen?)
+    }
+
+    /// Takes the candidate whose time is nearest to the first's.
+    fn choose(&mut self) {
+        let far = |c: &Candidate| c.ratio().map(|r| r.ln().abs());
+        let timed = self.candidates.iter().enumerate().filter_map(|(i, c)| Some((i, far(c)?)));
+        self.chosen = timed.min_by(|a, b| a.1.total_cmp(&b.1)).map(|c| c.0);
+    }
+}
+
+/// What all charted methods of a suite cost. What `cost.json` of the folder knows is taken from there, so that a suite that
+/// goes on goes on with the same choice.
+///
+/// # Errors
+/// What is wrong with the suite; no device; a method that can be timed at none of its values.
+pub(super) fn costs(
+    runner: &mut Runner,
+    builder: &mut PointBuilder,
+    (suite, chart): (&Suite, &CostChart),
+    options: &Options,
+) -> Result<Vec<Cost>, LabError> {
+    let charted = |m: &&Method| chart.groups.0.iter().any(|g| g.1.value.contains(&m.name));
+    let names: Vec<&Method> =
+        suite.methods.iter().take(1).chain(suite.methods.iter().skip(1).filter(charted)).collect();
+    // A suite of all candidates in one case: its plan checks every value, and gives each its number.
+    let timed = Suite {
+        methods: names.iter().flat_map(|m| chart.variants(m)).collect(),
+        cases: suite.cases.iter().find(|c| chart.motions.first() == Some(&c.name)).cloned().into_iter().collect(),
+        ..suite.clone()
+    };
+    let options = Options { only: Vec::new(), ..options.clone() };
+    let (home, device) = (runner.lab.home.clone(), runner.lab.gpu.info.clone());
+    let jobs = plan(&home, &device, builder, &mut runner.warm, &timed, &options)?;
+    let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
+    let path = options.folder.join("cost.json");
+    let kept = read(&path);
+    let mut costs: Vec<Cost> = Vec::new();
+    let mut todo: Vec<Open> = Vec::new();
+    for method in &names {
+        let settings = chart.varied(&method.name);
+        let own = jobs.iter().filter(|j| j.method == method.name);
+        let texts = settings.iter().map(|s| s.text.clone()).chain(settings.is_empty().then(String::new));
+        let cost = Cost {
+            method: method.name.clone(),
+            parameter: settings.first().map_or(String::new(), |s| s.name.value.clone()),
+            first: first.work.clone(),
+            candidates: own
+                .clone()
+                .zip(texts)
+                .map(|(j, value)| Candidate { value, work: j.work.clone(), ..Candidate::default() })
+                .collect(),
+            chosen: None,
+        };
+        match kept.iter().find(|k| same(k, &cost)) {
+            Some(kept) => costs.push(kept.clone()),
+            None => {
+                todo.extend(own.enumerate().map(|(i, job)| (costs.len(), i, job)));
+                costs.push(cost);
+            }
+        }
+    }
+    if todo.is_empty() {
+        return Ok(costs);
+    }
+    let of = ROUNDS * todo.len();
+    let todo = between(&todo, &mut |job| {
+        told(runner, job, 0, of);
+        Ok((time(runner, job), time(runner, first)?.0))
+    })?;
+    let of = ROUNDS * todo.len();
+    for round in 0..ROUNDS {
+        // The first is timed again before each method: what is compared lies close together.
+        let mut before = None;
+        let mut first_cost = (0.0, 0);
+        for (i, (cost, candidate, job)) in todo.iter().enumerate() {
+            if before != Some(*cost) {
+                before = Some(*cost);
+                first_cost = time(runner, first)?;
+            }
+            let candidate = &mut costs[*cost].candidates[*candidate];
+            if candidate.failed.is_some() {
+                continue;
+            }
+            told(runner, job, round * todo.len() + i, of);
+            let cost = if job.work == first.work { Ok(first_cost) } else { time(runner, job) };
+            match cost {
+                Ok((ms, bytes)) => {
+                    candidate.ms.push(ms);
+                    candidate.first_ms.push(first_cost.0);
+                    candidate.memory_bytes = bytes;
+                }
+                Err(lost @ LabError::Vulkan(VulkanError::Lost(_))) => return Err(lost),
+                Err(error) => {
+                    let failed = Some(first_line(&error.to_string()).to_string());
+                    *candidate = Candidate { failed, ms: vec![], first_ms: vec![], ..candidate.clone() };
+                }
+            }
+        }
+    }
+    costs.iter_mut().filter(|c| c.chosen.is_none()).for_each(Cost::choose);
+    if let Some(cost) = costs.iter().find(|c| c.chosen.is_none() && !c.parameter.is_empty()) {
+        let why = cost.candidates.iter().find_map(|c| c.failed.as_deref()).unwrap_or("it takes no time at all");
+        return Err(LabError::Request(format!("'{}' could be timed at no {}: {why}", cost.method, cost.parameter)));
+    }
+    runner.warm.sessions.clear();
+    write_file(&path, &json(&Kept { schema: SCHEMA.into(), costs: costs.clone() })?)?;
+    // As the next run will read it, to the last place.
+    Ok(Some(read(&path)).filter(|k| k.len() == costs.len()).unwrap_or(costs))
+}
+
+/// A candidate that is not timed yet: its method's place, its own among its method's, and what is run.
+type Open<'j> = (usize, usize, &'j Job);
+
+/// Median of a job's frames, ms, and the bytes of its resources.
+type Timed = Result<(f64, u64), LabError>;
+
+/// Median and bytes of a candidate, and the first method's ms right after it.
+type CandidateTime = Result<(Timed, f64), LabError>;
+
+/// For every method, the two neighbouring candidates whose times enclose the first method's; all where there are at
+/// most two. `times`: a candidate's and the first method's, one after the other. A candidate that fails counts as too
+/// slow.
+fn between<'j>(todo: &[Open<'j>], times: &mut dyn FnMut(&Job) -> CandidateTime) -> Result<Vec<Open<'j>>, LabError> {
+    let mut left = Vec::new();
+    for own in todo.chunk_by(|a, b| a.0 == b.0) {
+        let (mut low, mut high) = (0, own.len() - 1);
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            match times(own[middle].2)? {
+                (Err(lost @ LabError::Vulkan(VulkanError::Lost(_))), _) => return Err(lost),
+                (Ok((ms, _)), first) if ms < first => low = middle,
+                _ => high = middle,
+            }
+        }
+        left.extend(&own[low..=high]);
+    }
+    Ok(left)
+}
+
+/// Whether what was kept is of the same candidates.
+fn same(kept: &Cost, wanted: &Cost) -> bool {
+    let list = |c: &Cost| c.candidates.iter().map(|c| (c.value.clone(), c.work.clone())).collect::<Vec<_>>();
+    let head = |c: &Cost| (c.method.clone(), c.parameter.clone(), c.first.clone());
+    kept.taken().is_some_and(|c| c.ratio().is_some()) && head(kept) == head(wanted) && list(kept) == list(wanted)
+}
+
+fn told(runner: &mut Runner, job: &Job, done: usize, of: usize) {
+    (runner.on_progress)(Progress::Runs(format!("timing {}, {done} of {of}", job.method)));
+}
+
+/// What is kept; folders may come from anywhere, and what is no such file is nothing.
+fn read(path: &Path) -> Vec<Cost> {
+    let kept = read_json::<Kept>(path, MAX_FILE).ok().filter(|k| k.schema == SCHEMA);
+    kept.map_or(Vec::new(), |k| k.costs)
+}
+
+/// The suite with what was chosen.
+pub(super) fn chosen(suite: &Suite, chart: &CostChart, costs: &[Cost]) -> Suite {
+    let mut suite = suite.clone();
+    for method in &mut suite.methods {
+        let cost = costs.iter().find(|c| c.method == method.name);
+        method.set.extend(cost.and_then(|c| chart.varied(&method.name).into_iter().nth(c.chosen?)));
+    }
+    suite
+}
+
+/// Times a job. Every session is a new one: memory holds one at a time.
+fn time(runner: &mut Runner, job: &Job) -> Timed {
+    let Runner { lab, warm, .. } = runner;
+    let loaded = warm.graph(&lab.home, &job.experiment.graph)?.clone();
+    let mut wanted: Vec<String> = loaded.graph.output.iter().chain(&loaded.graph.hdr).take(1).cloned().collect();
+    if job.case.motion.in_voxels() {
+        wanted.extend(oracle::wanted(&loaded.graph)?);
+    }
+    let mut session = lab.build(&job.experiment, &loaded, job.scene.clone(), wanted, warm.sessions.get(&job.method))?;
+    let cell = cell_of(&mut session, job)?;
+    let mut lights = job.scene.lights.clone();
+    // Sessions are built between the frames of one and the next: a GPU that waits for them falls to a low clock.
+    place(lab, &mut session, job, -1, cell, &mut lights)?;
+    let warm_up = WarmUp::of(&lab.gpu.info, WARMUP);
+    warm_up.run(&mut || Ok::<_, LabError>(session.frame(0.0)?.map_or(0.0, |t| t.gpu_ms)))?;
+    let mut times = Vec::new();
+    for number in 0..FRAMES {
+        place(lab, &mut session, job, number, cell, &mut lights)?;
+        times.extend(session.frame(job.case.motion.delta())?);
+    }
+    times.extend(session.finish()?);
+    let frames = times.split_off(times.len().saturating_sub(FRAMES as usize));
+    let sums = frames.iter().map(|t| t.passes.iter().map(|p| p.1).sum()).collect();
+    let bytes = session.program.memory(&session.graph).iter().map(|m| m.1).sum();
+    warm.sessions.insert(job.method.clone(), session.share());
+    Ok((median(sums), bytes))
+}

@@ -1,0 +1,290 @@
+//! Suite files: methods, and what moves (docs/stability.md).
+
+use super::chart_spec::CostChart;
+use super::motion::Motion;
+use crate::camera_path::CameraPath;
+use crate::campaign::runner::Mistakes;
+use crate::campaign::settings::{FIELDS, Setting, apply, settings};
+use crate::campaign::source::Source;
+use crate::experiment::Experiment;
+use crate::graph::file::RawText;
+use crate::graph::param::Params;
+use crate::graph::source::{Diagnostic, Entries, Loc};
+use crate::lab::{LabError, Workspace};
+use crate::measure::Warm;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// Most frames of a case, and most before them.
+const MAX_FRAMES: usize = 10_000;
+/// Most methods times cases.
+const MAX_JOBS: usize = 2000;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SuiteFile {
+    experiment: Loc<String>,
+    #[serde(default)]
+    warmup: Option<Loc<usize>>,
+    #[serde(default)]
+    frames: Option<Loc<usize>>,
+    #[serde(default)]
+    samples: Option<Loc<u64>>,
+    #[serde(default)]
+    bounces: Option<Loc<u32>>,
+    #[serde(default)]
+    seed: Option<u32>,
+    #[serde(default)]
+    set: Entries<RawText>,
+    #[serde(default)]
+    chart: Option<Loc<CostChart>>,
+    #[serde(default = "total")]
+    pictures: String,
+    methods: Entries<Entries<RawText>>,
+    cases: Entries<CaseFile>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CaseFile {
+    #[serde(default)]
+    about: String,
+    #[serde(default)]
+    set: Entries<RawText>,
+    #[serde(default)]
+    motion: Motion,
+    #[serde(default)]
+    warmup: Option<Loc<usize>>,
+    #[serde(default)]
+    frames: Option<Loc<usize>>,
+    #[serde(default)]
+    methods: Vec<String>,
+    #[serde(default)]
+    voxels: bool,
+    #[serde(default)]
+    variants: Entries<Entries<RawText>>,
+}
+
+/// A method: what it sets over the suite's experiment.
+#[derive(Clone, Debug)]
+pub struct Method {
+    /// Name of the method.
+    pub name: String,
+    /// Settings of the method.
+    pub set: Vec<Setting>,
+}
+
+/// Something that methods are looked at in.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Name of the case.
+    pub name: String,
+    /// Name of the variant, if the case has some.
+    pub variant: String,
+    /// For people.
+    pub about: String,
+    /// What it sets over the method.
+    pub set: Vec<Setting>,
+    /// What moves.
+    pub motion: Motion,
+    /// Frames that run, moving, before the first measured one.
+    pub warmup: usize,
+    /// Frames measured, when nothing else is asked for.
+    pub frames: usize,
+    /// Whether more or fewer frames may be asked for: a case with its own number knows what it needs.
+    pub own_frames: bool,
+    /// Names of the methods that it is for; all when empty.
+    pub methods: Vec<String>,
+    /// Whether its voxels are compared with exact ones.
+    pub voxels: bool,
+}
+
+/// A suite.
+#[derive(Clone, Debug)]
+pub struct Suite {
+    /// The file's stem.
+    pub name: String,
+    /// The file's text.
+    pub text: String,
+    /// What methods and cases change; the last of its sources is the suite's text.
+    pub experiment: Experiment,
+    /// Samples a pixel of the references.
+    pub samples: u64,
+    /// Their bounces.
+    pub bounces: u32,
+    /// Their seed, one for all frames.
+    pub seed: u32,
+    /// What everything sets.
+    pub set: Vec<Setting>,
+    /// The methods, in order.
+    pub methods: Vec<Method>,
+    /// The cases, in order.
+    pub cases: Vec<Case>,
+    /// The part of the light whose worst frames are kept as pictures.
+    pub pictures: String,
+    /// The chart of costs, besides the cases.
+    pub chart: Option<CostChart>,
+    /// Folder of the file.
+    pub folder: PathBuf,
+}
+
+fn total() -> String {
+    "total".into()
+}
+
+impl Case {
+    /// Whether a method runs in it.
+    pub fn is_for(&self, method: &str) -> bool {
+        self.methods.is_empty() || self.methods.iter().any(|m| m == method)
+    }
+}
+
+impl Suite {
+    /// Leaves out all methods but these and the first.
+    ///
+    /// # Errors
+    /// A name that is none of the suite's methods; the text for the user.
+    pub fn keep(&mut self, names: &[String]) -> Result<(), String> {
+        let known: Vec<&str> = self.methods.iter().map(|m| m.name.as_str()).collect();
+        if let Some(name) = names.iter().find(|n| !known.contains(&n.as_str())) {
+            return Err(format!("--methods {name}: the suite's methods are {}", known.join(", ")));
+        }
+        let first = self.methods.first().map(|m| m.name.clone());
+        let stays = |name: &String| names.contains(name) || first.as_ref() == Some(name);
+        self.methods.retain(|m| stays(&m.name));
+        self.cases.retain(|c| c.methods.is_empty() || c.methods.iter().any(stays));
+        for case in &mut self.cases {
+            case.methods.retain(stays);
+        }
+        self.chart.iter_mut().for_each(|chart| chart.keep(&stays));
+        Ok(())
+    }
+
+    /// Reads a suite and its experiment.
+    ///
+    /// # Errors
+    /// All mistakes of the file and of the experiment.
+    pub fn read(path: &Path) -> Result<Suite, Vec<Diagnostic>> {
+        let (file, mut source) =
+            Source::read::<SuiteFile>(path, "give the path of a suite, for example configs/stability/motion.ron")?;
+        let warmup = source.frames(&file.warmup, 8, (0, MAX_FRAMES));
+        let frames = source.frames(&file.frames, 24, (1, MAX_FRAMES));
+        let method = |(name, set): &(Loc<String>, Loc<Entries<RawText>>)| Method {
+            name: name.value.clone(),
+            set: settings(&set.value),
+        };
+        let methods: Vec<Method> = file.methods.0.iter().map(method).collect();
+        let mut cases = Vec::new();
+        for (name, case) in &file.cases.0 {
+            let c = &case.value;
+            let own = Case {
+                name: name.value.clone(),
+                variant: String::new(),
+                about: c.about.clone(),
+                set: settings(&c.set),
+                motion: c.motion.clone(),
+                warmup: source.frames(&c.warmup, warmup, (0, MAX_FRAMES)),
+                frames: source.frames(&c.frames, frames, (1, MAX_FRAMES)),
+                own_frames: c.frames.is_some(),
+                methods: c.methods.clone(),
+                voxels: c.voxels,
+            };
+            if let Some(m) = c.methods.iter().find(|m| !methods.iter().any(|k| k.name == **m)) {
+                let message = format!("case '{}' names the method '{m}', which is none of the suite's", name.value);
+                source.wrong(case.at, message);
+            }
+            let variant = |(label, set): &(Loc<String>, Loc<Entries<RawText>>)| {
+                let set = own.set.iter().cloned().chain(settings(&set.value)).collect();
+                Case { variant: label.value.clone(), set, ..own.clone() }
+            };
+            match c.variants.0.is_empty() {
+                true => cases.push(own),
+                false => cases.extend(c.variants.0.iter().map(variant)),
+            }
+        }
+        if let Some(s) = file.samples.as_ref().filter(|s| s.value == 0 || s.value > 1 << 20) {
+            source.wrong(s.at, "samples must be 1 to 1048576");
+        }
+        if let Some(b) = file.bounces.as_ref().filter(|b| b.value == 0 || b.value > 64) {
+            source.wrong(b.at, "bounces must be 1 to 64");
+        }
+        if methods.is_empty() || cases.is_empty() || methods.len() * cases.len() > MAX_JOBS {
+            let message = format!("a suite has at least one method and one case, and at most {MAX_JOBS} pairs of them");
+            source.wrong(file.experiment.at, message);
+        }
+        let chart =
+            file.chart.and_then(|c| c.value.checked(&methods, &cases).map_err(|why| source.wrong(c.at, why)).ok());
+        let experiment = source.experiment(&file.experiment);
+        let Some(experiment) = experiment.filter(|_| source.errors.is_empty()) else { return Err(source.errors) };
+        Ok(Suite {
+            name: source.name(),
+            text: source.text(),
+            experiment,
+            samples: file.samples.map_or(64, |s| s.value),
+            bounces: file.bounces.map_or(1, |b| b.value),
+            seed: file.seed.unwrap_or(1),
+            set: settings(&file.set),
+            methods,
+            cases,
+            pictures: file.pictures,
+            chart,
+            folder: source.folder(),
+        })
+    }
+
+    /// The experiment of a method in a case: the suite's settings, the method's, the case's. Parameters of the suite and of
+    /// cases are for the methods whose graphs have them; `known` says which a graph has.
+    ///
+    /// # Errors
+    /// Settings that are none, with their places.
+    pub fn experiment(
+        &self,
+        method: &Method,
+        case: &Case,
+        known: &mut dyn FnMut(&str) -> Option<Params>,
+    ) -> Result<Experiment, Vec<Diagnostic>> {
+        let mut experiment = self.experiment.clone();
+        experiment.name = method.name.clone();
+        let all = || self.set.iter().chain(&method.set).chain(&case.set);
+        // The graph first: it says which parameters there are.
+        let own_graph = all().rfind(|s| s.name.value == "graph");
+        let mut errors = apply(&mut experiment, own_graph, &self.folder);
+        let other = experiment.graph != self.experiment.graph;
+        let params = if other { known(&experiment.graph) } else { None };
+        let has = |name: &str| params.as_ref().is_none_or(|p| p.index(name).is_some());
+        if other {
+            experiment.params.retain(|(name, _)| has(&name.value));
+        }
+        let own = |s: &Setting| method.set.iter().any(|m| std::ptr::eq(m, s));
+        let fits = |s: &&Setting| FIELDS.contains(&s.name.value.as_str()) || own(s) || has(&s.name.value);
+        let others = all().filter(|s| s.name.value != "graph").filter(fits);
+        errors.extend(apply(&mut experiment, others, &self.folder));
+        if errors.is_empty() { Ok(experiment) } else { Err(errors) }
+    }
+}
+
+/// Checks a suite without opening its scenes: experiment, graphs, and the parameters of every method in every case.
+///
+/// # Errors
+/// All mistakes, each once.
+pub fn check(home: &Workspace, path: &Path) -> Result<(), LabError> {
+    let suite = Suite::read(path).map_err(LabError::Input)?;
+    let mut warm = Warm::default();
+    let mut mistakes = Mistakes::default();
+    let chart = suite.chart.as_ref();
+    let variants = |m: &Method| chart.map_or_else(|| vec![m.clone()], |c| c.variants(m));
+    let methods: Vec<Method> = suite.methods.iter().flat_map(variants).collect();
+    for (method, case) in methods.iter().flat_map(|m| suite.cases.iter().map(move |c| (m, c))) {
+        if case.is_for(&method.name) {
+            let mut params = |name: &str| warm.graph(home, name).ok().map(|l| l.graph.params.clone());
+            let experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input);
+            mistakes.take(experiment.and_then(|experiment| warm.check(home, &experiment)))?;
+        }
+    }
+    for case in &suite.cases {
+        if let Motion::Path { file, .. } = &case.motion {
+            mistakes.take(CameraPath::read(&suite.folder.join(file)).map_err(LabError::Input))?;
+        }
+    }
+    mistakes.none()
+}

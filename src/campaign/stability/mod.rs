@@ -1,0 +1,33 @@
+//! Stability: how methods behave when camera, actors or light move, frame by frame against the reference, and how they
+//! fail in pictures that do not move (docs/stability.md).
+
+mod cameras;
+mod chart;
+mod chart_spec;
+mod cost;
+mod file;
+mod motion;
+mod page;
+mod param_track;
+mod pictures;
+mod plan;
+mod plot;
+mod record;
+mod run;
+mod score;
+mod sequence;
+mod series;
+mod sheet;
+mod table;
+
+pub use cameras::Cameras;
+pub use chart_spec::{CostChart, EqualTime};
+pub use cost::{Candidate, Cost};
+pub use file::{Suite, check};
+pub use motion::{FrameState, Motion, Unit};
+pub use param_track::ParamTrack;
+pub use plan::{Job, Options, plan};
+pub use record::{About, CaseRecord, FrameScore, Measured, PartResult, Report, Worst};
+pub use run::run;
+pub use score::{Change, Flicker, Step, change, flicker, settling, step};
+pub use sheet::{Failure, failures, sheet, table as failure_table};

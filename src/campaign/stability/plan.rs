@@ -1,0 +1,233 @@
+//! Every method in every case, as something to run, with the number of all that its result depends on.
+
+use super::cameras::Cameras;
+use super::file::{Case, Method, Suite};
+use super::motion::FrameState;
+use super::param_track::ParamTrack;
+use super::record::{About, Measured, title};
+use crate::campaign::points::{DIGITS, PointBuilder};
+use crate::campaign::record::Folder;
+use crate::campaign::runner::{self, Mistakes, Runner};
+use crate::campaign::settings::{Setting, lines, named, set_params};
+use crate::experiment::{Experiment, check_size};
+use crate::files::content_id;
+use crate::lab::{LabError, Workspace, camera_of, parts_of};
+use crate::measure::reference;
+use crate::measure::{Frames, Warm};
+use crate::results::capture::scene_hash;
+use crate::scene::Scene;
+use crate::vulkan::DeviceInfo;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Most values that a case keeps, pixels times frames times parts: 4 bytes each, and as many for the references.
+const MAX_VALUES: u64 = 1 << 28;
+
+/// How a suite is run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Where everything is kept.
+    pub folder: PathBuf,
+    /// Another size of the pictures.
+    pub size: Option<(u32, u32)>,
+    /// Settings over all others, NAME=VALUE; of parameters, those that a method's graph has.
+    pub set: Vec<String>,
+    /// Frames of cases that do not say themselves.
+    pub frames: Option<usize>,
+    /// Samples a pixel of the references, instead of the suite's.
+    pub samples: Option<u64>,
+    /// Whether there are references.
+    pub reference: bool,
+    /// Names of the cases that are run; all when empty.
+    pub only: Vec<String>,
+}
+
+/// A method in a case.
+#[derive(Clone)]
+pub struct Job {
+    /// 32 hexadecimal digits: SHA-256 of graph, shaders, parameters, scene, camera, size, time, motion, frames, samples and
+    /// device.
+    pub id: String,
+    /// The same of what is run, without names and what it is compared with.
+    pub work: String,
+    /// The method.
+    pub method: String,
+    /// The case.
+    pub case: Case,
+    /// The experiment that is run.
+    pub experiment: Experiment,
+    /// The scene, lit as the experiment says.
+    pub scene: Arc<Scene>,
+    /// Its content as a number.
+    pub scene_hash: String,
+    /// Camera, time and light before anything moved.
+    pub start: FrameState,
+    /// Cameras that do not move on from the start.
+    pub cameras: Option<Cameras>,
+    /// The parameter that moves.
+    pub track: Option<ParamTrack>,
+    /// Whether the graph of references has it too, so that the reference moves with it.
+    pub reference_moves: bool,
+    /// Frames measured.
+    pub frames: usize,
+}
+
+/// Everything that a suite runs, case by case.
+///
+/// # Errors
+/// All that is wrong with its settings, scenes and motions: nothing is measured then.
+pub fn plan(
+    home: &Workspace,
+    device: &DeviceInfo,
+    builder: &mut PointBuilder,
+    warm: &mut Warm,
+    suite: &Suite,
+    options: &Options,
+) -> Result<Vec<Job>, LabError> {
+    if let Some(name) = options.only.iter().find(|n| !suite.cases.iter().any(|c| c.name == **n)) {
+        let mut known: Vec<&str> = suite.cases.iter().map(|c| c.name.as_str()).collect();
+        known.dedup();
+        return Err(LabError::Request(format!("--only {name}: the suite's cases are {}", known.join(", "))));
+    }
+    // What the frames are compared with is part of a result.
+    let shaders = if options.reference { reference::shaders(home)? } else { String::new() };
+    let mut jobs: Vec<Job> = Vec::new();
+    let mut mistakes = Mistakes::default();
+    let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
+    for case in suite.cases.iter().filter(wanted) {
+        for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
+            let job = job(home, device, builder, warm, suite, options, (method, case, &shaders));
+            jobs.extend(mistakes.take(job)?);
+        }
+    }
+    mistakes.none()?;
+    Ok(jobs)
+}
+
+fn job(
+    home: &Workspace,
+    device: &DeviceInfo,
+    builder: &mut PointBuilder,
+    warm: &mut Warm,
+    suite: &Suite,
+    options: &Options,
+    (method, case, shaders): (&Method, &Case, &str),
+) -> Result<Job, LabError> {
+    let mut params = |graph: &str| warm.graph(home, graph).ok().map(|l| l.graph.params.clone());
+    let mut experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input)?;
+    let loaded = warm.graph(home, &experiment.graph)?.clone();
+    let other = experiment.graph != suite.experiment.graph;
+    let set: Vec<(&str, &str)> =
+        options.set.iter().map(|s| named("--set", s, "NAME=VALUE")).collect::<Result<_, LabError>>()?;
+    let (text, settings) = lines(set, "=");
+    experiment.sources.add("--set".as_ref(), text);
+    let has = |s: &&Setting| !other || loaded.graph.params.index(&s.name.value).is_some();
+    set_params(&mut experiment, settings.iter().filter(has));
+    experiment.size = options.size.unwrap_or(experiment.size);
+    check_size(experiment.size).map_err(LabError::Request)?;
+    let wrong = |why: String| LabError::Request(format!("case '{}': {why}", title(&case.name, &case.variant)));
+    let frames = options.frames.filter(|_| !case.own_frames).unwrap_or(case.frames);
+    let names: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.0).collect();
+    let parts = names.len() as u64;
+    let values = u64::from(experiment.size.0) * u64::from(experiment.size.1) * frames as u64 * parts;
+    if values > MAX_VALUES {
+        return Err(wrong(format!(
+            "{frames} frames of {}x{} and {parts} parts are too many to keep; ask for fewer with --frames, or a smaller --size",
+            experiment.size.0, experiment.size.1
+        )));
+    }
+    if parts == 0 {
+        return Err(wrong(format!("graph '{}' has neither `parts` nor `hdr`", loaded.graph.name)));
+    }
+    if !names.contains(&suite.pictures) {
+        let (part, known) = (&suite.pictures, names.join(", "));
+        return Err(wrong(format!("no pictures of '{part}': the parts of graph '{}' are {known}", loaded.graph.name)));
+    }
+    let point = builder.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
+    case.motion.check(&point.scene).map_err(wrong)?;
+    let params = point.experiment.params_over(&loaded.graph.params)?;
+    let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
+    let reference_moves = match &track {
+        Some(track) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&track.name).is_some(),
+        None => false,
+    };
+    if let Some(at) = case.motion.event().filter(|at| frames.saturating_sub(2) < *at) {
+        return Err(wrong(format!("what happens at frame {at} needs two frames more, there are {frames}")));
+    }
+    let cameras = Cameras::of(&case.motion, &point.experiment, &point.scene, &suite.folder)?;
+    let (scene, hash) = match case.motion.scaled_scene(&point.scene) {
+        Some(staged) => {
+            let hash = scene_hash(&staged);
+            (Arc::new(staged), hash)
+        }
+        None => (point.scene.clone(), point.subject.sha256.clone()),
+    };
+    let start = FrameState {
+        camera: camera_of(&point.experiment, &scene)?,
+        time: point.experiment.time,
+        lights: scene.lights.clone(),
+        setting: None,
+    };
+    let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
+    let device = format!("{} {} {}", device.name, device.driver, device.api);
+    let work = content_id([point.id, format!("{:?}", case.motion), device], DIGITS);
+    let asked = format!("{samples:?} {} {} {} {} {shaders}", suite.bounces, suite.seed, case.voxels, suite.pictures);
+    // Two names of the same thing are two rows.
+    let names = format!("{:?} {:?} {:?}", method.name, case.name, case.variant);
+    let id = content_id([&work, &asked, &names], DIGITS);
+    Ok(Job {
+        id,
+        work,
+        method: method.name.clone(),
+        case: case.clone(),
+        experiment: point.experiment,
+        scene,
+        scene_hash: hash,
+        start,
+        cameras,
+        track,
+        reference_moves,
+        frames,
+    })
+}
+
+impl runner::Job for Job {
+    type About = About;
+    type Measured = Measured;
+
+    fn id(&self) -> &str {
+        &self.id
+    }
+
+    fn title(&self) -> String {
+        format!("{}, {}", title(&self.case.name, &self.case.variant), self.method)
+    }
+
+    fn about(&self, _: &mut Runner, _: &Folder) -> Result<About, LabError> {
+        Ok(About {
+            case: self.case.name.clone(),
+            variant: self.case.variant.clone(),
+            text: self.case.about.clone(),
+            motion: self.case.motion.describe(),
+            method: self.method.clone(),
+            scene: self.scene.name.clone(),
+            size: self.experiment.size.into(),
+            warmup: self.case.warmup,
+            frames: self.frames,
+        })
+    }
+
+    fn warnings(measured: &Measured) -> &[String] {
+        &measured.warnings
+    }
+}
+
+impl Job {
+    /// What frame `number` sees; see [`super::Motion::frame_state`].
+    pub fn frame_state(&self, number: i64, cell: f32) -> FrameState {
+        let setting = self.track.as_ref().filter(|_| self.reference_moves).map(|m| (m.name.clone(), m.at(number)));
+        let state = self.case.motion.frame_state(&self.start, number, cell);
+        let camera = self.cameras.as_ref().map_or(state.camera, |c| c.at(&self.start.camera, number));
+        FrameState { camera, setting, ..state }
+    }
+}

@@ -1,0 +1,80 @@
+//! Running a suite: every method in every case, one after another, each kept as soon as it is finished.
+
+use super::chart_spec::CostChart;
+use super::file::Suite;
+use super::plan::{Job, Options, plan};
+use super::plot::Plot;
+use super::record::{CaseRecord, Report, SCHEMA, folder, picture};
+use super::sequence::{Tracing, measure};
+use super::{chart, cost, page, table};
+use crate::campaign::points::PointBuilder;
+use crate::campaign::record::{json, write_files};
+use crate::campaign::runner::{Counts, Open, Progress, Runner};
+use crate::lab::LabError;
+use crate::scene::Scene;
+
+/// Runs what is not finished of a suite, and writes tables, charts and the page of all of it. An error that belongs to a
+/// method in a case is kept in its place; it is tried again by the next run.
+///
+/// # Errors
+/// What is wrong with the suite as a whole, before anything is measured; a folder that cannot be written to; no device.
+pub fn run(
+    open: &Open,
+    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    suite: &Suite,
+    options: &Options,
+    on_progress: &mut dyn FnMut(Progress),
+) -> Result<(Counts, Report), LabError> {
+    let mut runner = Runner::open(open, on_progress)?;
+    let (home, device) = (runner.lab.home.clone(), runner.lab.gpu.info.clone());
+    // Opens each scene once for all plans.
+    let mut builder = PointBuilder::new(&home, open_scene);
+    let mut jobs = plan(&home, &device, &mut builder, &mut runner.warm, suite, options)?;
+    let mut costs = Vec::new();
+    if let Some(chart) = &suite.chart {
+        costs = cost::costs(&mut runner, &mut builder, (suite, chart), options)?;
+        let chosen = cost::chosen(suite, chart, &costs);
+        jobs = plan(&home, &device, &mut builder, &mut runner.warm, &chosen, options)?;
+    }
+    let folder = folder(&options.folder);
+    let samples = options.samples.unwrap_or(suite.samples);
+    let tracing = options.reference.then_some(Tracing { samples, bounces: suite.bounces, seed: suite.seed });
+    // What has failed is tried again, and so is what has lost its picture.
+    let mut kept = |_: &mut Runner, job: &Job| {
+        let whole =
+            |r: &CaseRecord| r.done().is_some_and(|m| m.worst.is_none() || folder.path.join(picture(&r.id)).is_file());
+        Ok(folder.read(&job.id).filter(whole))
+    };
+    let mut measured = |runner: &mut Runner, job: &Job| measure(runner, job, tracing, &suite.pictures);
+    let results = runner.run(&folder, &jobs.iter().collect::<Vec<_>>(), &mut kept, &mut measured)?;
+    let counts = Counts::of(&results);
+    let report = Report {
+        schema: SCHEMA.into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        suite: suite.name.clone(),
+        text: suite.text.clone(),
+        reference: options.reference.then_some((samples, suite.bounces)),
+        costs,
+        results,
+    };
+    write(&report, suite.chart.as_ref(), options)?;
+    Ok((counts, report))
+}
+
+/// Tables, JSON, charts and the page.
+fn write(report: &Report, spec: Option<&CostChart>, options: &Options) -> Result<(), LabError> {
+    let charts = chart::charts(report)?;
+    let plot = spec.map(|spec| Plot::new(report, spec)).transpose()?;
+    let mut files = vec![
+        ("stability.json".to_string(), json(report)?),
+        ("stability.csv".into(), table::rows(report)?.into_bytes()),
+        ("frames.csv".into(), table::frames(report)?.into_bytes()),
+    ];
+    files.extend(charts.iter().map(|c| (format!("charts/{}.svg", c.name), c.svg.clone().into_bytes())));
+    if let Some(plot) = &plot {
+        files.push(("cost.csv".into(), plot.csv()?.into_bytes()));
+        files.extend(plot.svg.iter().map(|svg| ("charts/cost.svg".into(), svg.clone().into_bytes())));
+    }
+    files.push(("index.html".into(), page::page(report, &charts, plot.as_ref()).into_bytes()));
+    write_files(&options.folder, &files)
+}

@@ -1,0 +1,170 @@
+//! What a sweep's folder holds: `sweep.json`, the list of all points, the same in every shard; `points/ID.json`, one
+//! finished point each; `pictures/ID.jpg` and `errors/ID.jpg`.
+
+use crate::campaign::points::{DIGITS, Subject, SweepPoint};
+use crate::campaign::record::{Folder, Record, json, read_json, write_file};
+use crate::files::{content_id, read_input};
+use crate::lab::LabError;
+use crate::measure::{Frames, Point};
+use indexmap::{IndexMap, IndexSet};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// Version of `sweep.json`.
+pub const MANIFEST_SCHEMA: &str = "conelab-sweep-1";
+/// Version of a point's file.
+const POINT_SCHEMA: &str = "conelab-point-1";
+/// Largest `sweep.json`, bytes.
+const MAX_MANIFEST: u64 = 256 << 20;
+/// Largest file of a point or picture, bytes.
+const MAX_FILE: u64 = 4 << 20;
+
+/// `sweep.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// [`MANIFEST_SCHEMA`].
+    pub schema: String,
+    /// Name of the sweep.
+    pub name: String,
+    /// The sweep's file, for people.
+    pub text: String,
+    /// Names of what is varied.
+    pub names: Vec<String>,
+    /// Frames of every point.
+    pub frames: Frames,
+    /// Every point, in order.
+    pub points: Vec<ManifestPoint>,
+}
+
+/// A point of the list.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ManifestPoint {
+    /// Its number, see [`SweepPoint::id`].
+    pub id: String,
+    /// Its values, by the names of what is varied.
+    pub labels: IndexMap<String, String>,
+}
+
+/// What a finished point is of.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct About {
+    /// The experiment with nothing left to defaults, as it would stand in a file of the sweep's folder; empty where the
+    /// scene is not on the machine.
+    pub experiment: String,
+    /// What is looked at: points of one subject can be compared.
+    pub subject: Subject,
+}
+
+/// A finished point.
+pub type PointRecord = Record<About, Point>;
+
+/// The records of a sweep's folder.
+pub(super) fn folder(path: &Path) -> Folder {
+    Folder { path: path.into(), kind: "points", schema: POINT_SCHEMA, most: MAX_FILE }
+}
+
+/// A picture's path in the folder: of kind `pictures` or `errors` by the number of a point.
+pub(super) fn jpeg(kind: &str, name: &str) -> String {
+    format!("{kind}/{name}.jpg")
+}
+
+/// Path of the displayed reference of a subject.
+pub(super) fn reference(subject: &Subject) -> String {
+    jpeg("references", &content_id([format!("{subject:?}")], DIGITS))
+}
+
+impl Manifest {
+    pub(super) fn new(sweep: &super::Sweep, frames: Frames, points: &[SweepPoint]) -> Manifest {
+        let point = |p: &SweepPoint| ManifestPoint { id: p.id.clone(), labels: p.labels.iter().cloned().collect() };
+        Manifest {
+            schema: MANIFEST_SCHEMA.into(),
+            name: sweep.name.clone(),
+            text: sweep.text.clone(),
+            names: sweep.names.clone(),
+            frames,
+            points: points.iter().map(point).collect(),
+        }
+    }
+
+    fn file(folder: &Path) -> PathBuf {
+        folder.join("sweep.json")
+    }
+
+    pub(super) fn write(&self, folder: &Path) -> Result<(), LabError> {
+        write_file(&Manifest::file(folder), &json(self)?)
+    }
+
+    fn read(folder: &Path) -> Result<Manifest, LabError> {
+        let file = Manifest::file(folder);
+        let wrong = |why: String| LabError::Request(format!("'{}': {why}", file.display()));
+        let manifest: Manifest = read_json(&file, MAX_MANIFEST)
+            .map_err(|e| wrong(format!("{e}; give the folder that `conelab sweep` wrote")))?;
+        if manifest.schema != MANIFEST_SCHEMA {
+            return Err(wrong(format!("its schema is '{}', this program reads '{MANIFEST_SCHEMA}'", manifest.schema)));
+        }
+        let fits = |p: &&ManifestPoint| p.id.len() == DIGITS && p.id.bytes().all(|b| b.is_ascii_hexdigit());
+        match manifest.points.iter().find(|p| !fits(p)) {
+            Some(bad) => Err(wrong(format!("'{}' is no number of a point", bad.id))),
+            None => Ok(manifest),
+        }
+    }
+}
+
+/// What some folders hold together: shards of one sweep, or sweeps that are looked at side by side.
+#[derive(Clone, Debug, Default)]
+pub struct Collected {
+    /// Names of the sweeps.
+    pub sweeps: Vec<String>,
+    /// Names of everything that is varied.
+    pub names: Vec<String>,
+    /// Every point of every list, in order, once; with its record where it is finished.
+    pub points: Vec<(ManifestPoint, Option<PointRecord>)>,
+    /// Folder of each finished point, by its number.
+    folders: HashMap<String, PathBuf>,
+}
+
+impl Collected {
+    /// The picture of a point, or where its light differs from the reference (`errors`): JPEG.
+    pub fn picture(&self, kind: &str, id: &str) -> Option<Vec<u8>> {
+        read_input(&self.folders.get(id)?.join(jpeg(kind, id)), MAX_FILE).ok()
+    }
+
+    /// The reference that a point was scored against, displayed: JPEG.
+    pub fn reference(&self, record: &PointRecord) -> Option<Vec<u8>> {
+        read_input(&self.folders.get(&record.id)?.join(reference(&record.about.subject)), MAX_FILE).ok()
+    }
+}
+
+/// Reads folders of sweeps. A point that several hold is taken from the first in which it was measured without an error.
+///
+/// # Errors
+/// A folder without a list of points, or with a damaged one.
+pub fn collect(folders: &[PathBuf]) -> Result<Collected, LabError> {
+    let mut out = Collected::default();
+    let (mut sweeps, mut names) = (IndexSet::new(), IndexSet::new());
+    let mut at: HashMap<String, usize> = HashMap::new();
+    for path in folders {
+        let manifest = Manifest::read(path)?;
+        sweeps.insert(manifest.name);
+        names.extend(manifest.names);
+        let folder = folder(path);
+        for point in manifest.points {
+            let id = point.id.clone();
+            let i = *at.entry(id.clone()).or_insert_with(|| {
+                out.points.push((point, None));
+                out.points.len() - 1
+            });
+            let have = &out.points[i].1;
+            if have.as_ref().is_some_and(|r| r.done().is_some()) {
+                continue;
+            }
+            if let Some(record) = folder.read(&id).filter(|r: &PointRecord| have.is_none() || r.done().is_some()) {
+                out.folders.insert(id, path.clone());
+                out.points[i].1 = Some(record);
+            }
+        }
+    }
+    (out.sweeps, out.names) = (sweeps.into_iter().collect(), names.into_iter().collect());
+    Ok(out)
+}

@@ -1,0 +1,162 @@
+//! Measuring the points of a sweep, one after another.
+
+use super::list::list;
+use super::points::Sweep;
+use super::record::{About, Manifest, PointRecord, collect, folder, jpeg, reference};
+use crate::campaign::points::{PointBuilder, SweepPoint, labelled};
+use crate::campaign::record::{File, Folder, Outcome, write_file};
+use crate::campaign::runner::{Counts, Job, Open, Progress, Runner};
+use crate::experiment::resolved_text;
+use crate::lab::{LabError, camera_of};
+use crate::measure::reference::Reference;
+use crate::measure::{Frames, Point, Wanted, measure};
+use crate::scene::Scene;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Which of the points: every `of`-th, from the `number`-th on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    /// From 1 to `of`.
+    pub number: usize,
+    /// At least 1.
+    pub of: usize,
+}
+
+impl Shard {
+    /// All points.
+    pub const ALL: Shard = Shard { number: 1, of: 1 };
+}
+
+/// How a sweep is run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Where everything is kept.
+    pub folder: PathBuf,
+    /// Which of the points.
+    pub shard: Shard,
+    /// Frames of every point.
+    pub frames: Frames,
+    /// Measure points again that have failed.
+    pub again: bool,
+    /// Gather references to so many samples a pixel first; those that are cached are used as they are when absent.
+    pub samples: Option<u64>,
+}
+
+impl Job for SweepPoint {
+    type About = About;
+    type Measured = Point;
+
+    fn id(&self) -> &str {
+        &self.id
+    }
+
+    fn title(&self) -> String {
+        format!("{} ({})", self.id, labelled(self.labels.iter().map(|(name, value)| (name, value))))
+    }
+
+    fn about(&self, runner: &mut Runner, folder: &Folder) -> Result<About, LabError> {
+        let experiment = match &self.absent {
+            // Camera and light are not known.
+            Some(_) => String::new(),
+            None => {
+                let params = &runner.warm.graph(&runner.lab.home, &self.experiment.graph)?.graph.params;
+                let camera = camera_of(&self.experiment, &self.scene)?;
+                resolved_text(&self.experiment, params, &camera, &self.scene, &folder.path.join("experiment.ron"))?
+            }
+        };
+        Ok(About { experiment, subject: self.subject.clone() })
+    }
+
+    fn warnings(point: &Point) -> &[String] {
+        &point.stats.warnings
+    }
+}
+
+/// Measures every point of the shard that is not finished. Each is kept as soon as it is finished; an error that belongs
+/// to a point is kept in its place. A device that is lost is opened again.
+///
+/// # Errors
+/// What is wrong with the sweep as a whole, before anything is measured; a folder that cannot be written to; no device.
+pub fn run(
+    open: &Open,
+    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    sweep: &Sweep,
+    options: &Options,
+    on_progress: &mut dyn FnMut(Progress),
+) -> Result<Counts, LabError> {
+    let mut runner = Runner::open(open, on_progress)?;
+    let home = runner.lab.home.clone();
+    let mut builder = PointBuilder::new(&home, open_scene);
+    let (points, equal) = list(&mut builder, &mut runner.warm, sweep, options.frames)?;
+    if equal > 0 {
+        runner.note(format!("{equal} combinations equal another one and are measured once"));
+    }
+    let folder = folder(&options.folder);
+    folder.clean(&["points", "pictures", "errors", "references"]);
+    Manifest::new(sweep, options.frames, &points).write(&options.folder)?;
+    let Shard { number, of } = options.shard;
+    let mine: Vec<&SweepPoint> = points.iter().skip(number - 1).step_by(of).collect();
+    let bounces = &sweep.bounces;
+    let mut elsewhere = 0;
+    let mut kept = |runner: &mut Runner, point: &SweepPoint| {
+        let record: Option<PointRecord> = folder.read(&point.id);
+        let known = match references(runner, point, bounces, options.samples) {
+            Ok(known) => known,
+            // A finished point is not given up for it. Others meet it again, and keep it, when their turn comes.
+            Err(error) if record.as_ref().is_some_and(|r| r.done().is_some()) => return Err(error),
+            Err(_) => Vec::new(),
+        };
+        let samples: BTreeMap<u32, u64> = known.iter().map(|(bounces, r)| (*bounces, r.samples)).collect();
+        // A reference that has come or grown since makes other scores.
+        let stays = |r: &PointRecord| match &r.outcome {
+            Outcome::Done(found) => found.references == samples,
+            Outcome::Failed(_) => !options.again,
+        };
+        let record = record.filter(stays);
+        let measured = record.as_ref().filter(|r| r.done().is_some());
+        elsewhere += usize::from(measured.is_some_and(|r| r.device.name != runner.lab.gpu.info.name));
+        Ok(record)
+    };
+    let mut measured = |runner: &mut Runner, point: &SweepPoint| {
+        if let Some(why) = &point.absent {
+            return Err(LabError::Request(why.clone()));
+        }
+        let known = references(runner, point, bounces, options.samples)?;
+        let Runner { lab, warm, .. } = runner;
+        let found = measure(lab, warm, &point.experiment, &point.scene, options.frames, &known)?;
+        let files: [(String, Option<Vec<u8>>); 3] = [
+            (jpeg("pictures", &point.id), found.picture),
+            (jpeg("errors", &point.id), found.error_map),
+            (reference(&point.subject), found.reference),
+        ];
+        let files: Vec<File> = files.into_iter().filter_map(|(name, bytes)| Some((name, bytes?))).collect();
+        Ok((found.point, files))
+    };
+    let records = runner.run(&folder, &mine, &mut kept, &mut measured)?;
+    if elsewhere > 0 {
+        runner.note(format!(
+            "{elsewhere} points were measured on another device; name another folder with -o to measure them here"
+        ));
+    }
+    let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
+    write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
+    Ok(Counts::of(&records))
+}
+
+/// The references that a point is scored against, by bounces, as far as there are any.
+fn references(
+    runner: &mut Runner,
+    point: &SweepPoint,
+    bounces: &[u32],
+    samples: Option<u64>,
+) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
+    let mut list = Vec::new();
+    for bounces in bounces.iter().filter(|_| point.absent.is_none()) {
+        let wanted = Wanted { bounces: *bounces, samples, seed: None };
+        let found = runner.reference(&point.experiment, &point.scene, &format!("{:?}", point.subject), wanted)?;
+        list.extend(found.map(|r| (*bounces, r)));
+    }
+    Ok(list)
+}

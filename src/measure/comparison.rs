@@ -1,0 +1,193 @@
+//! Pictures against a reference, part by part and region by region (`docs/metrics.md`).
+
+mod table;
+mod verdict;
+
+pub use table::table;
+pub use verdict::{NOISE_FACTOR, Verdict, within_noise};
+
+use crate::measure::reference::Noise;
+use crate::metrics::maps::{MapFile, maps};
+use crate::metrics::region::{Region, regions};
+use crate::metrics::{Compared, Kind, Linear, MetricError, Scores};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Version of the schema.
+pub const SCHEMA: &str = "conelab-compare-1";
+
+/// Name of the region that is all of the picture.
+pub const FRAME: &str = "frame";
+
+/// A picture by its parts.
+#[derive(Clone, Debug)]
+pub struct Side {
+    /// Name of the picture.
+    pub name: String,
+    /// Radiance or display values.
+    pub kind: Kind,
+    /// Parts of the light; a picture that is not split has only `total`.
+    pub parts: BTreeMap<String, Linear>,
+    /// Noise of each part, where that is known.
+    pub noise: BTreeMap<String, Noise>,
+}
+
+/// One or two pictures against a reference; what `--json` writes.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// Program version.
+    pub version: String,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// The pictures: A, and B where there are two.
+    pub pictures: Vec<String>,
+    /// What they are compared with.
+    pub reference: String,
+    /// Whether the pictures were made for a display: then all numbers are of the displayed range, 0 to 1.
+    pub displayed: bool,
+    /// Parts that all of them have.
+    pub parts: Vec<PartComparison>,
+}
+
+/// A part of the light.
+#[derive(Clone, Debug, Serialize)]
+pub struct PartComparison {
+    /// Name of the part.
+    pub part: String,
+    /// relMSE between the halves of the reference's samples.
+    pub noise: Option<f64>,
+    /// Structure error that the reference's noise alone gives, natural log units.
+    pub structure_noise: Option<f64>,
+    /// First and last exposure of HDR-FLIP, stops.
+    pub exposures: [f64; 2],
+    /// How many exposures.
+    pub exposure_count: u32,
+    /// The whole frame, then the regions.
+    pub regions: Vec<RegionComparison>,
+}
+
+/// A region of a part.
+#[derive(Clone, Debug, Serialize)]
+pub struct RegionComparison {
+    /// Its name; [`FRAME`] is all of the picture.
+    pub region: String,
+    /// Part of the frame, 0 to 1.
+    pub share: f64,
+    /// Scores of each picture; nothing where no pixel of the region is a finite number.
+    pub scores: Vec<Option<Scores>>,
+    /// Whether each picture's relMSE is below four times the noise: it cannot be told from the reference.
+    pub within_noise: Vec<bool>,
+    /// The better of two pictures, by metric.
+    pub better: BTreeMap<&'static str, Verdict>,
+}
+
+/// Takes the maps of a picture (0 is A) and part.
+pub type TakeMaps<'a> = dyn FnMut(usize, &str, Vec<MapFile>) -> Result<(), MetricError> + 'a;
+
+/// The options of a comparison.
+pub struct Request<'a> {
+    /// Parts; all that are there when empty.
+    pub parts: &'a [String],
+    /// Regions besides those that follow from the reference.
+    pub masks: &'a [Region],
+    /// Where maps go; none are made without.
+    pub maps: Option<&'a mut TakeMaps<'a>>,
+}
+
+/// Compares one or two pictures with a reference.
+///
+/// # Errors
+/// Pictures for a display beside radiance, no common part, a part that is not there, different sizes, masks of another
+/// size, or what becomes of the maps.
+pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Result<Comparison, MetricError> {
+    if let Some(other) = pictures.iter().find(|p| p.kind != reference.kind) {
+        let (shown, radiance) = if other.kind == Kind::Displayed { (other, reference) } else { (reference, other) };
+        return Err(MetricError(format!(
+            "'{}' was made for a display and '{}' is radiance; compare an .exr with an .exr, or a .png with a .png",
+            shown.name, radiance.name
+        )));
+    }
+    let names = part_names(pictures, reference, request.parts)?;
+    let mut areas = regions(&reference.parts);
+    areas.extend_from_slice(request.masks);
+    let mut parts = Vec::new();
+    let mut size = (0, 0);
+    for part in names {
+        let Some(expected) = reference.parts.get(&part) else { continue };
+        let pixels = expected.rgb.len();
+        if let Some(area) = areas.iter().find(|a| a.mask.len() != pixels) {
+            let (w, h) = expected.size;
+            return Err(MetricError(format!("the mask '{}' does not have the pictures' size of {w}x{h}", area.name)));
+        }
+        size = expected.size;
+        let kind = if reference.kind == Kind::Displayed { Kind::Displayed } else { Kind::of_part(&part) };
+        let mut compared = Vec::new();
+        for (i, picture) in pictures.iter().enumerate() {
+            let Some(test) = picture.parts.get(&part) else { continue };
+            let with = Compared::new(test, expected, kind)
+                .map_err(|e| MetricError(format!("'{}' and '{}': {e}", picture.name, reference.name)))?;
+            if let Some(take) = &mut request.maps {
+                take(i, &part, maps(&with)?)?;
+            }
+            compared.push(with);
+        }
+        parts.push(compare_part(&part, &compared, reference.noise.get(&part).copied(), &areas));
+    }
+    Ok(Comparison {
+        schema: SCHEMA.into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        size: size.into(),
+        pictures: pictures.iter().map(|p| p.name.clone()).collect(),
+        reference: reference.name.clone(),
+        displayed: reference.kind == Kind::Displayed,
+        parts,
+    })
+}
+
+/// Known parts in the order they are shown in; others follow by name.
+const ORDER: [&str; 5] = ["total", "direct", "diffuse", "specular", "occlusion"];
+
+/// The parts to compare.
+fn part_names(pictures: &[Side], reference: &Side, wanted: &[String]) -> Result<Vec<String>, MetricError> {
+    let everywhere = |part: &&String| pictures.iter().all(|p| p.parts.contains_key(*part));
+    let mut common: Vec<String> = reference.parts.keys().filter(everywhere).cloned().collect();
+    common.sort_by_key(|part| ORDER.iter().position(|o| o == part).unwrap_or(ORDER.len()));
+    if let Some(missing) = wanted.iter().find(|w| !common.contains(w)) {
+        return Err(MetricError(format!(
+            "there is no part '{missing}' in all pictures; they have: {}",
+            common.join(", ")
+        )));
+    }
+    if common.is_empty() {
+        return Err(MetricError("the pictures have no part in common".into()));
+    }
+    common.retain(|part| wanted.is_empty() || wanted.contains(part));
+    Ok(common)
+}
+
+fn compare_part(part: &str, compared: &[Compared], noise: Option<Noise>, areas: &[Region]) -> PartComparison {
+    let region = |name: &str, share: f64, mask: Option<&[bool]>| {
+        let scores: Vec<Option<Scores>> = compared.iter().map(|c| c.scores(mask)).collect();
+        let better = match &scores[..] {
+            [Some(a), Some(b)] => verdict::better(a, b, noise),
+            _ => BTreeMap::new(),
+        };
+        let within =
+            |s: &Option<Scores>| s.as_ref().is_some_and(|s| verdict::within_noise(s.relmse, noise.map(|n| n.relmse)));
+        let within_noise = scores.iter().map(within).collect();
+        RegionComparison { region: name.into(), share, scores, within_noise, better }
+    };
+    let mut list = vec![region(FRAME, 1.0, None)];
+    list.extend(areas.iter().map(|a| region(&a.name, a.share(), Some(&a.mask))));
+    let exposures = compared.first().map(|c| c.exposures);
+    PartComparison {
+        part: part.into(),
+        noise: noise.map(|n| n.relmse),
+        structure_noise: noise.map(|n| n.structure),
+        exposures: exposures.map_or([0.0; 2], |e| [e.start, e.stop]),
+        exposure_count: exposures.map_or(0, |e| e.count),
+        regions: list,
+    }
+}

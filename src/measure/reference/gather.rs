@@ -1,0 +1,182 @@
+//! Gathers samples until a goal is reached; what has been gathered is kept on the way.
+
+use super::store::{self, Sums};
+use super::{Reference, key};
+use crate::experiment::Experiment;
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
+use crate::results::picture::to_floats;
+use crate::scene::Scene;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// When a reference is good enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Goal {
+    /// So many samples of every pixel, rounded up to a multiple of [`store::BLOCK`].
+    Samples(u64),
+    /// Until relMSE of the total against the converged reference, as estimated from its halves, is at most this.
+    Noise(f64),
+}
+
+/// Progress towards the goal.
+#[derive(Clone, Copy, Debug)]
+pub struct Gathered {
+    /// Samples of every pixel so far.
+    pub samples: u64,
+    /// Samples that will be enough, as far as can be told.
+    pub goal: u64,
+    /// Estimated relMSE of the total against the converged reference.
+    pub noise: f64,
+}
+
+/// Time between two files on the disk.
+const KEEP_EVERY: Duration = Duration::from_secs(30);
+
+/// Most samples when noise is the goal: it may not fall, where a material or a light is impossible.
+const MOST_SAMPLES: u64 = 1 << 20;
+
+/// Gathers the reference of an experiment, from where an earlier run stopped. `scene` is lit as the experiment says.
+/// The same samples give the same bits on the same device, in one run or in many. `progress` may stop it; what was
+/// gathered is kept then too.
+///
+/// # Errors
+/// Everything that can be wrong with an experiment; a folder that cannot be written to; samples that are not finite.
+pub fn gather(
+    lab: &Lab,
+    experiment: &Experiment,
+    scene: &Arc<Scene>,
+    bounces: u32,
+    goal: Goal,
+    progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
+) -> Result<Reference, LabError> {
+    let (sums, folder) = Tracer::default().sums(lab, experiment, scene, bounces, goal, progress)?;
+    sums.reference(&folder, false)
+}
+
+/// Gathers one reference after another, each on what the one before it left: the compiled graph, its pipelines, and the
+/// scene on the device. What it gathers are the bits that [`gather`] gathers.
+#[derive(Default)]
+pub struct Tracer {
+    loaded: Option<Loaded>,
+    shared: Option<ReusableParts>,
+}
+
+impl Tracer {
+    /// [`gather`], with the means of both halves of the samples.
+    ///
+    /// # Errors
+    /// As [`gather`].
+    pub fn gather(
+        &mut self,
+        lab: &Lab,
+        experiment: &Experiment,
+        scene: &Arc<Scene>,
+        bounces: u32,
+        goal: Goal,
+        progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
+    ) -> Result<Reference, LabError> {
+        let (sums, folder) = self.sums(lab, experiment, scene, bounces, goal, progress)?;
+        sums.reference(&folder, true)
+    }
+
+    fn sums(
+        &mut self,
+        lab: &Lab,
+        experiment: &Experiment,
+        scene: &Arc<Scene>,
+        bounces: u32,
+        goal: Goal,
+        progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
+    ) -> Result<(Sums, PathBuf), LabError> {
+        let loaded = match &self.loaded {
+            Some(loaded) => loaded.clone(),
+            None => lab.home.load(key::GRAPH).map_err(LabError::Input)?,
+        };
+        self.loaded = Some(loaded.clone());
+        let mut traced = key::traced_by(&loaded, experiment, bounces)?;
+        let folder = lab.home.root.join("captures/reference").join(key::key(&traced, &loaded, scene)?);
+        let parts: Vec<String> = loaded.graph.parts.iter().map(|p| p.0.clone()).collect();
+        let mut sums = match store::read(&folder, traced.size, &loaded.graph)? {
+            Some(sums) => sums,
+            None => Sums::new(traced.size, &parts),
+        };
+        let mut now = state(&sums, goal)?;
+        if now.samples >= now.goal {
+            return Ok((sums, folder));
+        }
+        let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
+        traced.set("samples", &per_frame.to_string());
+        let wanted = parts.iter().map(|p| store::sum_texture(p)).collect();
+        let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, self.shared.as_ref())?;
+        let mut kept = Instant::now();
+        while now.samples < now.goal {
+            frame(lab, &mut session, &mut sums, &parts, per_frame)?;
+            now = state(&sums, goal)?;
+            let stop = progress(now).is_break();
+            // Whole blocks only: then the sums do not depend on where a run was stopped.
+            let whole = sums.samples.is_multiple_of(store::BLOCK);
+            if whole && (stop || now.samples >= now.goal || kept.elapsed() > KEEP_EVERY) {
+                store::write(&folder, &sums, &traced, &lab.gpu.info)?;
+                kept = Instant::now();
+            }
+            if stop && whole {
+                break;
+            }
+        }
+        self.shared = Some(session.share());
+        Ok((sums, folder))
+    }
+}
+
+/// How far the sums are from a goal.
+fn state(sums: &Sums, goal: Goal) -> Result<Gathered, LabError> {
+    let noise = if sums.samples >= 2 { sums.noise("total")? / 4.0 } else { f64::INFINITY };
+    let blocks = |samples: u64| samples.max(1).next_multiple_of(store::BLOCK);
+    let goal = match goal {
+        Goal::Samples(n) => blocks(n),
+        Goal::Noise(most) if noise <= most && sums.samples.is_multiple_of(store::BLOCK) => sums.samples,
+        // The square of the error falls with the number of samples.
+        Goal::Noise(most) => {
+            let factor = if noise.is_finite() && most > 0.0 { (noise / most).clamp(1.0, 1e6) } else { 2.0 };
+            let more = (sums.samples.max(1) as f64 * factor) as u64;
+            if sums.samples >= MOST_SAMPLES {
+                sums.samples
+            } else {
+                blocks(more.max(sums.samples + 1)).min(MOST_SAMPLES)
+            }
+        }
+    };
+    Ok(Gathered { samples: sums.samples, goal, noise })
+}
+
+/// Samples that one submission takes of every pixel: a divisor of the block, few on processors without a GPU, where a
+/// frame would take minutes. Depends on nothing that changes between runs.
+fn samples_per_frame(kind: &str, (width, height): (u32, u32)) -> u64 {
+    let pixels = u64::from(width) * u64::from(height);
+    let budget: u64 = if kind == "cpu" { 1 << 19 } else { 1 << 26 };
+    let most = (budget / pixels.max(1)).clamp(1, store::BLOCK);
+    1 << most.ilog2()
+}
+
+fn frame(lab: &Lab, session: &mut Session, sums: &mut Sums, parts: &[String], samples: u64) -> Result<(), LabError> {
+    let mut params = session.params.clone();
+    params.set("first_sample", &sums.samples.to_string()).map_err(LabError::Request)?;
+    if !session.set_params(lab, &params)? {
+        return Err(LabError::Request("'first_sample' of the reference graph must not change what is planned".into()));
+    }
+    session.frame(0.0)?;
+    session.finish()?;
+    if let Some(message) = session.failed_checks()?.into_iter().next() {
+        return Err(LabError::Request(message));
+    }
+    for part in parts {
+        for half in 0..2 {
+            let texels = session.texels(&store::sum_texture(part), 0, half)?;
+            sums.add(part, half as usize, &to_floats(&texels));
+        }
+    }
+    sums.samples += samples;
+    Ok(())
+}

@@ -1,0 +1,90 @@
+//! Ground truth for an experiment: the pictures of `passes/reference.ron`, gathered sample by sample, kept under the
+//! content of what they depend on.
+
+mod gather;
+mod key;
+mod store;
+
+pub use gather::{Gathered, Goal, Tracer, gather};
+pub use key::{GRAPH, experiment_for};
+
+use crate::experiment::Experiment;
+use crate::lab::{LabError, Workspace};
+use crate::metrics::Linear;
+use crate::scene::Scene;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Turns of a path that hold all light that matters: what methods are compared with where nothing else is asked for.
+pub const ALL_BOUNCES: u32 = 64;
+
+/// A reference picture with its parts.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Width and height, pixels.
+    pub size: (u32, u32),
+    /// Samples of every pixel.
+    pub samples: u64,
+    /// Parts of the graph by name: total, direct, diffuse, specular, occlusion.
+    pub parts: BTreeMap<String, ReferencePart>,
+    /// Folder of the reference.
+    pub folder: PathBuf,
+}
+
+impl Reference {
+    /// What it takes of memory.
+    pub fn bytes(&self) -> usize {
+        let pictures = |p: &ReferencePart| if p.halves.is_some() { 3 } else { 1 };
+        self.parts.values().map(|p| pictures(p) * std::mem::size_of_val(&p.mean.rgb[..])).sum()
+    }
+}
+
+/// A part of a reference.
+#[derive(Clone, Debug)]
+pub struct ReferencePart {
+    /// Mean of all samples.
+    pub mean: Linear,
+    /// What its own noise scores.
+    pub noise: Noise,
+    /// Means of the even and of the odd samples, where [`Tracer::gather`] made it: they take twice the memory again.
+    pub halves: Option<[Linear; 2]>,
+}
+
+/// Noise floor of a part of a reference, from the means of its even and of its odd samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// relMSE of one mean against the other. The mean of all samples is four times better.
+    pub relmse: f64,
+    /// Structure error of the mean of all samples ([`crate::metrics::structure_noise`]), natural log units.
+    pub structure: f64,
+}
+
+/// A number of the shaders that references are made with, 64 hexadecimal digits.
+///
+/// # Errors
+/// A graph of references that cannot be read.
+pub fn shaders(home: &Workspace) -> Result<String, LabError> {
+    let loaded = home.load(GRAPH).map_err(LabError::Input)?;
+    Ok(key::shaders(&loaded))
+}
+
+/// The reference of an experiment for so many bounces, if it has been gathered. `scene` is lit as the experiment says.
+///
+/// # Errors
+/// A camera or a graph that cannot be read; a file that cannot be.
+pub fn find(
+    home: &Workspace,
+    experiment: &Experiment,
+    scene: &Arc<Scene>,
+    bounces: u32,
+) -> Result<Option<Reference>, LabError> {
+    let traced = experiment_for(home, experiment, bounces)?;
+    let loaded = home.load(&traced.graph).map_err(LabError::Input)?;
+    let key = key::key(&traced, &loaded, scene)?;
+    let folder = home.root.join("captures/reference").join(&key);
+    match store::read(&folder, traced.size, &loaded.graph)? {
+        Some(sums) => Ok(Some(sums.reference(&folder, false)?)),
+        None => Ok(None),
+    }
+}

@@ -1,0 +1,272 @@
+//! Sums of samples, and their files: `sums-N.exr` with a layer for each part and half, and `reference.json`, which
+//! names the one that counts.
+
+use super::{Noise, Reference, ReferencePart};
+use crate::experiment::Experiment;
+use crate::files::{check_input, hex, read_input};
+use crate::graph::load::Graph;
+use crate::lab::LabError;
+use crate::metrics::{Linear, MetricError, relmse, structure_noise};
+use crate::vulkan::DeviceInfo;
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
+    WritableImage,
+};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::Path;
+
+/// Samples are gathered by so many: a whole number of them is kept.
+pub const BLOCK: u64 = 32;
+
+/// Version of `reference.json`.
+pub const SCHEMA: &str = "conelab-reference-2";
+
+/// The texture of the reference graph with the sums of a part, a layer for each half.
+pub fn sum_texture(part: &str) -> String {
+    format!("{part}Sum")
+}
+
+/// What `reference.json` holds.
+#[derive(Debug, Deserialize, Serialize)]
+struct Record {
+    schema: String,
+    /// The file with the sums.
+    sums: String,
+    /// SHA-256 of that file, hexadecimal.
+    sha256: String,
+    samples: u64,
+    size: (u32, u32),
+    /// relMSE between the halves, by part.
+    noise: BTreeMap<String, f64>,
+    /// For people: where it comes from.
+    experiment: String,
+    scene: String,
+    params: BTreeMap<String, String>,
+    device: String,
+    driver: String,
+}
+
+/// Sums over the samples of both halves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sums {
+    /// Width and height, pixels.
+    pub size: (u32, u32),
+    /// Samples of every pixel, both halves together; sample number 0 and other even ones are in half 0.
+    pub samples: u64,
+    /// By part: for each half RGB and the number of samples, of every pixel.
+    parts: BTreeMap<String, [Vec<[f32; 4]>; 2]>,
+}
+
+impl Sums {
+    /// Without samples.
+    pub fn new(size: (u32, u32), parts: &[String]) -> Sums {
+        let pixels = size.0 as usize * size.1 as usize;
+        let empty = |p: &String| (p.clone(), [vec![[0.0; 4]; pixels], vec![[0.0; 4]; pixels]]);
+        Sums { size, samples: 0, parts: parts.iter().map(empty).collect() }
+    }
+
+    /// Adds the sums of a frame.
+    pub fn add(&mut self, part: &str, half: usize, sums: &[[f32; 4]]) {
+        if let Some(halves) = self.parts.get_mut(part) {
+            halves[half].par_iter_mut().zip(sums).for_each(|(sum, more)| {
+                for (s, m) in sum.iter_mut().zip(more) {
+                    *s += m;
+                }
+            });
+        }
+    }
+
+    /// Means of a part, over some halves.
+    fn mean(&self, part: &str, halves: &[usize]) -> Linear {
+        let pixels = self.size.0 as usize * self.size.1 as usize;
+        let mut sum = vec![[0f64; 4]; pixels];
+        for half in self.parts.get(part).into_iter().flat_map(|p| halves.iter().map(|h| &p[*h])) {
+            sum.par_iter_mut().zip(half).for_each(|(s, h)| (0..4).for_each(|i| s[i] += f64::from(h[i])));
+        }
+        let rgb = sum.par_iter().map(|s| [0, 1, 2].map(|i| (s[i] / s[3].max(1.0)) as f32)).collect();
+        Linear { size: self.size, rgb }
+    }
+
+    /// relMSE of the even samples' mean against the odd ones'.
+    pub fn noise(&self, part: &str) -> Result<f64, LabError> {
+        let (even, odd) = (self.mean(part, &[0]), self.mean(part, &[1]));
+        relmse(&even, &odd).map_err(|e| wrong(part, &e))
+    }
+
+    /// Means and noise of all parts; `halves`: also the means of the even and of the odd samples.
+    pub fn reference(&self, folder: &Path, halves: bool) -> Result<Reference, LabError> {
+        let part = |name: &String| {
+            let (even, odd) = (self.mean(name, &[0]), self.mean(name, &[1]));
+            let failed = |e: MetricError| wrong(name, &e);
+            let noise = Noise {
+                relmse: relmse(&even, &odd).map_err(failed)?,
+                structure: structure_noise(&even, &odd).map_err(failed)?,
+            };
+            let halves = halves.then_some([even, odd]);
+            Ok((name.clone(), ReferencePart { mean: self.mean(name, &[0, 1]), noise, halves }))
+        };
+        let parts = self.parts.keys().map(part).collect::<Result<_, LabError>>()?;
+        Ok(Reference { size: self.size, samples: self.samples, parts, folder: folder.to_path_buf() })
+    }
+}
+
+fn wrong(part: &str, why: &MetricError) -> LabError {
+    LabError::Request(format!("the reference's '{part}': {why}"))
+}
+
+fn failed(path: &Path, why: impl std::fmt::Display) -> LabError {
+    LabError::Request(format!("reference '{}': {why}", path.display()))
+}
+
+/// Keeps sums in a folder, in place of those that are there.
+pub(super) fn write(folder: &Path, sums: &Sums, traced: &Experiment, device: &DeviceInfo) -> Result<(), LabError> {
+    let name = format!("sums-{}.exr", sums.samples);
+    let file = folder.join(&name);
+    let bytes = encode(sums).map_err(|e| failed(&file, e))?;
+    crate::files::write_whole(&file, &bytes).map_err(|e| failed(&file, e))?;
+    let noise = sums.parts.keys().map(|p| Ok((p.clone(), sums.noise(p)?))).collect::<Result<_, LabError>>()?;
+    let record = Record {
+        schema: SCHEMA.into(),
+        sums: name,
+        sha256: hex(&Sha256::digest(&bytes)),
+        samples: sums.samples,
+        size: sums.size,
+        noise,
+        experiment: traced.name.clone(),
+        scene: traced.scene.clone(),
+        params: traced.params.iter().map(|(n, v)| (n.value.clone(), v.clone())).collect(),
+        device: device.name.clone(),
+        driver: device.driver.clone(),
+    };
+    let json = folder.join("reference.json");
+    let text = serde_json::to_vec_pretty(&record).map_err(|e| failed(&json, e))?;
+    crate::files::write_whole(&json, &text).map_err(|e| failed(&json, e))?;
+    // Earlier sums count no longer. What cannot be deleted only takes room.
+    for entry in std::fs::read_dir(folder).map_err(|e| failed(folder, e))?.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with("sums-") && name != record.sums {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+    Ok(())
+}
+
+fn encode(sums: &Sums) -> Result<Vec<u8>, exr::error::Error> {
+    let size = (sums.size.0 as usize, sums.size.1 as usize);
+    let mut layers = exr::prelude::SmallVec::new();
+    for (part, halves) in &sums.parts {
+        for (half, texels) in halves.iter().enumerate() {
+            let channel =
+                |name: &str, i: usize| AnyChannel::new(name, FlatSamples::F32(texels.iter().map(|t| t[i]).collect()));
+            let list = [("R", 0), ("G", 1), ("B", 2), ("A", 3)].map(|(name, i)| channel(name, i));
+            let attributes = LayerAttributes::named(format!("{part}.{half}").as_str());
+            layers.push(Layer::new(
+                size,
+                attributes,
+                Encoding::FAST_LOSSLESS,
+                AnyChannels::sort(list.into_iter().collect()),
+            ));
+        }
+    }
+    let mut out = Cursor::new(Vec::new());
+    let window = exr::meta::header::ImageAttributes::with_size(size);
+    // Threads would write the chunks in whatever order they were compressed: the same sums must be the same bytes.
+    Image::from_layers(window, layers).write().non_parallel().to_buffered(&mut out)?;
+    Ok(out.into_inner())
+}
+
+/// The sums in a folder; `None` when there are none, or none of this size and these parts.
+pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Option<Sums>, LabError> {
+    let json = folder.join("reference.json");
+    let Ok(text) = read_input(&json, MAX_JSON) else { return Ok(None) };
+    let record: Record = serde_json::from_slice(&text).map_err(|e| failed(&json, format!("{e}; delete the folder")))?;
+    let plain = record.sums.starts_with("sums-") && !record.sums.contains(['/', '\\']);
+    if record.schema != SCHEMA || record.size != size || !plain {
+        return Err(failed(&json, "it is not what this program wrote; delete the folder"));
+    }
+    let file = folder.join(&record.sums);
+    let wrong = |why: &str| failed(&file, format!("{why}; delete the folder"));
+    let bytes = read_bounded(&file, size, graph.parts.len()).map_err(|e| wrong(&e))?;
+    if hex(&Sha256::digest(&bytes)) != record.sha256 {
+        return Err(wrong("its content is not what was written"));
+    }
+    let meta =
+        exr::meta::MetaData::read_from_buffered(Cursor::new(&bytes), false).map_err(|e| wrong(&e.to_string()))?;
+    // Before the texels: sizes decide how much memory is taken.
+    let fits = |h: &exr::meta::header::Header| {
+        (h.layer_size.width(), h.layer_size.height()) == (size.0 as usize, size.1 as usize)
+            && h.channels.list.len() == 4
+    };
+    if meta.headers.len() != 2 * graph.parts.len() || !meta.headers.iter().all(fits) {
+        return Err(wrong("its layers are not those of the reference graph"));
+    }
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(&bytes))
+        .map_err(|e| wrong(&e.to_string()))?;
+    let names: Vec<String> = graph.parts.iter().map(|p| p.0.clone()).collect();
+    let mut sums = Sums::new(size, &names);
+    sums.samples = record.samples;
+    for (part, halves) in &mut sums.parts {
+        for (half, texels) in halves.iter_mut().enumerate() {
+            let name = format!("{part}.{half}");
+            let layer = image
+                .layer_data
+                .iter()
+                .find(|l| l.attributes.layer_name.as_ref().is_some_and(|n| *n == *name.as_str()));
+            let layer = layer.ok_or_else(|| wrong(&format!("it has no layer '{name}'")))?;
+            for (channel, i) in [("R", 0), ("G", 1), ("B", 2), ("A", 3)] {
+                let found = layer.channel_data.list.iter().find(|c| c.name == *channel);
+                match found.map(|c| &c.sample_data) {
+                    Some(FlatSamples::F32(values)) => texels.iter_mut().zip(values).for_each(|(t, v)| t[i] = *v),
+                    _ => return Err(wrong(&format!("layer '{name}' has no channel {channel} of 32-bit floats"))),
+                }
+            }
+        }
+    }
+    let counted = |texels: &Vec<[f32; 4]>| texels.iter().all(|t| f64::from(t[3]) * 2.0 == record.samples as f64);
+    if !sums.parts.values().flatten().all(counted) {
+        return Err(wrong("it does not hold as many samples as reference.json says"));
+    }
+    keep_noise(&json, record, &sums)?;
+    Ok(Some(sums))
+}
+
+/// Writes the noise that the sums have into their description, if it says something else. Nobody computes with what it says.
+fn keep_noise(json: &Path, mut record: Record, sums: &Sums) -> Result<(), LabError> {
+    let noise: BTreeMap<String, f64> =
+        sums.parts.keys().map(|p| Ok((p.clone(), sums.noise(p)?))).collect::<Result<_, LabError>>()?;
+    let same = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) || a.is_nan() && b.is_nan();
+    let kept = noise.iter().all(|(part, value)| record.noise.get(part).is_some_and(|told| same(*told, *value)));
+    if kept && noise.len() == record.noise.len() {
+        return Ok(());
+    }
+    record.noise = noise;
+    let text = serde_json::to_vec_pretty(&record).map_err(|e| failed(json, e))?;
+    // A folder that cannot be written to keeps it.
+    let _ = crate::files::write_whole(json, &text);
+    Ok(())
+}
+
+/// Descriptions larger than this are not what was written.
+const MAX_JSON: u64 = 16 << 20;
+
+/// A file that is no larger than the sums of so many parts can be.
+fn read_bounded(file: &Path, size: (u32, u32), parts: usize) -> Result<Vec<u8>, String> {
+    let texels = u64::from(size.0) * u64::from(size.1) * 2 * parts as u64;
+    let length = check_input(file, u64::MAX).map_err(|e| e.to_string())?;
+    // Compression may make noise a little larger.
+    let most = texels * 32 + (1 << 20);
+    if length > most {
+        return Err(format!("it has {length} bytes, more than its samples take"));
+    }
+    read_input(file, most).map_err(|e| e.to_string())
+}

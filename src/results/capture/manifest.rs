@@ -1,0 +1,174 @@
+//! `capture.json`: what a capture says about itself. It may come from anywhere and is not trusted.
+
+use super::{EXPERIMENT, MANIFEST, failed};
+use crate::experiment::check_size;
+use crate::files::hex;
+use crate::lab::LabError;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::{Component, Path};
+
+/// Version of the schema.
+pub const SCHEMA: &str = "conelab-capture-1";
+
+/// Largest manifest, bytes.
+const MAX_BYTES: u64 = 4 << 20;
+/// Most files of a capture.
+const MAX_FILES: usize = 10_000;
+/// Most frames a capture may ask a replay to run.
+const MAX_FRAMES: usize = 1_000_000;
+
+/// The scene of a capture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneRecord {
+    /// Built-in name, or path as it was given.
+    pub spec: String,
+    /// Its name.
+    pub name: String,
+    /// SHA-256 of its content ([`super::scene_hash`]).
+    pub sha256: String,
+}
+
+/// A picture of a capture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Image {
+    /// Path in the capture, `.png` or `.exr`.
+    pub file: String,
+    /// Texture of the graph.
+    pub texture: String,
+    /// Mip.
+    pub mip: u32,
+    /// Layer.
+    pub layer: u32,
+}
+
+/// What `capture.json` holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// Program version.
+    pub version: String,
+    /// Device.
+    pub device: String,
+    /// Driver and its version.
+    pub driver: String,
+    /// When it was taken, RFC 3339, UTC.
+    pub when: String,
+    /// Name of the experiment.
+    pub experiment: String,
+    /// Name of the graph's file.
+    pub graph: String,
+    /// Scene.
+    pub scene: SceneRecord,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Frames run; the pictures are of the last.
+    pub frames: usize,
+    /// Time from frame to frame, s.
+    pub step: f64,
+    /// Pictures.
+    pub images: Vec<Image>,
+    /// SHA-256 of every other file, by path in the capture.
+    pub files: BTreeMap<String, String>,
+}
+
+impl Manifest {
+    /// Reads and checks a capture's manifest.
+    ///
+    /// # Errors
+    /// No such file, no manifest, a size beyond bounds, or a path that leads out of the folder.
+    pub fn read(folder: &Path) -> Result<Manifest, LabError> {
+        let path = folder.join(MANIFEST);
+        let text = crate::files::read_input_text(&path, MAX_BYTES)
+            .map_err(|e| failed(&path, format!("cannot read it: {e}")))?;
+        let manifest: Manifest =
+            serde_json::from_str(&text).map_err(|e| failed(&path, format!("it is damaged: {e}")))?;
+        manifest.check(folder).map_err(|e| failed(&path, e))?;
+        Ok(manifest)
+    }
+
+    fn check(&self, folder: &Path) -> Result<(), String> {
+        if self.schema != SCHEMA {
+            return Err(format!("its schema is '{}', this program reads '{SCHEMA}'", self.schema));
+        }
+        check_size((self.size[0], self.size[1]))?;
+        check_frames(self.frames, self.step)?;
+        if self.files.len() > MAX_FILES || self.images.is_empty() || self.images.len() > MAX_FILES {
+            return Err(format!("it must name 1 to {MAX_FILES} pictures and at most {MAX_FILES} files"));
+        }
+        for file in self.files.keys() {
+            inside(folder, file)?;
+        }
+        for image in &self.images {
+            if !self.files.contains_key(&image.file) {
+                return Err(format!("it has no checksum of the picture '{}'", image.file));
+            }
+            if !image.file.ends_with(".png") && !image.file.ends_with(".exr") {
+                return Err(format!("the picture '{}' is neither .png nor .exr", image.file));
+            }
+        }
+        if !self.files.contains_key(EXPERIMENT) {
+            return Err(format!("it names no {EXPERIMENT}"));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a capture can be of so many frames, so far apart.
+pub(super) fn check_frames(frames: usize, step: f64) -> Result<(), String> {
+    if frames == 0 || frames > MAX_FRAMES || !step.is_finite() {
+        return Err(format!("frames must be 1 to {MAX_FRAMES}, and the step finite"));
+    }
+    Ok(())
+}
+
+/// Whether a path stays in the folder, links followed.
+fn inside(folder: &Path, file: &str) -> Result<(), String> {
+    let path = Path::new(file);
+    let plain = !file.is_empty() && path.components().all(|c| matches!(c, Component::Normal(_)));
+    let leads_out = || match (folder.join(path).canonicalize(), folder.canonicalize()) {
+        (Ok(file), Ok(folder)) => !file.starts_with(folder),
+        _ => false,
+    };
+    if !plain || leads_out() {
+        return Err(format!("the path '{file}' leads out of the capture"));
+    }
+    Ok(())
+}
+
+/// SHA-256 of a file, in hexadecimal.
+pub(super) fn hash_file(path: &Path) -> std::io::Result<String> {
+    let mut file = std::fs::File::open(path)?;
+    let mut hash = Sha256::new();
+    let mut part = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok(hex(&hash.finalize())),
+            n => hash.update(&part[..n]),
+        }
+    }
+}
+
+/// All files below a folder by their paths in it, links left out.
+pub(super) fn files_below(folder: &Path) -> std::io::Result<Vec<String>> {
+    let mut list = Vec::new();
+    let mut open = vec![String::new()];
+    while let Some(at) = open.pop() {
+        for entry in std::fs::read_dir(folder.join(&at))? {
+            let entry = entry?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let path = if at.is_empty() { name } else { format!("{at}/{name}") };
+            let kind = entry.file_type()?;
+            if kind.is_dir() {
+                open.push(path);
+            } else if kind.is_file() {
+                list.push(path);
+            }
+        }
+    }
+    list.sort();
+    Ok(list)
+}

@@ -1,0 +1,84 @@
+//! Captures: a picture with everything that is needed to make it again, in one folder that is whole or absent.
+
+mod list;
+mod manifest;
+mod parts;
+mod replay;
+mod scene_hash;
+mod take;
+
+pub use list::{Summary, list, sweep_partials};
+pub use manifest::{Image, Manifest, SCHEMA, SceneRecord};
+pub use parts::parts;
+pub use replay::{Difference, Replay, changes, replay};
+pub use scene_hash::scene_hash;
+pub use take::{Resource, What, free_name, take};
+
+use crate::experiment::Experiment;
+use crate::graph::load::Graph;
+use crate::lab::{Lab, LabError, Texels, Workspace};
+use crate::results::stats::{self, Stats};
+use crate::scene::Scene;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Where a capture keeps its graph and shaders.
+const SOURCES: &str = "graph";
+/// The experiment with nothing left to defaults.
+const EXPERIMENT: &str = "experiment.ron";
+/// What a capture says about itself.
+const MANIFEST: &str = "capture.json";
+
+fn failed(path: &Path, error: impl std::fmt::Display) -> LabError {
+    LabError::Request(format!("'{}': {error}", path.display()))
+}
+
+/// A capture's experiment, which runs from the capture's own sources.
+fn experiment_of(folder: &Path, manifest_name: &str) -> Result<Experiment, LabError> {
+    let mut experiment = Experiment::read(&folder.join(EXPERIMENT)).map_err(LabError::Input)?;
+    if Path::new(&experiment.graph).file_name() != Some(experiment.graph.as_ref()) {
+        return Err(failed(&folder.join(EXPERIMENT), "its graph must be a bare file name"));
+    }
+    experiment.graph = folder.join(SOURCES).join("passes").join(&experiment.graph).to_string_lossy().into_owned();
+    experiment.name = manifest_name.into();
+    Ok(experiment)
+}
+
+/// What rendering a capture gives.
+struct Rendered {
+    images: Vec<(Image, Texels)>,
+    frames: usize,
+    stats: Stats,
+}
+
+/// Renders a capture's experiment from the capture's sources; both taking and replaying one do this.
+fn render(
+    lab: &Lab,
+    folder: &Path,
+    experiment: &Experiment,
+    scene: Arc<Scene>,
+    (frames, step): (Option<usize>, f64),
+    wanted: impl FnOnce(&Graph) -> Result<Vec<Image>, LabError>,
+) -> Result<Rendered, LabError> {
+    let home = Workspace { root: folder.join(SOURCES), cache: lab.home.cache.clone() };
+    let lab = Lab { home, gpu: lab.gpu.clone() };
+    let mut chosen = Vec::new();
+    let (mut session, _) = lab.prepare(experiment, scene, |graph| {
+        chosen = wanted(graph)?;
+        Ok(chosen.iter().map(|i| i.texture.clone()).collect())
+    })?;
+    let frames = frames.unwrap_or(if step == 0.0 { session.settling_frames() } else { 1 });
+    let mut times = Vec::new();
+    for _ in 0..frames {
+        times.extend(session.frame(step)?);
+    }
+    times.extend(session.finish()?);
+    let warnings = session.failed_checks()?;
+    let mut images = Vec::new();
+    for image in chosen {
+        let texels = session.texels(&image.texture, image.mip, image.layer)?;
+        images.push((image, texels));
+    }
+    let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, 0, warnings);
+    Ok(Rendered { images, frames, stats })
+}

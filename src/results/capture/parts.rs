@@ -1,0 +1,36 @@
+//! The parts of the light that a capture holds.
+
+use super::{Manifest, SOURCES, failed};
+use crate::graph::load::{Folders, load};
+use crate::lab::{LabError, parts_of};
+use crate::metrics::Linear;
+use crate::results::picture;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The pictures of a capture that are parts of its light, by part: the linear picture, and what was kept beside it.
+///
+/// # Errors
+/// Its graph or a picture cannot be read; none of its pictures is a part.
+pub fn parts(folder: &Path, manifest: &Manifest) -> Result<BTreeMap<String, Linear>, LabError> {
+    if Path::new(&manifest.graph).file_name() != Some(manifest.graph.as_ref()) {
+        return Err(failed(folder, "its graph must be a bare file name"));
+    }
+    let sources = folder.join(SOURCES);
+    let folders = Folders { passes: sources.join("passes"), shaders: sources.join("shaders") };
+    let graph = load(&folders.passes.join(&manifest.graph), &folders).map_err(LabError::Input)?;
+    let mut parts = BTreeMap::new();
+    for (part, texture) in parts_of(&graph) {
+        let image = manifest
+            .images
+            .iter()
+            .find(|i| i.texture == texture && (i.mip, i.layer) == (0, 0) && i.file.ends_with(".exr"));
+        if let Some(image) = image {
+            parts.insert(part, picture::read_linear(&folder.join(&image.file))?.0);
+        }
+    }
+    if parts.is_empty() {
+        return Err(failed(folder, "it has no picture of a part of the light; capture again with --resource"));
+    }
+    Ok(parts)
+}

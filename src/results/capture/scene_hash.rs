@@ -1,0 +1,95 @@
+//! A scene's content as one number.
+
+use crate::files::hex;
+use crate::scene::{LightKind, Material, Scene};
+use sha2::{Digest, Sha256};
+
+/// SHA-256 over everything of a scene that can be seen: geometry, materials, textures, placement, motion, lights, sky.
+/// Names, cameras and warnings are left out.
+pub fn scene_hash(scene: &Scene) -> String {
+    let mut hash = Hash(Sha256::new());
+    hash.count(scene.meshes.len());
+    for mesh in &scene.meshes {
+        hash.bytes(bytemuck::cast_slice(&mesh.vertices));
+        hash.words(&mesh.indices);
+        let parts: Vec<u32> = mesh.submeshes.iter().flat_map(|p| [p.first_index, p.index_count, p.material]).collect();
+        hash.words(&parts);
+    }
+    hash.count(scene.materials.len());
+    for m in &scene.materials {
+        hash.floats(&m.base_color.to_array());
+        hash.floats(&m.emission.to_array());
+        hash.floats(&[m.metallic, m.roughness, m.alpha_cutoff, m.normal_scale]);
+        hash.words(&[u32::from(m.two_sided)]);
+        let textures = [m.base_color_texture, m.metallic_roughness_texture, m.normal_texture, m.emission_texture];
+        hash.words(&textures.map(|t| t.unwrap_or(u32::MAX)));
+    }
+    hash.count(scene.textures.len());
+    for texture in &scene.textures {
+        hash.words(&[texture.width, texture.height]);
+        hash.bytes(format!("{:?}", texture.format).as_bytes());
+        hash.count(texture.mips.len());
+        texture.mips.iter().for_each(|mip| hash.bytes(mip));
+    }
+    hash.count(scene.instances.len());
+    for instance in &scene.instances {
+        hash.words(&[instance.mesh]);
+        hash.floats(&instance.transform.to_cols_array());
+        let keys = instance.animation.as_ref().map_or(&[][..], |a| &a.keyframes);
+        hash.words(&[u32::from(instance.animation.as_ref().is_some_and(|a| a.repeat))]);
+        hash.count(keys.len());
+        for key in keys {
+            hash.floats(&[key.time]);
+            hash.floats(&key.translation.to_array());
+            hash.floats(&key.rotation.to_array());
+        }
+    }
+    hash.count(scene.lights.len());
+    for light in &scene.lights {
+        let (kind, inner, outer) = match light.kind {
+            LightKind::Directional => (0, 0.0, 0.0),
+            LightKind::Point => (1, 0.0, 0.0),
+            LightKind::Spot { inner, outer } => (2, inner, outer),
+        };
+        hash.words(&[kind, u32::from(light.shadow)]);
+        hash.floats(&[inner, outer]);
+        [light.color, light.position, light.direction].iter().for_each(|v| hash.floats(&v.to_array()));
+    }
+    // Those that differ from nearly all alone: of other scenes the hash is what it was before there were any.
+    let plain = Material::default().dielectric();
+    for (i, m) in (0u32..).zip(&scene.materials).filter(|(_, m)| m.dielectric() != plain) {
+        hash.words(&[i]);
+        hash.floats(&m.dielectric().to_array());
+    }
+    hash.floats(&scene.sky.to_array());
+    // Scenes without a picture keep the number that they had before there were any.
+    if let Some(environment) = &scene.environment {
+        let (width, height) = environment.picture.size();
+        hash.words(&[width, height]);
+        hash.bytes(bytemuck::cast_slice(environment.picture.texels()));
+        hash.floats(&[environment.rotation]);
+    }
+    hex(&hash.0.finalize())
+}
+
+/// Every list goes in with its length, so that no two scenes are the same bytes.
+struct Hash(Sha256);
+
+impl Hash {
+    fn count(&mut self, n: usize) {
+        self.0.update((n as u64).to_le_bytes());
+    }
+
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.count(bytes.len());
+        self.0.update(bytes);
+    }
+
+    fn words(&mut self, words: &[u32]) {
+        self.bytes(bytemuck::cast_slice(words));
+    }
+
+    fn floats(&mut self, floats: &[f32]) {
+        self.bytes(bytemuck::cast_slice(floats));
+    }
+}

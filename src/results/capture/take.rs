@@ -1,0 +1,230 @@
+//! Taking a capture.
+
+use super::manifest::{check_frames, files_below, hash_file};
+use super::{
+    EXPERIMENT, Image, MANIFEST, Manifest, Rendered, SCHEMA, SOURCES, SceneRecord, experiment_of, failed, render,
+    scene_hash,
+};
+use crate::experiment::{Experiment, checked_name, resolved_text};
+use crate::graph::link::Linked;
+use crate::graph::load::{Folders, Graph};
+use crate::graph::runs::generated;
+use crate::lab::{Lab, LabError, camera_of, no_texture};
+use crate::results::picture;
+use crate::scene::Scene;
+use crate::shader::ShaderCompiler;
+use crate::timers::{Rows, Timers, stamped};
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+/// A texture of the graph.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Resource {
+    /// Its name.
+    pub name: String,
+    /// Mip.
+    pub mip: u32,
+    /// Layer.
+    pub layer: u32,
+}
+
+/// What a capture holds beside the picture.
+#[derive(Clone, Debug, Default)]
+pub struct What {
+    /// Further textures.
+    pub resources: Vec<Resource>,
+    /// Frames to run, at least 1. When `None` as many as the graph takes to settle, or one where time goes on.
+    pub frames: Option<usize>,
+    /// Time from frame to frame, s.
+    pub step: f64,
+    /// The GPU's times to keep on a second picture, timers.png.
+    pub timers: Rows,
+}
+
+/// The first of `name`, `name-2`, `name-3` and so on that no capture in `folder` has.
+pub fn free_name(folder: &Path, name: &str) -> String {
+    let free = |n: &String| !folder.join(n).exists();
+    let numbered = (2u32..).map(|i| format!("{name}-{i}"));
+    std::iter::once(name.to_string()).chain(numbered).find(free).unwrap_or_else(|| name.to_string())
+}
+
+/// Renders an experiment afresh and keeps pictures, sources, settings and measurements in `folder/name`. Nothing is
+/// there before all of it is. `scene` is the scene as it was opened, or as the experiment has changed it.
+///
+/// # Errors
+/// A capture of that name exists; everything that can be wrong with the experiment; no room or permission.
+pub fn take(
+    lab: &Lab,
+    experiment: &Experiment,
+    scene: Arc<Scene>,
+    what: &What,
+    folder: &Path,
+    name: &str,
+) -> Result<PathBuf, LabError> {
+    let name = checked_name(name)?;
+    check_frames(what.frames.unwrap_or(1), what.step).map_err(LabError::Request)?;
+    let target = folder.join(&name);
+    if target.exists() {
+        return Err(exists(&target));
+    }
+    let (graph, linked, _) = lab.home.graph(&experiment.graph).map_err(LabError::Input)?;
+    std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
+    // The number says later whether the program that writes here still runs.
+    let prefix = format!(".{name}.partial-{}-", std::process::id());
+    let partial = tempfile::Builder::new().prefix(&prefix).tempdir_in(folder).map_err(|e| failed(folder, e))?;
+    let path = partial.path();
+
+    let graph_file =
+        write_sources(&graph, &linked, &lab.home.graph_path(&experiment.graph), &lab.home.folders(), path)?;
+    let scene = experiment.adapted(scene)?;
+    let camera = camera_of(experiment, &scene)?;
+    let mut resolved = experiment.clone();
+    resolved.graph.clone_from(&graph_file);
+    // From here on only what the capture holds is used, so that what is missing in it is missed now.
+    let text = resolved_text(&resolved, &graph.params, &camera, &scene, &path.join(EXPERIMENT))?;
+    write(&path.join(EXPERIMENT), text.as_bytes())?;
+    let resolved = experiment_of(path, &experiment.name)?;
+    let scene = resolved.adapted(scene)?;
+    let sha256 = scene_hash(&scene);
+    let scene_name = scene.name.clone();
+    let Rendered { images, frames, stats } =
+        render(lab, path, &resolved, scene, (what.frames, what.step), |graph| images_of(graph, &what.resources))?;
+    for (image, texels) in &images {
+        let file = path.join(&image.file);
+        let bytes = if image.file.ends_with(".png") { picture::png(texels)? } else { picture::exr(texels)? };
+        write(&file, &bytes)?;
+    }
+    if what.timers != Rows::None
+        && let Some((_, texels)) = images.iter().find(|i| i.0.file == "picture.png")
+    {
+        let medians = stats
+            .passes
+            .iter()
+            .filter_map(|p| Some((graph.passes.iter().position(|x| x.value.name.value == p.name)?, p.gpu_ms.median)));
+        let params = resolved.params_over(&graph.params)?;
+        let size = experiment.size.into();
+        let timers = Timers::new(what.timers, &graph, &params, &stats.device.name, size, &medians.collect::<Vec<_>>());
+        write(&path.join("timers.png"), &picture::png(&stamped(&lab.gpu, texels, &timers)?)?)?;
+    }
+    write(&path.join("stats.json"), &json(&stats)?)?;
+    let mut files = BTreeMap::new();
+    for file in files_below(path).map_err(|e| failed(path, e))? {
+        let hash = hash_file(&path.join(&file)).map_err(|e| failed(path, e))?;
+        files.insert(file, hash);
+    }
+    let manifest = Manifest {
+        schema: SCHEMA.into(),
+        version: stats.version.clone(),
+        device: stats.device.name.clone(),
+        driver: stats.device.driver.clone(),
+        when: humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string(),
+        experiment: experiment.name.clone(),
+        graph: graph_file,
+        scene: SceneRecord { spec: experiment.scene.clone(), name: scene_name, sha256 },
+        size: [experiment.size.0, experiment.size.1],
+        frames,
+        step: what.step,
+        images: images.into_iter().map(|i| i.0).collect(),
+        files,
+    };
+    write(&path.join(MANIFEST), &json(&manifest)?)?;
+    make_readable(path).map_err(|e| failed(path, e))?;
+    // A folder that is not empty is never replaced by renaming.
+    std::fs::rename(path, &target).map_err(|e| if target.exists() { exists(&target) } else { failed(&target, e) })?;
+    // The folder has another name now: there is nothing left to clean up.
+    let _ = partial.keep();
+    Ok(target)
+}
+
+fn exists(target: &Path) -> LabError {
+    failed(target, "there is a capture of that name; choose another")
+}
+
+fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, LabError> {
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(|e| LabError::Request(e.to_string()))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
+    crate::files::write_whole(path, bytes).map_err(|e| failed(path, e))
+}
+
+/// Temporary folders are private to their owner; captures are as readable as any other folder.
+fn make_readable(path: &Path) -> std::io::Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755))?;
+    }
+    let _ = path;
+    Ok(())
+}
+
+/// Writes the text of every file that the graph was read from and its shaders compiled from, where the program looks
+/// for them, and returns the name of the graph's file.
+fn write_sources(
+    graph: &Graph,
+    linked: &[Linked],
+    main: &Path,
+    folders: &Folders,
+    capture: &Path,
+) -> Result<String, LabError> {
+    let sources = capture.join(SOURCES);
+    let main_name = main.file_name().and_then(|n| n.to_str()).ok_or_else(|| failed(main, "it is no graph file"))?;
+    let mut wanted: BTreeMap<PathBuf, &str> = BTreeMap::new();
+    for (file, text) in graph.sources.texts() {
+        let name = match file == main {
+            true => Path::new(main_name),
+            false => file.strip_prefix(&folders.passes).unwrap_or(file),
+        };
+        if name.components().any(|c| !matches!(c, Component::Normal(_))) {
+            return Err(failed(file, "it lies outside the folder of graphs and cannot be captured; move it there"));
+        }
+        if wanted.insert(Path::new("passes").join(name), text).is_some_and(|other| other != text) {
+            return Err(failed(file, format!("an include has the name of the graph, '{main_name}'; rename one")));
+        }
+    }
+    // What the graph makes comes from its parameters. The files of other options go along: a capture can be varied.
+    let generated = generated(graph, &graph.params);
+    let compiler = ShaderCompiler::new(&folders.shaders, None);
+    let options = graph.params.list.iter().flat_map(|p| &p.files);
+    let others: Vec<_> = options.filter_map(|file| compiler.texts(file, &generated).ok()).collect();
+    let compiled = linked.iter().flat_map(|l| &l.stages).map(|s| &*s.texts);
+    for (name, text) in others.iter().chain(compiled).flatten().filter(|t| !generated.contains_key(t.0)) {
+        let include = Path::new("include").join(name);
+        let place = if folders.shaders.join(&include).is_file() { include } else { PathBuf::from(name) };
+        wanted.insert(Path::new("shaders").join(place), text);
+    }
+    // Graphs without shaders have an empty folder.
+    std::fs::create_dir_all(sources.join("shaders")).map_err(|e| failed(&sources, e))?;
+    for (file, text) in wanted {
+        write(&sources.join(file), text.as_bytes())?;
+    }
+    Ok(main_name.to_string())
+}
+
+/// The pictures of a capture: the graph's results, then what was asked for.
+fn images_of(graph: &Graph, resources: &[Resource]) -> Result<Vec<Image>, LabError> {
+    let result = |name: &Option<String>, file: &str| {
+        name.clone().map(|texture| Image { file: file.into(), texture, mip: 0, layer: 0 })
+    };
+    let mut images: Vec<Image> =
+        result(&graph.output, "picture.png").into_iter().chain(result(&graph.hdr, "picture.exr")).collect();
+    for r in resources {
+        if !graph.textures.iter().any(|t| t.0 == r.name) {
+            return Err(no_texture(graph, &r.name));
+        }
+        let part = |n: u32, what: &str| if n > 0 { format!("-{what}{n}") } else { String::new() };
+        let file = format!("resources/{}{}{}.exr", r.name, part(r.mip, "mip"), part(r.layer, "layer"));
+        if !images.iter().any(|i| i.file == file) {
+            images.push(Image { file, texture: r.name.clone(), mip: r.mip, layer: r.layer });
+        }
+    }
+    if images.is_empty() {
+        let message = format!("graph '{}' has neither `output` nor `hdr`; name a texture to capture", graph.name);
+        return Err(LabError::Request(message));
+    }
+    Ok(images)
+}

@@ -1,0 +1,5 @@
+//! What a frame leaves on disk: pictures, measurements, and folders with all that made them.
+
+pub mod capture;
+pub mod picture;
+pub mod stats;
