@@ -1,8 +1,8 @@
 //! Camera paths: cameras at times, and a smooth way between them.
 
+use crate::diagnostics::{Diagnostic, Items, Severity, Sources};
+use crate::experiment::ExperimentError;
 use crate::experiment::PlacedCamera;
-use crate::graph::source::{Diagnostic, Items, Severity, Sources};
-use crate::lab::LabError;
 use glam::Vec3;
 use serde::Deserialize;
 use std::path::Path;
@@ -146,7 +146,7 @@ fn parse(sources: &Sources, file: u32) -> Result<CameraPath, Vec<Diagnostic>> {
         return Err(errors);
     };
     let keys = parsed.keys.0;
-    let start = crate::graph::source::At { file, offset: 0 };
+    let start = crate::diagnostics::At { file, offset: 0 };
     if keys.is_empty() || keys.len() > MAX_KEYS {
         errors.push(sources.error(start, format!("a path has 1 to {MAX_KEYS} keys, this one has {}", keys.len())));
     }
@@ -167,12 +167,12 @@ fn parse(sources: &Sources, file: u32) -> Result<CameraPath, Vec<Diagnostic>> {
 ///
 /// # Errors
 /// A file that exists (without `overwrite`), a path that cannot be read back, no permission.
-pub fn write(path: &CameraPath, file: &Path, overwrite: bool) -> Result<(), LabError> {
-    let fail = |why: String| LabError::Request(format!("cannot write '{}': {why}", file.display()));
+pub fn write(path: &CameraPath, file: &Path, overwrite: bool) -> Result<(), ExperimentError> {
+    let fail = |why: String| ExperimentError::Request(format!("cannot write '{}': {why}", file.display()));
     let text = text(path);
     let mut sources = Sources::default();
     let number = sources.add(file, text.clone());
-    if parse(&sources, number).map_err(LabError::Input)? != *path {
+    if parse(&sources, number).map_err(ExperimentError::Input)? != *path {
         return Err(fail("it would not read back as it is".into()));
     }
     let written = match overwrite {
@@ -198,14 +198,14 @@ fn text(path: &CameraPath) -> String {
 ///
 /// # Errors
 /// There is a key at that time, the path is full, or the key's numbers are no camera.
-pub fn insert(path: &mut CameraPath, key: Key) -> Result<usize, LabError> {
-    key.check().map_err(LabError::Request)?;
+pub fn insert(path: &mut CameraPath, key: Key) -> Result<usize, ExperimentError> {
+    key.check().map_err(ExperimentError::Request)?;
     if path.keys.len() >= MAX_KEYS {
-        return Err(LabError::Request(format!("a path has at most {MAX_KEYS} keys")));
+        return Err(ExperimentError::Request(format!("a path has at most {MAX_KEYS} keys")));
     }
     let i = path.keys.partition_point(|k| k.time < key.time);
     if path.keys.get(i).is_some_and(|k| k.time == key.time) {
-        return Err(LabError::Request(format!("there is a key at {} s: remove it first", key.time)));
+        return Err(ExperimentError::Request(format!("there is a key at {} s: remove it first", key.time)));
     }
     path.keys.insert(i, key);
     Ok(i)
@@ -220,7 +220,7 @@ pub fn remove(path: &mut CameraPath, index: usize) -> Option<Key> {
 ///
 /// # Errors
 /// No such key, or there is one at that time; the path is as it was then.
-pub fn move_key(path: &mut CameraPath, index: usize, time: f64) -> Result<usize, LabError> {
-    let key = remove(path, index).ok_or_else(|| LabError::Request(format!("the path has no key {index}")))?;
+pub fn move_key(path: &mut CameraPath, index: usize, time: f64) -> Result<usize, ExperimentError> {
+    let key = remove(path, index).ok_or_else(|| ExperimentError::Request(format!("the path has no key {index}")))?;
     insert(path, Key { time, ..key }).inspect_err(|_| path.keys.insert(index, key))
 }

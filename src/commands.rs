@@ -31,7 +31,7 @@ mod sweep;
 mod view;
 mod voxels;
 
-use crate::excerpt::excerpt;
+use crate::diagnostics::excerpt::excerpt;
 use crate::lab::{Lab, LabError, Workspace};
 use crate::vulkan::{GpuOptions, list_devices};
 use clap::{Args, CommandFactory, Parser, Subcommand};

@@ -5,7 +5,7 @@
 pub mod camera_path;
 pub mod campaign;
 pub mod commands;
-pub mod excerpt;
+pub mod diagnostics;
 pub mod experiment;
 pub mod files;
 pub mod graph;

@@ -1,6 +1,6 @@
 //! Panics as errors: those of other people's readers, and what any of them said.
 
-use crate::excerpt::excerpt;
+use crate::diagnostics::excerpt::excerpt;
 use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};

@@ -39,7 +39,7 @@ const MAX_MEMORY: u64 = 2 << 30;
 /// Reads a file as the program would; what it says where it refuses it.
 fn read(kind: Kind, path: &Path, graph: &Graph) -> Result<(), String> {
     let told =
-        |errors: Vec<conelab::graph::source::Diagnostic>| errors.iter().map(ToString::to_string).collect::<String>();
+        |errors: Vec<conelab::diagnostics::Diagnostic>| errors.iter().map(ToString::to_string).collect::<String>();
     match kind {
         Kind::Scene => {
             let scene =

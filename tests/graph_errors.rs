@@ -1,9 +1,9 @@
 //! Wrong graphs, shaders and experiments: each test makes one mistake in files that are right, and compares everything
 //! that is said about it.
 
+use conelab::diagnostics::Diagnostic;
 use conelab::experiment::Experiment;
 use conelab::graph::plan::{PlanInput, plan};
-use conelab::graph::source::Diagnostic;
 use conelab::lab::{LabError, Workspace, any_device, environment, params_of};
 use conelab::scene::Scene;
 use conelab::vulkan::DeviceInfo;

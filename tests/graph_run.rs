@@ -764,7 +764,7 @@ fn raster_stages_targets_and_blending() {
         assert_eq!(*v, if at(i).0 < 16 { 0.0 } else { 1.0 }, "depth comparison at {:?}", at(i));
     }
     for layer in 0..3 {
-        let texels = conelab::results::picture::to_floats(&session.texels("stack", 0, layer).unwrap());
+        let texels = session.texels("stack", 0, layer).unwrap().floats();
         let expected: Vec<f32> = (0..64).map(|i| 10.0 + layer as f32 + (i % 8) as f32).collect();
         assert_eq!(texels.iter().map(|t| t[0]).collect::<Vec<_>>(), expected, "layer {layer}");
     }

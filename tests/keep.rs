@@ -4,10 +4,10 @@ mod common;
 
 use common::{conelab, device, fails, lab, root, scene, succeeds};
 use conelab::camera_path::{self, CameraPath, Key};
+use conelab::diagnostics::{At, Loc};
 use conelab::experiment::{CameraChoice, Experiment, LightChange, PlacedCamera, checked_name, write};
 use conelab::graph::load::{Folders, load};
 use conelab::graph::param::{Kind, Params};
-use conelab::graph::source::{At, Loc};
 use conelab::results::capture;
 use glam::{Mat4, Vec3};
 use proptest::prelude::*;
@@ -327,7 +327,7 @@ fn an_experiment_changes_the_light_of_its_scene() {
     read("    sky: (1, 2, 3),\n").unwrap().adapt_scene(&mut box_scene).unwrap();
     assert_eq!(box_scene.sky, Vec3::new(1.0, 2.0, 3.0));
 
-    let message = |found: Result<Experiment, Vec<conelab::graph::source::Diagnostic>>| match found {
+    let message = |found: Result<Experiment, Vec<conelab::diagnostics::Diagnostic>>| match found {
         Err(list) => project.tidy(&list.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")),
         Ok(e) => project.tidy(&e.adapt_scene(&mut before.clone()).unwrap_err().to_string()),
     };

@@ -425,7 +425,6 @@ fn no_voxel_is_lit_by_not_a_number() {
     let (mut session, _) = lab.prepare(&experiment, scene, |_| Ok(vec!["voxelRadiance".into()])).unwrap();
     session.frame(0.0).unwrap();
     let texels = session.texels("voxelRadiance", 0, 0).unwrap();
-    let wrong =
-        conelab::results::picture::to_floats(&texels).iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
+    let wrong = texels.floats().iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
     assert_eq!(wrong, 0, "voxels whose radiance is not finite");
 }

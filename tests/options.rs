@@ -4,10 +4,10 @@
 mod common;
 
 use common::{assert_clean, lab, root};
+use conelab::diagnostics::{At, Loc};
 use conelab::experiment::Experiment;
 use conelab::graph::load::load;
 use conelab::graph::param::{Kind, Param};
-use conelab::graph::source::{At, Loc};
 use conelab::lab::{Lab, LabError, Workspace};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -4,9 +4,9 @@
 mod common;
 
 use common::{assert_clean, copy, experiment, floats, lab, mean, root, scene};
+use conelab::diagnostics::{At, Loc};
 use conelab::experiment::{Experiment, PlacedCamera};
 use conelab::graph::run::{FrameTimes, Redo};
-use conelab::graph::source::{At, Loc};
 use conelab::lab::{Lab, Session};
 use conelab::scene::Scene;
 use std::collections::BTreeSet;

@@ -68,7 +68,7 @@ fn render(lab: &Lab, graph: &str, scene: &str, settings: &[(&str, &str)]) -> Res
     let mut experiment = common::experiment(scene, (48, 32), &[]);
     experiment.graph = graph.into();
     for (name, value) in settings {
-        let name = conelab::graph::source::Loc { value: (*name).to_string(), at: Default::default() };
+        let name = conelab::diagnostics::Loc { value: (*name).to_string(), at: Default::default() };
         experiment.params.push((name, (*value).to_string()));
     }
     let lights = ["display"].iter().chain(&LIGHT).map(|name| (*name).to_string()).collect();
@@ -81,7 +81,7 @@ fn render(lab: &Lab, graph: &str, scene: &str, settings: &[(&str, &str)]) -> Res
     wrong.extend(session.failed_checks()?.into_iter().filter(|check| check.contains("NaN")));
     // Contributions are not all shown: light itself is looked at too, and where it comes from.
     for name in LIGHT {
-        let light = conelab::results::picture::to_floats(&session.texels(name, 0, 0)?);
+        let light = session.texels(name, 0, 0)?.floats();
         let bad = light.iter().flat_map(|t| &t[..3]).filter(|v| !v.is_finite() || **v < 0.0).count();
         if bad > 0 {
             wrong.push(format!("{bad} numbers of '{name}' are negative or not finite"));

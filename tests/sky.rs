@@ -3,9 +3,9 @@
 mod common;
 
 use common::{assert_clean, experiment, lab, root, scene};
+use conelab::diagnostics::{At, Loc};
 use conelab::experiment::{EnvironmentChange, Experiment, write};
 use conelab::graph::run::Redo;
-use conelab::graph::source::{At, Loc};
 use conelab::lab::{Lab, Session};
 use conelab::measure::reference::{Goal, Reference, gather};
 use conelab::results::capture::scene_hash;

@@ -6,8 +6,8 @@
 mod common;
 
 use common::{assert_clean, device, experiment, lab, root};
+use conelab::diagnostics::{At, Loc};
 use conelab::experiment::Experiment;
-use conelab::graph::source::{At, Loc};
 use conelab::lab::{Lab, parts_of};
 use conelab::measure::reference::{Goal, Reference, gather};
 use conelab::metrics::{Linear, scores};

@@ -4,8 +4,8 @@ mod common;
 
 use common::closed_meshes::{placed, torus};
 use common::{assert_clean, copy, experiment, floats, lab, prepare, root, scene};
+use conelab::diagnostics::{At, Loc};
 use conelab::experiment::PlacedCamera;
-use conelab::graph::source::{At, Loc};
 use conelab::graph::table::{Cell, decode};
 use conelab::lab::{Lab, Session};
 use conelab::measure::oracle::{Score, Surfaces, compare, exact, read, triangles_of};

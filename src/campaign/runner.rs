@@ -1,8 +1,8 @@
 //! Points measured one after another, each kept as soon as it is finished, on a device that may be lost.
 
 use super::record::{File, Folder, Outcome, Record};
+use crate::diagnostics::Diagnostic;
 use crate::experiment::Experiment;
-use crate::graph::source::Diagnostic;
 use crate::lab::{Lab, LabError};
 use crate::measure::reference::{Gathered, Reference};
 use crate::measure::{Wanted, Warm};

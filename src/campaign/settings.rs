@@ -1,8 +1,8 @@
 //! What a point sets: parameters of the graph, and fields of the experiment.
 
+use crate::diagnostics::{At, Diagnostic, Entries, Loc, options};
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, check_size, in_folder, scene_path};
 use crate::graph::file::RawText;
-use crate::graph::source::{At, Diagnostic, Entries, Loc, options};
 use crate::lab::LabError;
 use serde::de::DeserializeOwned;
 use std::path::Path;

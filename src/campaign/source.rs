@@ -1,7 +1,7 @@
 //! Reading the files of campaigns: sweeps and suites.
 
+use crate::diagnostics::{At, Diagnostic, Loc, Severity, Sources};
 use crate::experiment::Experiment;
-use crate::graph::source::{At, Diagnostic, Loc, Severity, Sources};
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,9 @@
 //! What several commands let the command line change of an experiment.
 
 use crate::campaign::settings::named;
-use crate::excerpt::excerpt;
+use crate::diagnostics::excerpt::excerpt;
+use crate::diagnostics::{At, Loc};
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, PlacedCamera, check_size};
-use crate::graph::source::{At, Loc};
 use crate::lab::LabError;
 use crate::scene::Scene;
 use clap::Args;
@@ -110,7 +110,7 @@ fn parse_camera(text: &str) -> Result<CameraChoice, LabError> {
     if !text.trim_start().starts_with('(') {
         return Ok(CameraChoice::Named(text.into()));
     }
-    let placed: PlacedCamera = crate::graph::source::options().from_str(text).map_err(|e| {
+    let placed: PlacedCamera = crate::diagnostics::options().from_str(text).map_err(|e| {
         LabError::Request(format!("--camera: {e}; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)"))
     })?;
     Ok(CameraChoice::Placed(placed))

@@ -2,10 +2,10 @@
 
 use crate::campaign::bench::check_record;
 use crate::campaign::{stability, sweep};
+use crate::diagnostics::{Severity, Sources};
 use crate::experiment::Experiment;
 use crate::files::read_input_text;
 use crate::graph::file::GraphFile;
-use crate::graph::source::{Severity, Sources};
 use crate::lab::{LabError, Workspace, params_of};
 use crate::scene::SceneError;
 use clap::Args;
@@ -154,7 +154,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
     if wrong > 0 { Err(LabError::Request(format!("{wrong} errors"))) } else { Ok(()) }
 }
 
-fn check_experiment(home: &Workspace, file: &Path) -> Vec<crate::graph::source::Diagnostic> {
+fn check_experiment(home: &Workspace, file: &Path) -> Vec<crate::diagnostics::Diagnostic> {
     let experiment = match Experiment::read(file) {
         Ok(e) => e,
         Err(errors) => return errors,

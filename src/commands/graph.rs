@@ -1,11 +1,11 @@
 //! `conelab graph`.
 
 use crate::campaign::settings::named;
+use crate::diagnostics::nearest;
 use crate::experiment::Experiment;
 use crate::graph::outline::outline;
 use crate::graph::plan::{PlanInput, plan};
 use crate::graph::report;
-use crate::graph::source::nearest;
 use crate::graph::value::fill;
 use crate::lab::{LabError, Workspace, any_device, environment, params_of};
 use clap::Args;

@@ -155,7 +155,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
 
 /// Told where texels are no numbers.
 fn not_finite(texels: &Texels, name: &str) -> Option<String> {
-    let count = picture::to_floats(texels).iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
+    let count = texels.floats().iter().filter(|t| t.iter().any(|v| !v.is_finite())).count();
     (count > 0).then(|| format!("'{name}' has {count} texels that are NaN or infinite"))
 }
 

@@ -1,8 +1,8 @@
 //! An experiment's changes to the light of its scene.
 
+use super::ExperimentError;
 use super::{Experiment, LightChange};
-use crate::graph::source::{Diagnostic, Loc};
-use crate::lab::LabError;
+use crate::diagnostics::{Diagnostic, Loc};
 use crate::scene::{Light, LightKind, Scene, environment};
 use glam::Vec3;
 use std::path::Path;
@@ -14,7 +14,7 @@ impl Experiment {
     /// # Errors
     /// Lights that the scene does not have, and fields that a light of that kind does not have, with their places; a picture
     /// of the sky that cannot be read or is not there.
-    pub fn adapt_scene(&self, scene: &mut Scene) -> Result<(), LabError> {
+    pub fn adapt_scene(&self, scene: &mut Scene) -> Result<(), ExperimentError> {
         let mut errors = Vec::new();
         for (name, change) in &self.lights {
             let mut known = false;
@@ -30,10 +30,10 @@ impl Experiment {
             }
         }
         if !errors.is_empty() {
-            return Err(LabError::Input(errors));
+            return Err(ExperimentError::Input(errors));
         }
         scene.sky = self.sky.map_or(scene.sky, Vec3::from);
-        self.adapt_environment(scene).map_err(|error| LabError::Input(vec![error]))
+        self.adapt_environment(scene).map_err(|error| ExperimentError::Input(vec![error]))
     }
 
     fn adapt_environment(&self, scene: &mut Scene) -> Result<(), Diagnostic> {
@@ -60,7 +60,7 @@ impl Experiment {
     ///
     /// # Errors
     /// As [`Experiment::adapt_scene`].
-    pub fn adapted(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, LabError> {
+    pub fn adapted(&self, scene: Arc<Scene>) -> Result<Arc<Scene>, ExperimentError> {
         let name = scene.name.clone();
         let (lights, environment) = (scene.lights.clone(), scene.environment.clone());
         let mut light = Scene { name, lights, sky: scene.sky, environment, ..Scene::default() };

@@ -10,12 +10,22 @@ pub(crate) use read::{in_folder, scene_path};
 pub(crate) use write::{environment_text, placed_text};
 pub use write::{resolved_text, write};
 
+use crate::diagnostics::{At, Diagnostic, Loc, Sources};
 use crate::graph::param::Params;
-use crate::graph::source::{At, Loc, Sources};
-use crate::lab::LabError;
 use crate::scene::{Camera, MAX_COORDINATE, environment};
 use glam::Vec3;
 use serde::Deserialize;
+
+/// Why an experiment or a camera path cannot be used, changed or written.
+#[derive(Debug, thiserror::Error)]
+pub enum ExperimentError {
+    /// Mistakes in its file, with their places.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Input(Vec<Diagnostic>),
+    /// What was asked for and cannot be had.
+    #[error("{0}")]
+    Request(String),
+}
 
 /// The camera of a picture.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,7 +198,7 @@ impl Experiment {
     ///
     /// # Errors
     /// Unknown names and wrong values, all of them, with their places.
-    pub fn params_over(&self, defaults: &Params) -> Result<Params, LabError> {
+    pub fn params_over(&self, defaults: &Params) -> Result<Params, ExperimentError> {
         let mut params = defaults.clone();
         let mut errors = Vec::new();
         for (name, text) in &self.params {
@@ -196,7 +206,7 @@ impl Experiment {
                 errors.push(self.sources.error(name.at, message));
             }
         }
-        if errors.is_empty() { Ok(params) } else { Err(LabError::Input(errors)) }
+        if errors.is_empty() { Ok(params) } else { Err(ExperimentError::Input(errors)) }
     }
 }
 
@@ -218,9 +228,9 @@ const MAX_NAME: usize = 64;
 ///
 /// # Errors
 /// Empty, more than 64 bytes, or another character: the text for the user.
-pub fn checked_name(name: &str) -> Result<String, LabError> {
+pub fn checked_name(name: &str) -> Result<String, ExperimentError> {
     let name = name.trim().replace(' ', "-");
-    let wrong = |why: &str| LabError::Request(format!("'{name}' cannot be a name: {why}"));
+    let wrong = |why: &str| ExperimentError::Request(format!("'{name}' cannot be a name: {why}"));
     if name.is_empty() {
         return Err(wrong("it is empty"));
     }

@@ -3,7 +3,7 @@
 use super::{
     CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera, check_size,
 };
-use crate::graph::source::{Diagnostic, Entries, Loc, Severity, Sources};
+use crate::diagnostics::{Diagnostic, Entries, Loc, Severity, Sources};
 use glam::Vec3;
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};

@@ -1,11 +1,11 @@
 //! Writing experiments: only what differs from the defaults, and with the comments of a file that is replaced.
 
+use super::ExperimentError;
 use super::adapt::change_to;
 use super::spans::{self, Body, Edits};
 use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera};
+use crate::diagnostics::{At, Diagnostic, Loc};
 use crate::graph::param::Params;
-use crate::graph::source::{At, Diagnostic, Loc};
-use crate::lab::LabError;
 use crate::scene::Scene;
 use std::path::{Component, Path, PathBuf};
 
@@ -17,7 +17,7 @@ use std::path::{Component, Path, PathBuf};
 /// # Errors
 /// A file that exists (without `overwrite`), unknown parameters, values that cannot be read back, no permission; the
 /// old file is untouched then.
-pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite: bool) -> Result<(), LabError> {
+pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite: bool) -> Result<(), ExperimentError> {
     if !overwrite && path.exists() {
         return Err(exists(path));
     }
@@ -25,7 +25,7 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
     // A scene file is named from this folder, and looked up from it when the text is read back.
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)
-        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
+        .map_err(|e| ExperimentError::Request(format!("cannot write '{}': {e}", path.display())))?;
     let unchanged: Vec<(String, String)> = defaults.texts().collect();
     let wanted = Wanted {
         scene: scene_text(&experiment.scene, path),
@@ -45,7 +45,7 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
     };
     written.map_err(|e| match e.kind() {
         std::io::ErrorKind::AlreadyExists => exists(path),
-        _ => LabError::Request(format!("cannot write '{}': {e}", path.display())),
+        _ => ExperimentError::Request(format!("cannot write '{}': {e}", path.display())),
     })
 }
 
@@ -60,7 +60,7 @@ pub fn resolved_text(
     camera: &PlacedCamera,
     scene: &Scene,
     path: &Path,
-) -> Result<String, LabError> {
+) -> Result<String, ExperimentError> {
     let params = experiment.params_over(defaults)?;
     let mut resolved = experiment.clone();
     resolved.camera = CameraChoice::Placed(*camera);
@@ -87,8 +87,11 @@ pub fn resolved_text(
     Ok(text)
 }
 
-fn exists(path: &Path) -> LabError {
-    LabError::Request(format!("'{}' exists: choose another name, or ask for it to be overwritten", path.display()))
+fn exists(path: &Path) -> ExperimentError {
+    ExperimentError::Request(format!(
+        "'{}' exists: choose another name, or ask for it to be overwritten",
+        path.display()
+    ))
 }
 
 /// What the text must say.
@@ -107,15 +110,18 @@ fn read_back(
     defaults: &Params,
     path: &Path,
     text: &str,
-) -> Result<(), LabError> {
+) -> Result<(), ExperimentError> {
     let wrong = |why: String| {
-        LabError::Request(format!("'{}' cannot be written: it would not read back as it is: {why}", path.display()))
+        ExperimentError::Request(format!(
+            "'{}' cannot be written: it would not read back as it is: {why}",
+            path.display()
+        ))
     };
     let first_message = |list: &[Diagnostic]| list.first().map_or(String::new(), |d| d.message.clone());
     let found = Experiment::from_text(path, text).map_err(|e| wrong(first_message(&e)))?;
     let values = match found.params_over(defaults) {
         Ok(params) => (params.values, params.off),
-        Err(LabError::Input(list)) => return Err(wrong(first_message(&list))),
+        Err(ExperimentError::Input(list)) => return Err(wrong(first_message(&list))),
         Err(e) => return Err(e),
     };
     let checks = [

@@ -2,7 +2,7 @@
 
 use super::file::{AliasDecl, Bind, Ex, NamedSampler, PassDecl, SamplerDecl};
 use super::load::Graph;
-use super::source::{At, Entries, Loc, Sources};
+use crate::diagnostics::{At, Entries, Loc, Sources};
 
 /// A name and what it stands for.
 #[derive(Clone, Debug)]
@@ -31,7 +31,7 @@ pub(super) fn join(
     aliases: Entries<Vec<Loc<AliasDecl>>>,
     samplers: Entries<NamedSampler>,
     sources: &Sources,
-) -> Vec<super::source::Diagnostic> {
+) -> Vec<crate::diagnostics::Diagnostic> {
     let mut errors = Vec::new();
     let mut new: Vec<Alias> = Vec::new();
     for (name, list) in aliases.0 {

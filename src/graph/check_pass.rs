@@ -5,7 +5,7 @@ use super::check::{Check, files_of};
 use super::file::{Command, Dispatch, Draw, PassDecl};
 use super::load::Graph;
 use super::param::Kind;
-use super::source::{At, Loc};
+use crate::diagnostics::{At, Loc};
 use crate::vulkan::{Format, Stage};
 
 impl Check<'_> {

@@ -3,7 +3,7 @@
 
 use super::expr::Expr;
 use super::param::{Kind, Params};
-use super::source::nearest;
+use crate::diagnostics::nearest;
 use rhai::Stmt;
 
 /// What a part of an expression stands for.

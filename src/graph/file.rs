@@ -2,8 +2,8 @@
 
 use super::expr::Expr;
 use super::param::Decl;
-use super::source::{Entries, Items, Loc, TwoOrThree, nested, offset_in_file};
 use super::table::TableDecl;
+use crate::diagnostics::{Entries, Items, Loc, TwoOrThree, nested, offset_in_file};
 use serde::Deserialize;
 
 /// A graph file.
@@ -393,7 +393,7 @@ impl<'de> Deserialize<'de> for PassItem {
         }
         let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
         // What is no struct at all is told as a pass that it is not.
-        let probe = super::source::options().from_str::<Probe>(raw.get_ron());
+        let probe = crate::diagnostics::options().from_str::<Probe>(raw.get_ron());
         match probe {
             Ok(Probe { passes: Some(_) }) => nested(raw).map(PassItem::Group),
             _ => nested(raw).map(|pass| PassItem::Pass(Box::new(pass))),

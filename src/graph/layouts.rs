@@ -4,8 +4,8 @@
 use super::file::{BufferSize, CheckDecl, Command, Dispatch, Draw, Path};
 use super::link::{Linked, Target};
 use super::load::Graph;
-use super::source::{Diagnostic, Loc, nearest};
 use super::table::Table;
+use crate::diagnostics::{Diagnostic, Loc, nearest};
 use crate::shader::layout::Scalar;
 use crate::shader::{Compiled, Layout};
 use std::collections::BTreeSet;

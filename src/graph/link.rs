@@ -6,8 +6,8 @@ use super::layouts::{Declared, Layouts};
 use super::load::Graph;
 use super::param::Kind;
 use super::runs::Runs;
-use super::source::{Diagnostic, Place, Severity};
 use super::unused::{Texts, unused};
+use crate::diagnostics::{Diagnostic, Place, Severity};
 use crate::shader::{Binding, Compiled, Generated, Layout, Resource, ShaderCompiler, Shape, Source};
 use crate::vulkan::Stage;
 use crate::vulkan::format::{Channels, Format};
@@ -407,7 +407,7 @@ impl Linker<'_> {
                 let known = known.chain(self.graph.aliases.iter().map(|a| a.name.as_str()));
                 let known =
                     known.chain(EXTERNALS.iter().map(|e| e.name)).chain(pass.bind.0.iter().map(|b| b.0.value.as_str()));
-                let help = super::source::nearest(name, known);
+                let help = crate::diagnostics::nearest(name, known);
                 fail(
                     self,
                     format!("'{name}' is {} that neither the graph nor the scene declares", describe(resource)),

@@ -7,10 +7,10 @@ use super::file::{
     VoxelsDecl, ungrouped,
 };
 use super::param::{OFF, Param, Params};
-use super::source::{At, Diagnostic, Loc, Place, Severity, Sources};
 use super::table::TableDecl;
 use super::value::{Named, ordered};
-use crate::excerpt::chain;
+use crate::diagnostics::excerpt::chain;
+use crate::diagnostics::{At, Diagnostic, Loc, Place, Severity, Sources};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 

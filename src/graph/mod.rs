@@ -24,7 +24,6 @@ pub mod run;
 pub mod runs;
 pub mod settle;
 mod sleep;
-pub mod source;
 pub mod table;
 pub mod transient;
 mod unused;

@@ -5,7 +5,7 @@ use super::link::Linked;
 use super::load::Graph;
 use super::param::{Kind, Params, Value};
 use super::plan::{Plan, PlanInput};
-use super::source::Diagnostic;
+use crate::diagnostics::Diagnostic;
 use crate::shader::Resource;
 use crate::vulkan::Stage;
 

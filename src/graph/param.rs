@@ -2,8 +2,8 @@
 
 use super::expr::{Env, Var};
 use super::file::Ex;
-use super::source::{Entries, Loc, nearest, options};
 use super::value::{Named, members as members_of};
+use crate::diagnostics::{Entries, Loc, nearest, options};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fmt::Write;

@@ -7,9 +7,9 @@ use super::link::{Bound, BoundCase, Linked, Target};
 use super::load::Graph;
 use super::param::{Params, Value};
 use super::settle::Settling;
-use super::source::{At, Diagnostic};
 use super::transient::Transient;
 use super::usage::{Res, Use, UseKind, merge};
+use crate::diagnostics::{At, Diagnostic};
 use crate::shader::Resource;
 use crate::vulkan::{DeviceInfo, Format, Stage, vk};
 use std::collections::BTreeMap;
@@ -454,7 +454,7 @@ impl Planner<'_> {
             if !written && self.input.wanted.contains(&name) {
                 let writes =
                     format!("nothing writes '{name}' when these passes are off: {}", self.input.params.off.join(", "));
-                self.errors.push(Diagnostic::error(super::source::Place::default(), writes));
+                self.errors.push(Diagnostic::error(crate::diagnostics::Place::default(), writes));
             }
         }
     }

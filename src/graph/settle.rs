@@ -5,8 +5,8 @@ use super::live::parts;
 use super::load::Graph;
 use super::plan::{BufferPlan, Step, TexturePlan};
 use super::report::resource_name;
-use super::source::{At, Diagnostic};
 use super::usage::{Res, Use};
+use crate::diagnostics::{At, Diagnostic};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Steps that rest together.

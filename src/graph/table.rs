@@ -2,7 +2,7 @@
 
 use super::file::Path;
 use super::layouts::Layouts;
-use super::source::{At, Diagnostic, Items, Loc, nearest};
+use crate::diagnostics::{At, Diagnostic, Items, Loc, nearest};
 use crate::shader::Layout;
 use crate::shader::layout::Scalar;
 use serde::Deserialize;
@@ -324,7 +324,7 @@ mod tests {
     use super::*;
 
     fn table(text: &str) -> Table {
-        crate::graph::source::options().from_str::<TableDecl>(text).unwrap().by_bytes().unwrap()
+        crate::diagnostics::options().from_str::<TableDecl>(text).unwrap().by_bytes().unwrap()
     }
 
     const PAIRS: &str = r#"(buffer: "b", rows: 1, start: 8, stride: 16, title: "t", help: "h", columns: [

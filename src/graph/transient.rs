@@ -4,8 +4,8 @@
 use super::load::Graph;
 use super::plan::{BufferPlan, Step, TexturePlan};
 use super::report::resource_name;
-use super::source::Diagnostic;
 use super::usage::{Res, Use};
+use crate::diagnostics::Diagnostic;
 
 /// When a transient resource holds something.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::file::CheckDecl;
 use super::load::Graph;
-use super::source::{At, Diagnostic, Severity};
+use crate::diagnostics::{At, Diagnostic, Severity};
 use crate::shader::module_include;
 use std::collections::{BTreeMap, HashSet};
 use std::sync::Arc;

@@ -2,8 +2,8 @@
 
 use super::load::Graph;
 use super::plan::Plan;
-use super::source::Diagnostic;
 use super::transient::begins;
+use crate::diagnostics::Diagnostic;
 use crate::vulkan::vk;
 use vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stages};
 

@@ -4,7 +4,7 @@ use super::expr::{Env, Var};
 use super::file::{Ex, ValueDecl};
 use super::load::{BUILTIN_VARIABLES, Graph, is_identifier};
 use super::param::{Params, Value};
-use super::source::{At, Diagnostic, Loc, Sources};
+use crate::diagnostics::{At, Diagnostic, Loc, Sources};
 use std::fmt::Write;
 
 /// A named value.

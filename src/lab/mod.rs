@@ -7,17 +7,22 @@ mod materials;
 mod parts;
 mod scene;
 mod sky;
+mod texels;
 mod variables;
 mod view;
 mod workspace;
 
 pub use parts::parts_of;
 pub use scene::SceneGpu;
+pub use texels::Texels;
 pub use variables::{environment, values_of};
 pub use view::Viewpoint;
 pub use workspace::{Loaded, Workspace};
 
-use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
+use crate::diagnostics::{Diagnostic, nearest};
+use crate::experiment::{
+    ExperimentError, {CameraChoice, Experiment, PlacedCamera},
+};
 use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
 use crate::graph::hot_reload::Parts;
 use crate::graph::layouts::Layouts;
@@ -27,12 +32,11 @@ use crate::graph::param::{Params, Value};
 use crate::graph::plan::{Plan, PlanInput, plan};
 use crate::graph::run::{FrameTimes, Program, Redo};
 use crate::graph::runs::runs;
-use crate::graph::source::{Diagnostic, nearest};
 use crate::graph::table::Table;
 use crate::graph::usage::Res;
 use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
-use crate::vulkan::{Buffer, DeviceInfo, Features, Format, Gpu, GpuOptions, VulkanError};
+use crate::vulkan::{Buffer, DeviceInfo, Features, Gpu, GpuOptions, VulkanError};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -56,6 +60,15 @@ pub enum LabError {
     /// Anything else that the user asked for and cannot have.
     #[error("{0}")]
     Request(String),
+}
+
+impl From<ExperimentError> for LabError {
+    fn from(error: ExperimentError) -> LabError {
+        match error {
+            ExperimentError::Input(list) => LabError::Input(list),
+            ExperimentError::Request(text) => LabError::Request(text),
+        }
+    }
 }
 
 /// A device that runs experiments.
@@ -102,17 +115,6 @@ pub struct Session {
     /// Frames since anything but the camera changed.
     still_frames: u32,
     sent_params: bool,
-}
-
-/// The texels of one mip and layer of a texture.
-#[derive(Clone, Debug)]
-pub struct Texels {
-    /// Width, height, depth.
-    pub extent: [u32; 3],
-    /// Format.
-    pub format: Format,
-    /// Tightly packed.
-    pub bytes: Vec<u8>,
 }
 
 impl Lab {
@@ -228,7 +230,7 @@ fn traces_rays(linked: &[Linked], plan: &Plan) -> bool {
 /// # Errors
 /// Unknown names and wrong values, all of them, with their places.
 pub fn params_of(graph: &Graph, experiment: &Experiment) -> Result<Params, LabError> {
-    experiment.params_over(&graph.params)
+    Ok(experiment.params_over(&graph.params)?)
 }
 
 /// The camera of an experiment in its scene.

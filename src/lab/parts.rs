@@ -3,7 +3,6 @@
 use super::{LabError, Session};
 use crate::graph::load::Graph;
 use crate::metrics::Linear;
-use crate::results::picture;
 use std::collections::BTreeMap;
 
 /// The (part, texture) pairs of a graph; one without parts has its linear picture as `total`.
@@ -26,7 +25,7 @@ impl Session {
             let index = self.graph.textures.iter().position(|t| t.0 == texture);
             let made = index.is_some_and(|i| !self.program.plan.textures[i].usage.is_empty());
             if made && self.wanted.contains(&texture) {
-                parts.insert(part, picture::to_linear(&self.texels(&texture, 0, 0)?));
+                parts.insert(part, self.texels(&texture, 0, 0)?.linear());
             }
         }
         Ok(parts)

@@ -1,12 +1,12 @@
 //! The program's folders, and graphs read from them.
 
 use super::{LabError, environment, params_of};
+use crate::diagnostics::{Diagnostic, Place};
 use crate::experiment::Experiment;
 use crate::graph::link::{Linked, link};
 use crate::graph::load::{Folders, Graph, load};
 use crate::graph::param::{Kind, Params, Value};
 use crate::graph::runs::{Runs, runs};
-use crate::graph::source::{Diagnostic, Place};
 use crate::scene::Scene;
 use crate::shader::ShaderCompiler;
 use crate::vulkan::DeviceInfo;

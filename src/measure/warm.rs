@@ -54,7 +54,8 @@ impl Warm {
     /// # Errors
     /// All mistakes.
     pub fn check(&mut self, home: &Workspace, experiment: &Experiment) -> Result<(), LabError> {
-        experiment.params_over(&self.graph(home, &experiment.graph)?.graph.params).map(drop)
+        experiment.params_over(&self.graph(home, &experiment.graph)?.graph.params)?;
+        Ok(())
     }
 
     /// The reference of an experiment: from memory, from the disk, or gathered now; nothing where there is none and none

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// An error that ends the opening or writing of a scene.
 #[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "fields are what the texts above them show")]
 pub enum SceneError {
     /// The name is neither a built-in scene nor a file.
     #[error("no scene '{spec}': {hint}")]

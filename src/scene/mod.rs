@@ -43,17 +43,23 @@ pub(crate) use transform::origin_of;
 pub struct Scene {
     /// What the scene was opened as: a built-in's name or a file's stem.
     pub name: String,
+    /// Triangles, each mesh in a space of its own.
     pub meshes: Vec<Mesh>,
+    /// What submeshes are made of, by number.
     pub materials: Vec<Material>,
+    /// What materials refer to, by number.
     pub textures: Vec<Texture>,
+    /// Where meshes stand.
     pub instances: Vec<Instance>,
+    /// Lights without extent.
     pub lights: Vec<Light>,
+    /// Views by name; `default` is the one of a picture that names none.
     pub cameras: IndexMap<String, Camera>,
     /// Radiance of the sky: the same in every direction, or times that of the environment's picture.
     pub sky: Vec3,
     /// The sky as a picture.
     pub environment: Option<Environment>,
-    /// The median distance of what the scene's own camera sees, when it was opened [m]; 0: not known.
+    /// The median distance of what the scene's own camera sees, when it was opened, m; 0: not known.
     pub seen_distance: f32,
     /// What is not as its author meant it (missing files, dropped triangles, stand-ins); each names the file.
     pub warnings: Vec<String>,
@@ -63,28 +69,37 @@ pub struct Scene {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Vertex {
+    /// Model space, m.
     pub position: [f32; 3],
     /// Unit length.
     pub normal: [f32; 3],
     /// Unit length; w is the sign of the bitangent, `cross(normal, tangent) * w` (MikkTSpace).
     pub tangent: [f32; 4],
+    /// Where in textures; v grows downwards.
     pub uv: [f32; 2],
 }
 
 /// Indexed triangles in one model space, split into submeshes of one material each.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
+    /// As the file calls it.
     pub name: String,
+    /// In the order of the file.
     pub vertices: Vec<Vertex>,
+    /// Three a triangle, counter-clockwise from its front.
     pub indices: Vec<u32>,
+    /// Runs that cover all indices.
     pub submeshes: Vec<Submesh>,
 }
 
 /// A run of a mesh's indices that has one material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Submesh {
+    /// Where it begins, in indices.
     pub first_index: u32,
+    /// Three times its triangles.
     pub index_count: u32,
+    /// A number in [`Scene::materials`].
     pub material: u32,
 }
 
@@ -92,10 +107,12 @@ pub struct Submesh {
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct Material {
+    /// As the file calls it.
     #[serde(skip)]
     pub name: String,
     /// Linear RGB and alpha.
     pub base_color: Vec4,
+    /// 0 for what is no metal, to 1.
     pub metallic: f32,
     /// Perceptual roughness, 0 to 1.
     pub roughness: f32,
@@ -109,13 +126,17 @@ pub struct Material {
     pub emission: Vec3,
     /// A fragment whose alpha is below this is not there; 0 = opaque, no mask.
     pub alpha_cutoff: f32,
+    /// Whether its back is lit as its front is.
     pub two_sided: bool,
     /// Scales the x and y of the normal map.
     pub normal_scale: f32,
+    /// RGB is decoded from sRGB; alpha is for the mask.
     pub base_color_texture: Option<u32>,
     /// G = roughness, B = metallic.
     pub metallic_roughness_texture: Option<u32>,
+    /// In the space of the tangents.
     pub normal_texture: Option<u32>,
+    /// RGB, decoded from sRGB.
     pub emission_texture: Option<u32>,
 }
 
@@ -159,9 +180,13 @@ impl Material {
 /// An image with its mip levels, ready for upload.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
+    /// The file, or what it is in one.
     pub name: String,
+    /// Texels of level 0.
     pub width: u32,
+    /// Texels of level 0.
     pub height: u32,
+    /// What its bytes are.
     pub format: TextureFormat,
     /// Level 0 first, tightly packed rows; the full chain unless the file stored a shorter one.
     pub mips: Vec<Vec<u8>>,
@@ -170,17 +195,29 @@ pub struct Texture {
 /// Texel formats. `Srgb` ones are decoded to linear when sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum TextureFormat {
+    /// Four bytes, sRGB.
     Rgba8Srgb,
+    /// Four bytes, linear.
     Rgba8Unorm,
+    /// BC1 (DXT1): RGB and a bit of alpha in 8 bytes a block, sRGB.
     Bc1Srgb,
+    /// BC1 (DXT1): RGB and a bit of alpha in 8 bytes a block, linear.
     Bc1Unorm,
+    /// BC2 (DXT3): RGB and four bits of alpha, sRGB.
     Bc2Srgb,
+    /// BC2 (DXT3): RGB and four bits of alpha, linear.
     Bc2Unorm,
+    /// BC3 (DXT5): RGB and smooth alpha, sRGB.
     Bc3Srgb,
+    /// BC3 (DXT5): RGB and smooth alpha, linear.
     Bc3Unorm,
+    /// BC4: one channel, linear.
     Bc4Unorm,
+    /// BC5: two channels, as of normals, linear.
     Bc5Unorm,
+    /// BC7: RGBA, sRGB.
     Bc7Srgb,
+    /// BC7: RGBA, linear.
     Bc7Unorm,
 }
 
@@ -211,9 +248,13 @@ impl TextureFormat {
 /// A mesh placed in the world, at rest or moving.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
+    /// As the file calls it.
     pub name: String,
+    /// A number in [`Scene::meshes`].
     pub mesh: u32,
+    /// From model to world, in the pose at rest.
     pub transform: Mat4,
+    /// How it moves, if it does.
     pub animation: Option<Animation>,
 }
 
@@ -231,18 +272,24 @@ pub struct Animation {
 pub struct Keyframe {
     /// Seconds.
     pub time: f32,
+    /// m.
     pub translation: Vec3,
+    /// Around the origin of the world, before the translation.
     pub rotation: Quat,
 }
 
 /// Where a light's energy comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
+    /// A sun: parallel rays.
     Directional,
+    /// A lamp that shines evenly in all directions.
     Point,
     /// Half-angles in radians: full strength inside `inner`, none outside `outer`.
     Spot {
+        /// Radians.
         inner: f32,
+        /// Radians, above `inner`.
         outer: f32,
     },
 }
@@ -250,21 +297,28 @@ pub enum LightKind {
 /// A light without extent. Emitting surfaces are materials instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
+    /// By which experiments change it.
     pub name: String,
+    /// Sun, lamp or spot.
     pub kind: LightKind,
     /// Irradiance on a facing surface (W/m^2) for a directional light, radiant intensity (W/sr) otherwise.
     pub color: Vec3,
+    /// World, m; without meaning for a directional light.
     pub position: Vec3,
     /// Unit length, the way the light travels.
     pub direction: Vec3,
+    /// Whether it has a shadow map.
     pub shadow: bool,
 }
 
 /// A perspective view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
+    /// World, m.
     pub eye: Vec3,
+    /// What is in the middle of the picture; world, m.
     pub target: Vec3,
+    /// What is up in the picture; need not be at right angles to the view.
     pub up: Vec3,
     /// Vertical field of view in degrees.
     pub fov_y: f32,

@@ -2,8 +2,8 @@
 
 use super::access::decorated;
 use super::reflect::{Interface, MAX_BINDINGS, reflect};
-use crate::excerpt::excerpt;
-use crate::graph::source::{Diagnostic, Place, nearest};
+use crate::diagnostics::excerpt::excerpt;
+use crate::diagnostics::{Diagnostic, Place, nearest};
 use crate::vulkan::Stage;
 use sha2::{Digest, Sha256};
 use std::cell::{Cell, RefCell};
@@ -230,7 +230,7 @@ impl ShaderCompiler {
             chain.push(name.to_string());
             count.set(count.get() + 1);
             if depth > MAX_DEPTH || count.get() > MAX_INCLUDES {
-                let names = crate::excerpt::chain(&chain);
+                let names = crate::diagnostics::excerpt::chain(&chain);
                 return Err(format!("{TOO_MANY} ({MAX_INCLUDES} at most, {MAX_DEPTH} of them nested): {names}"));
             }
             match texts.get(name) {

@@ -256,6 +256,7 @@ impl Drop for FrameSlot {
 
 // SAFETY (all `unsafe` below): the command buffer is in the recording state for as long as a `Commands` exists, and
 // every handle comes from an owner that callers keep alive until the frame has finished.
+#[allow(clippy::undocumented_unsafe_blocks, reason = "one reason for all, above")]
 impl Commands<'_> {
     /// Records, submits and waits.
     ///

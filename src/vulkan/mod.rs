@@ -3,6 +3,8 @@
 //! It knows no graph, no scene and no voxels. All `unsafe` of the crate is here; every handle is owned by a type
 //! that keeps the [`Gpu`] alive and destroys the handle when dropped.
 
+#![allow(unsafe_code, reason = "Vulkan is called here and nowhere else")]
+
 mod command;
 mod debug;
 pub mod format;

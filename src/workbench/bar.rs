@@ -2,9 +2,9 @@
 
 use super::engine::Order;
 use super::{Workbench, edit, ron_files, short, side_of};
+use crate::diagnostics::Entries;
 use crate::experiment::Experiment;
 use crate::graph::file::RawText;
-use crate::graph::source::Entries;
 use crate::timers::Rows;
 use egui::Ui;
 

@@ -178,7 +178,7 @@ impl Workbench {
             "" => self.name.clone(),
             name => name.to_string(),
         };
-        let checked = checked_name(&name).and_then(|name| match self.missing_scene() {
+        let checked = checked_name(&name).map_err(LabError::from).and_then(|name| match self.missing_scene() {
             Some(missing) => Err(LabError::Request(format!("not captured: {missing}"))),
             None => Ok(name),
         });

@@ -2,7 +2,7 @@
 
 use super::engine::Order;
 use super::{Workbench, editor};
-use crate::graph::source::{Diagnostic, Severity};
+use crate::diagnostics::{Diagnostic, Severity};
 use egui::{Align2, Color32, Rect, RichText, Ui};
 
 /// What the words of an engine end with whose device is to be opened anew.

@@ -43,9 +43,9 @@ mod view;
 mod watch;
 mod zoom;
 
+use crate::diagnostics::Diagnostic;
 use crate::experiment::Experiment;
 use crate::graph::run::Redo;
-use crate::graph::source::Diagnostic;
 use crate::lab::{LabError, Workspace};
 use crate::scene::Scene;
 use crate::vulkan::{Buffer, DeviceId, GpuOptions, PixelSource, Pixels};

@@ -1,9 +1,9 @@
 //! The desired state: what the window wants to see. The engine always works towards the latest request.
 
 use crate::camera_path::CameraPath;
+use crate::diagnostics::{At, Loc, Sources};
 use crate::experiment::{CameraChoice, Experiment, PlacedCamera};
 use crate::graph::run::Redo;
-use crate::graph::source::{At, Loc, Sources};
 use crate::lab::Session;
 use crate::scene::{Camera, Light, Scene};
 use crate::vulkan::DeviceId;

@@ -1,8 +1,8 @@
 //! Saving: experiments and captures, as the window's state says.
 
 use super::request::{LightState, RenderRequest, SideRequest};
+use crate::diagnostics::{At, Loc};
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, LightChange};
-use crate::graph::source::{At, Loc};
 use crate::lab::{Lab, LabError};
 use crate::results::capture::{self, Resource, What};
 use crate::scene::{Light, LightKind, Scene};

@@ -251,7 +251,7 @@ mod tests {
     fn table() -> (Table, Vec<Vec<Cell>>) {
         let text = r#"(buffer: "b", rows: 0, start: 4, stride: 16, title: "t", help: "h", columns: [
             (name: "cone", at: 0, as: uint), (name: "at", at: 4, as: vec3, unit: "m")])"#;
-        let decl: crate::graph::table::TableDecl = crate::graph::source::options().from_str(text).unwrap();
+        let decl: crate::graph::table::TableDecl = crate::diagnostics::options().from_str(text).unwrap();
         let table = decl.by_bytes().unwrap();
         let rows: [(u32, [f32; 3]); 3] = [(2, [0.1, 1.0, 2.0]), (0, [3.0, 1e-7, -4.0]), (2, [f32::NAN, 0.0, 7.0])];
         let mut bytes = 3_u32.to_ne_bytes().to_vec();

@@ -102,7 +102,7 @@ pub fn experiment(scene: &str, size: (u32, u32), params: &[(&str, &str)]) -> Exp
     experiment.scene = scene.into();
     experiment.size = size;
     for (name, value) in params {
-        let name = conelab::graph::source::Loc { value: (*name).to_string(), at: Default::default() };
+        let name = conelab::diagnostics::Loc { value: (*name).to_string(), at: Default::default() };
         experiment.params.push((name, (*value).to_string()));
     }
     experiment
@@ -128,7 +128,7 @@ pub fn assert_clean(lab: &Lab) {
 /// Texels of a texture, four floats each.
 #[track_caller]
 pub fn floats(session: &mut Session, name: &str, mip: u32) -> Vec<[f32; 4]> {
-    conelab::results::picture::to_floats(&session.texels(name, mip, 0).unwrap())
+    session.texels(name, mip, 0).unwrap().floats()
 }
 
 /// Mean of the red, green and blue of some texels.

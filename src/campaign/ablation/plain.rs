@@ -1,7 +1,7 @@
 //! Which parameters have a plain value that the experiment does not have already.
 
+use crate::diagnostics::nearest;
 use crate::graph::param::{Param, Params, Value};
-use crate::graph::source::nearest;
 use crate::lab::LabError;
 
 /// A parameter at its plain value.

@@ -142,7 +142,7 @@ impl<'a> Evaluator<'a> {
             }
             session.finish()?;
         }
-        let light = crate::results::picture::to_linear(&session.texels(&self.texture, 0, 0)?);
+        let light = session.texels(&self.texture, 0, 0)?.linear();
         let error = match s.metric {
             Metric::Relmse => relmse(&light, self.expected)?,
             Metric::Structure => structure(&light, self.expected)?,

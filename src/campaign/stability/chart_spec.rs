@@ -2,8 +2,8 @@
 
 use super::file::{Case, Method};
 use crate::campaign::settings::Setting;
+use crate::diagnostics::{At, Entries, Loc};
 use crate::graph::file::RawText;
-use crate::graph::source::{At, Entries, Loc};
 use serde::Deserialize;
 
 /// Most values that are timed for one method.

@@ -132,7 +132,7 @@ pub type CaseRecord = Record<About, Measured>;
 /// `stability.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// [`SCHEMA`].
+    /// `SCHEMA`.
     pub schema: String,
     /// Program version.
     pub version: String,

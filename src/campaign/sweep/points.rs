@@ -3,8 +3,8 @@
 use super::axis::Choice;
 use crate::campaign::points::Labels;
 use crate::campaign::settings::{Setting, apply, lines};
+use crate::diagnostics::Diagnostic;
 use crate::experiment::Experiment;
-use crate::graph::source::Diagnostic;
 use crate::lab::LabError;
 use crate::measure::Frames;
 use crate::measure::reference::ALL_BOUNCES;

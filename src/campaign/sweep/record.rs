@@ -23,7 +23,7 @@ const MAX_FILE: u64 = 4 << 20;
 /// `sweep.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
-    /// [`MANIFEST_SCHEMA`].
+    /// `MANIFEST_SCHEMA`.
     pub schema: String,
     /// Name of the sweep.
     pub name: String,

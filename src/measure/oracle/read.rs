@@ -4,7 +4,6 @@ use super::grid::Grid;
 use crate::graph::file::VoxelsDecl;
 use crate::graph::load::Graph;
 use crate::lab::{LabError, Session, Texels};
-use crate::results::picture;
 use glam::Vec3;
 
 /// A cell that a voxelizer filled.
@@ -89,7 +88,7 @@ fn texels_at(session: &mut Session, name: &str, before: usize, numbers: &[u32]) 
     let place = |n: &u32| (before + *n as usize) * size;
     let bytes = numbers.iter().filter_map(|n| all.bytes.get(place(n)..place(n) + size)).flatten();
     let some = Texels { extent: [numbers.len() as u32, 1, 1], format: all.format, bytes: bytes.copied().collect() };
-    Ok(picture::to_floats(&some))
+    Ok(some.floats())
 }
 
 /// The grid that a buffer of borders describes; see [`VoxelsDecl::borders`].

@@ -4,7 +4,6 @@ use super::store::{self, Sums};
 use super::{Reference, key};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
-use crate::results::picture::to_floats;
 use crate::scene::Scene;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -14,7 +13,7 @@ use std::time::{Duration, Instant};
 /// When a reference is good enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// So many samples of every pixel, rounded up to a multiple of [`store::BLOCK`].
+    /// So many samples of every pixel, rounded up to a multiple of `store::BLOCK`.
     Samples(u64),
     /// Until relMSE of the total against the converged reference, as estimated from its halves, is at most this.
     Noise(f64),
@@ -174,7 +173,7 @@ fn frame(lab: &Lab, session: &mut Session, sums: &mut Sums, parts: &[String], sa
     for part in parts {
         for half in 0..2 {
             let texels = session.texels(&store::sum_texture(part), 0, half)?;
-            sums.add(part, half as usize, &to_floats(&texels));
+            sums.add(part, half as usize, &texels.floats());
         }
     }
     sums.samples += samples;

@@ -100,7 +100,7 @@ fn compare(folder: &Path, image: &Image, texels: &Texels) -> Option<Difference> 
     let of = texels.extent.iter().product::<u32>() as usize;
     let (new, channels) = match image.file.ends_with(".png") {
         true => (picture::rgb8(texels).into_iter().map(f32::from).collect::<Vec<f32>>(), 3),
-        false => (picture::to_floats(texels).into_flattened(), 4),
+        false => (texels.floats().into_flattened(), 4),
     };
     let mut difference = Difference { file: image.file.clone(), texels: 0, of, largest: 0.0, broken: None };
     let old = match picture::read(&path, (width, height * depth)) {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use glam::{Mat4, Vec3};
 use ron::extensions::Extensions;
 
-use crate::excerpt::excerpt;
+use crate::diagnostics::excerpt::excerpt;
 use crate::files::read_input_text;
 
 use super::limits::check_extent;

@@ -12,6 +12,7 @@ use crate::scene::Mesh;
 pub enum Side {
     /// From where its corners turn counter-clockwise.
     Front,
+    /// From where they turn clockwise.
     Back,
 }
 

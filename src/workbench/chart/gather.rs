@@ -100,6 +100,8 @@ fn work(job: Job, mut progress: impl FnMut(Gathered) -> ControlFlow<()>) -> (Res
     };
     let lit = job.experiment.adapted(job.scene);
     let goal = Goal::Samples(job.samples);
-    let result = lit.and_then(|scene| gather(&lab, &job.experiment, &scene, job.bounces, goal, &mut progress));
+    let result = lit
+        .map_err(LabError::from)
+        .and_then(|scene| gather(&lab, &job.experiment, &scene, job.bounces, goal, &mut progress));
     (result.map(|r| r.samples), lab.gpu.messages())
 }

@@ -4,7 +4,7 @@ use super::super::builder::{Done, Job, Key};
 use super::super::report::{GraphInfo, PassUses, Report};
 use super::super::request::SideRequest;
 use super::Run;
-use crate::graph::source::{Diagnostic, Place};
+use crate::diagnostics::{Diagnostic, Place};
 use crate::graph::usage::Res;
 use crate::lab::{LabError, Loaded, Session, environment, params_of};
 use crate::vulkan::{DeviceInfo, VulkanError};

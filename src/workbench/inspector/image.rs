@@ -1,7 +1,6 @@
 //! Texels as a picture, and the values behind it.
 
 use crate::lab::Texels;
-use crate::results::picture;
 use crate::vulkan::Format;
 use crate::vulkan::format::Channels;
 use crate::workbench::request::InspectTarget;
@@ -62,7 +61,7 @@ const INFINITE: [u8; 4] = [0, 255, 255, 255];
 impl Decoded {
     /// Decodes.
     pub fn new(target: InspectTarget, texels: Texels) -> Decoded {
-        let floats = picture::to_floats(&texels);
+        let floats = texels.floats();
         let [width, height, depth] = texels.extent;
         Decoded { target, size: [width, height * depth], format: texels.format, floats, bytes: texels.bytes }
     }

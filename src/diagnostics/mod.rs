@@ -1,8 +1,10 @@
 //! RON files with positions: every value that can be wrong remembers where it stands, and one wrong item does not hide
 //! the mistakes in the others.
 
-use crate::excerpt::{excerpt, excerpt_at};
+pub mod excerpt;
+
 use crate::files::read_input_text;
+use excerpt::{excerpt, excerpt_at};
 use ron::extensions::Extensions;
 use serde::de::{Deserialize, Deserializer, Error as _};
 use std::cell::RefCell;

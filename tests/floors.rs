@@ -1,0 +1,115 @@
+//! Knowledge flows one way: every module of `src/` stands on a floor, and names nothing of a floor above.
+
+mod common;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// From the ground up; those of one floor that are named together may know each other.
+const FLOORS: [&[&str]; 11] = [
+    &["files", "diagnostics", "panics", "metrics"],
+    &["vulkan"],
+    &["scene"],
+    &["shader"],
+    &["graph"],
+    &["experiment", "camera_path"],
+    &["lab"],
+    &["results", "timers"],
+    &["measure"],
+    &["campaign"],
+    &["workbench", "window", "screenshot"],
+];
+
+/// On top of all.
+const TOP: [&str; 3] = ["commands", "main", "lib"];
+
+/// Neighbours that know nothing of each other although one floor is above the other's.
+const STRANGERS: [(&str, &str); 1] = [("scene", "vulkan")];
+
+/// Who draws with the window's library: the window, what paints it, and texts on pictures.
+const DRAWS: [&str; 5] = ["workbench", "window", "screenshot", "vulkan/painter.rs", "timers"];
+
+fn floor(room: &str) -> usize {
+    let found = FLOORS.iter().position(|rooms| rooms.contains(&room));
+    found.unwrap_or_else(|| {
+        assert!(TOP.contains(&room), "src/{room} has no floor: add it to the table, and to docs/architecture.md");
+        FLOORS.len()
+    })
+}
+
+/// Source files, by their path under `src/`.
+fn sources(folder: &Path, under: &str, list: &mut Vec<(String, String)>) {
+    for entry in std::fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let name = format!("{under}{}", entry.file_name().to_string_lossy());
+        if entry.path().is_dir() {
+            sources(&entry.path(), &format!("{name}/"), list);
+        } else if name.ends_with(".rs") {
+            let text = std::fs::read_to_string(entry.path()).unwrap();
+            // Tests of a file may look at anything.
+            let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default().to_string();
+            list.push((name, text));
+        }
+    }
+}
+
+/// The modules of the crate that a text names, by `crate::` and its groups.
+fn named(text: &str) -> BTreeSet<String> {
+    let word = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let code = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let mut found = BTreeSet::new();
+    for rest in code.split("crate::").skip(1) {
+        match rest.strip_prefix('{') {
+            None => drop(found.insert(word(rest))),
+            Some(group) => {
+                let group = group.split(';').next().unwrap_or_default();
+                let mut depth = 0;
+                for part in group.split_inclusive(['{', '}', ',']) {
+                    if depth == 0 {
+                        found.insert(word(part.trim_start()));
+                    }
+                    depth += part.matches('{').count() as i32 - part.matches('}').count() as i32;
+                }
+            }
+        }
+    }
+    found.retain(|w| !w.is_empty());
+    found
+}
+
+#[test]
+fn no_module_knows_what_stands_above_it() {
+    let mut list = Vec::new();
+    sources(&common::root().join("src"), "", &mut list);
+    assert!(list.len() > 200, "{} files", list.len());
+    let mut wrong = Vec::new();
+    for (file, text) in &list {
+        let room = file.split('/').next().unwrap().trim_end_matches(".rs");
+        for other in named(text).iter().filter(|o| o.as_str() != room) {
+            // A macro or a function of the crate's root is no room.
+            if !FLOORS.concat().contains(&other.as_str()) && !TOP.contains(&other.as_str()) {
+                continue;
+            }
+            let strangers = STRANGERS.iter().any(|(a, b)| (room, other.as_str()) == (a, b));
+            if floor(other) > floor(room) || strangers {
+                wrong.push(format!("src/{file} names {other}"));
+            }
+        }
+        floor(room);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn only_what_is_drawn_knows_the_windows_library() {
+    let mut list = Vec::new();
+    sources(&common::root().join("src"), "", &mut list);
+    let allowed = |file: &str| DRAWS.iter().any(|d| file.starts_with(d)) || file == "campaign/stability/sheet.rs";
+    let wrong: Vec<_> = list.iter().filter(|(f, t)| t.contains("egui") && !allowed(f)).map(|(f, _)| f).collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
+fn the_check_sees_groups_and_paths() {
+    let text = "use crate::{graph::{plan, run}, lab};\n// crate::window\nlet a = crate::files::read();";
+    assert_eq!(named(text).into_iter().collect::<Vec<_>>(), ["files", "graph", "lab"]);
+}
