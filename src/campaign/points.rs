@@ -61,10 +61,12 @@ pub struct SweepPoint {
     pub labels: Labels,
 }
 
+/// Opens a scene by name or path.
+pub type OpenScene<'a> = dyn Fn(&str) -> Result<Scene, LabError> + 'a;
+
 /// Makes points; scenes and graphs are opened and hashed once for all of them.
 pub struct PointBuilder<'a> {
-    home: &'a Workspace,
-    open: &'a dyn Fn(&str) -> Result<Scene, LabError>,
+    open: &'a OpenScene<'a>,
     scenes: HashMap<String, Arc<Scene>>,
     /// Scenes under changed light, by scene and light.
     lit: HashMap<String, (Arc<Scene>, String)>,
@@ -72,9 +74,9 @@ pub struct PointBuilder<'a> {
 }
 
 impl<'a> PointBuilder<'a> {
-    /// `open` opens a scene by name or path.
-    pub fn new(home: &'a Workspace, open: &'a dyn Fn(&str) -> Result<Scene, LabError>) -> PointBuilder<'a> {
-        PointBuilder { home, open, scenes: HashMap::new(), lit: HashMap::new(), graphs: HashMap::new() }
+    /// Without any scene yet.
+    pub fn new(open: &'a OpenScene<'a>) -> PointBuilder<'a> {
+        PointBuilder { open, scenes: HashMap::new(), lit: HashMap::new(), graphs: HashMap::new() }
     }
 
     /// The point of an experiment.
@@ -83,12 +85,13 @@ impl<'a> PointBuilder<'a> {
     /// Graph, shaders, parameters, scene or camera that cannot be had.
     pub fn point(
         &mut self,
+        home: &Workspace,
         warm: &mut Warm,
         experiment: Experiment,
         labels: Labels,
         frames: Frames,
     ) -> Result<SweepPoint, LabError> {
-        let loaded = warm.graph(self.home, &experiment.graph)?;
+        let loaded = warm.graph(home, &experiment.graph)?;
         let graph = self.graphs.entry(experiment.graph.clone()).or_insert_with(|| graph_hash(loaded)).clone();
         let params = experiment.params_over(&loaded.graph.params)?;
         let (scene, sha256) = self.scene(&experiment)?;

@@ -1,11 +1,12 @@
 //! Points measured one after another, each kept as soon as it is finished, on a device that may be lost.
 
+use super::points::{Labels, OpenScene, PointBuilder, SweepPoint};
 use super::record::{File, Folder, Outcome, Record};
 use crate::diagnostics::Diagnostic;
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError};
 use crate::measure::reference::{Gathered, Reference};
-use crate::measure::{Wanted, Warm};
+use crate::measure::{Frames, Wanted, Warm};
 use crate::results::stats::DeviceStats;
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
@@ -30,6 +31,8 @@ pub enum Progress {
     Gathers(Gathered),
     /// A point is finished: what it is, and what there is to say of it.
     Finished(String, Vec<String>),
+    /// All points are finished.
+    Ends,
 }
 
 /// Counts of points.
@@ -59,8 +62,8 @@ pub struct Runner<'a> {
     pub lab: Lab,
     /// What the measurements before have left.
     pub warm: Warm,
-    /// Takes progress.
-    pub on_progress: &'a mut dyn FnMut(Progress),
+    points: PointBuilder<'a>,
+    on_progress: &'a mut dyn FnMut(Progress),
 }
 
 /// A point of a campaign.
@@ -92,18 +95,34 @@ pub type RecordOf<J> = Record<<J as Job>::About, <J as Job>::Measured>;
 /// What a job has measured, with files to be kept beside its record.
 pub type Taken<J> = Result<(<J as Job>::Measured, Vec<File>), LabError>;
 
+/// The record of a job that is kept, if there is one.
+pub type Kept<'a, J> = dyn FnMut(&mut Runner, &J) -> Result<Option<RecordOf<J>>, LabError> + 'a;
+
 impl<'a> Runner<'a> {
     /// Opens the device.
     ///
     /// # Errors
     /// No device.
-    pub fn open(open: &'a Open<'a>, on_progress: &'a mut dyn FnMut(Progress)) -> Result<Runner<'a>, LabError> {
-        Ok(Runner { open, lab: open()?, warm: Warm::default(), on_progress })
+    pub fn open(
+        open: &'a Open<'a>,
+        open_scene: &'a OpenScene<'a>,
+        on_progress: &'a mut dyn FnMut(Progress),
+    ) -> Result<Runner<'a>, LabError> {
+        let points = PointBuilder::new(open_scene);
+        Ok(Runner { open, lab: open()?, warm: Warm::default(), points, on_progress })
     }
 
-    /// Tells people something.
-    pub fn note(&mut self, text: String) {
-        (self.on_progress)(Progress::Note(text));
+    /// The point of an experiment.
+    ///
+    /// # Errors
+    /// As [`PointBuilder::point`].
+    pub fn point(&mut self, experiment: Experiment, labels: Labels, frames: Frames) -> Result<SweepPoint, LabError> {
+        self.points.point(&self.lab.home, &mut self.warm, experiment, labels, frames)
+    }
+
+    /// Takes progress.
+    pub fn tell(&mut self, progress: Progress) {
+        (self.on_progress)(progress);
     }
 
     /// A reference, see [`Warm::reference`].
@@ -130,12 +149,12 @@ impl<'a> Runner<'a> {
         &mut self,
         folder: &Folder,
         jobs: &[&J],
-        kept: &mut dyn FnMut(&mut Runner, &J) -> Result<Option<RecordOf<J>>, LabError>,
+        kept: &mut Kept<J>,
         measure: &mut dyn FnMut(&mut Runner, &J) -> Taken<J>,
     ) -> Result<Vec<RecordOf<J>>, LabError> {
         let finished = jobs.iter().map(|job| kept(self, job)).collect::<Result<Vec<_>, _>>()?;
         let before = finished.iter().flatten().count();
-        (self.on_progress)(Progress::Begins { todo: jobs.len() - before, before });
+        self.tell(Progress::Begins { todo: jobs.len() - before, before });
         let mut records = Vec::new();
         for (job, record) in jobs.iter().zip(finished) {
             records.push(match record {
@@ -143,6 +162,7 @@ impl<'a> Runner<'a> {
                 None => self.measured(folder, *job, measure)?,
             });
         }
+        self.tell(Progress::Ends);
         Ok(records)
     }
 
@@ -152,11 +172,11 @@ impl<'a> Runner<'a> {
         job: &J,
         measure: &mut dyn FnMut(&mut Runner, &J) -> Taken<J>,
     ) -> Result<RecordOf<J>, LabError> {
-        (self.on_progress)(Progress::Runs(job.title()));
+        self.tell(Progress::Runs(job.title()));
         let mut result = measure(self, job);
         if self.opened_again(&result)? {
             // Often the point before it is to blame; if it is this one, it fails again.
-            self.note(String::from("the device was lost; it is opened again"));
+            self.tell(Progress::Note("the device was lost; it is opened again".into()));
             result = measure(self, job);
             self.opened_again(&result)?;
         }
@@ -172,7 +192,7 @@ impl<'a> Runner<'a> {
             Outcome::Failed(error) => vec![format!("failed: {error}")],
             Outcome::Done(measured) => J::warnings(measured).iter().map(|w| format!("warning: {w}")).collect(),
         };
-        (self.on_progress)(Progress::Finished(job.title(), said));
+        self.tell(Progress::Finished(job.title(), said));
         // As the next run will read it: numbers that JSON rounds in the last place are the same in all tables.
         Ok(folder.read(&record.id).unwrap_or(record))
     }

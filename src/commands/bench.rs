@@ -6,13 +6,14 @@ use super::campaign_bar::bar;
 use crate::campaign::bench::{
     Bench, Compared, Record, Recorded, against_text, bench, charts, compare, csv, percent, record_file, slower, text,
 };
-use crate::campaign::points::{PointBuilder, SweepPoint};
+use crate::campaign::points::SweepPoint;
 use crate::campaign::record::{json, write_file, write_files};
+use crate::campaign::runner::Runner;
 use crate::campaign::settings::{named, values};
 use crate::campaign::sweep::{Sweep, list};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace};
-use crate::measure::{Frames, Warm};
+use crate::measure::Frames;
 use crate::results::stats::DeviceStats;
 use crate::scene::SceneError;
 use clap::Args;
@@ -81,24 +82,25 @@ pub fn run(args: &BenchArgs) -> Result<(), LabError> {
 fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
     let (rounds, frames) = counts(args, ROUNDS, FRAMES)?;
     let sweep = sweep_of(args, frames)?;
-    let lab = Lab::open(Workspace::find()?, args.device.options())?;
-    let record = args.record.as_deref().map(|path| record_file(path, &lab.gpu.info.name));
+    let (home, mut bar) = (Workspace::find()?, bar("turns "));
+    let open = || Lab::open(home.clone(), args.device.options());
+    let mut runner = Runner::open(&open, &super::open_scene, &mut bar)?;
+    let record = args.record.as_deref().map(|path| record_file(path, &runner.lab.gpu.info.name));
     record.as_ref().map(|path| super::writable(path, &["json"])).transpose()?;
-    let mut warm = Warm::default();
-    let (points, _) = list(&mut PointBuilder::new(&lab.home, &super::open_scene), &mut warm, &sweep, frames)?;
+    let (points, _) = list(&mut runner, &sweep, frames)?;
     if let Some(why) = points.iter().find_map(|p| p.absent.clone()) {
         return Err(LabError::Request(why));
     }
-    let result = measured(&lab, &mut warm, sweep.names, &points, rounds, frames)?;
+    let result = bench(&mut runner, sweep.names, &points, rounds, frames)?;
     say_part!("{}", text(&result));
-    write(args, &lab.home, &sweep.name, &result)?;
-    super::validated(&lab)?;
+    write(args, &home, &sweep.name, &result)?;
+    super::validated(&runner.lab)?;
     let failed = result.configurations.iter().filter(|c| c.error.is_some()).count();
     if failed > 0 {
         return Err(LabError::Request(format!("{failed} configurations failed")));
     }
     if let Some(path) = record {
-        write_file(&path, &json(&Record::of(&result, &points, &lab.home)?)?)?;
+        write_file(&path, &json(&Record::of(&result, &points, &home)?)?)?;
         say!("recorded {} configurations in {}", points.len(), super::shown(&path).display());
     }
     Ok(())
@@ -106,8 +108,10 @@ fn run_asked(args: &BenchArgs) -> Result<(), LabError> {
 
 /// What a record of this device holds.
 fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
-    let lab = Lab::open(Workspace::find()?, args.device.options())?;
-    let device = DeviceStats::of(&lab.gpu.info);
+    let (home, mut bar) = (Workspace::find()?, bar("turns "));
+    let open = || Lab::open(home.clone(), args.device.options());
+    let mut runner = Runner::open(&open, &super::open_scene, &mut bar)?;
+    let device = DeviceStats::of(&runner.lab.gpu.info);
     let path = record_file(path, &device.name);
     if !path.exists() {
         return Err(LabError::Request(format!(
@@ -121,13 +125,12 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
     let record = Record::read(&path)?;
     record.check_device(&device)?;
     let (rounds, frames) = counts(args, record.rounds, record.frames)?;
-    let chosen = chosen(args, &lab.home, &record)?;
-    let mut warm = Warm::default();
-    let Again { found, skipped, mut broken } = again(&lab.home, &mut warm, chosen, frames);
+    let chosen = chosen(args, &home, &record)?;
+    let Again { found, skipped, mut broken } = again(&mut runner, chosen, frames);
     let (recorded, points): (Vec<&Recorded>, Vec<SweepPoint>) = found.into_iter().unzip();
     let names: IndexSet<String> = points.iter().flat_map(|p| &p.labels).map(|l| l.0.clone()).collect();
     let names = names.into_iter().collect();
-    let result = measured(&lab, &mut warm, names, &points, rounds, frames)?;
+    let result = bench(&mut runner, names, &points, rounds, frames)?;
     let mut compared: Vec<Compared> = Vec::new();
     for ((recorded, point), now) in recorded.iter().zip(&points).zip(&result.configurations) {
         match &now.times {
@@ -146,8 +149,8 @@ fn run_against(args: &BenchArgs, path: &Path) -> Result<(), LabError> {
         return Err(LabError::Request(format!("nothing of '{}' could be measured again (see above)", path.display())));
     }
     let stem = path.file_stem().map_or("against".into(), |s| s.to_string_lossy());
-    write(args, &lab.home, &stem, &result)?;
-    super::validated(&lab)?;
+    write(args, &home, &stem, &result)?;
+    super::validated(&runner.lab)?;
     let most = percent(args.tolerance);
     let mut wrong: Vec<String> = Vec::new();
     if !broken.is_empty() {
@@ -219,14 +222,13 @@ struct Again<'r> {
     broken: Vec<(String, String)>,
 }
 
-fn again<'r>(home: &Workspace, warm: &mut Warm, chosen: Vec<&'r Recorded>, frames: Frames) -> Again<'r> {
-    let mut builder = PointBuilder::new(home, &super::open_scene);
+fn again<'r>(runner: &mut Runner, chosen: Vec<&'r Recorded>, frames: Frames) -> Again<'r> {
     let mut out = Again::default();
     for recorded in chosen {
         let point = recorded
-            .experiment(home)
+            .experiment(&runner.lab.home)
             .map_err(LabError::Input)
-            .and_then(|experiment| builder.point(warm, experiment, recorded.labels(), frames));
+            .and_then(|experiment| runner.point(experiment, recorded.labels(), frames));
         match point {
             Ok(point) => out.found.push((recorded, point)),
             Err(LabError::Scene(why @ (SceneError::NoModel { .. } | SceneError::Read { .. }))) => {
@@ -236,20 +238,6 @@ fn again<'r>(home: &Workspace, warm: &mut Warm, chosen: Vec<&'r Recorded>, frame
         }
     }
     out
-}
-
-fn measured(
-    lab: &Lab,
-    warm: &mut Warm,
-    names: Vec<String>,
-    points: &[SweepPoint],
-    rounds: usize,
-    frames: Frames,
-) -> Result<Bench, LabError> {
-    let bar = bar(points.len() * rounds);
-    let result = bench(lab, warm, names, points, rounds, frames, &|| bar.inc(1));
-    bar.finish_and_clear();
-    result
 }
 
 /// Writes numbers and charts.

@@ -4,19 +4,14 @@ use crate::campaign::record::first_line;
 use crate::campaign::runner::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar for so many steps.
-pub fn bar(steps: usize) -> ProgressBar {
-    ProgressBar::new(steps as u64).with_style(
+/// Shows progress; `points` is what the points are called.
+pub fn bar(points: &str) -> impl FnMut(Progress) {
+    let bar = ProgressBar::new(0).with_style(
         ProgressStyle::with_template("{pos}/{len} {bar:30} {elapsed} so far, {eta} left {msg}")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    )
-}
-
-/// Runs a campaign with a bar; `points` is what its points are called.
-pub fn with_bar<T>(points: &str, run: impl FnOnce(&mut dyn FnMut(Progress)) -> T) -> T {
-    let bar = bar(0);
+    );
     let mut doing = String::new();
-    let result = run(&mut |progress| match progress {
+    move |progress| match progress {
         Progress::Begins { todo, before } => {
             if before > 0 {
                 bar.suspend(|| say!("{before} {points}are finished already, {todo} to go"));
@@ -36,7 +31,6 @@ pub fn with_bar<T>(points: &str, run: impl FnOnce(&mut dyn FnMut(Progress)) -> T
             bar.suspend(|| said.iter().for_each(|text| eprintln!("{what}: {}", first_line(text))));
             bar.inc(1);
         }
-    });
-    bar.finish_and_clear();
-    result
+        Progress::Ends => bar.finish_and_clear(),
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::DeviceArgs;
 use super::adapt::parse_size;
-use super::campaign_bar::with_bar;
+use super::campaign_bar::bar;
 use crate::campaign::record::write_file;
 use crate::campaign::stability::{Options, Suite, failure_table, failures, run as run_suite, sheet};
 use crate::campaign::table::short;
@@ -74,8 +74,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
         only: args.only.clone(),
     };
     let reopen = || Lab::open(home.clone(), args.device.options());
-    let run = |on_progress: &mut dyn FnMut(_)| run_suite(&reopen, &super::open_scene, &suite, &options, on_progress);
-    let (counts, report) = with_bar("", run)?;
+    let (counts, report) = run_suite(&reopen, &super::open_scene, &suite, &options, &mut bar(""))?;
     for r in &report.results {
         let Some(total) = r.part("total") else { continue };
         let number = |v: Option<f64>| v.map_or("-".into(), short);

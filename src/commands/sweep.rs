@@ -1,7 +1,7 @@
 //! `conelab sweep`.
 
 use super::DeviceArgs;
-use super::campaign_bar::with_bar;
+use super::campaign_bar::bar;
 use crate::campaign::runner::Counts;
 use crate::campaign::sweep::{Options, Shard, Sweep, run as run_sweep};
 use crate::lab::{Lab, LabError, Workspace};
@@ -65,7 +65,7 @@ pub fn run_with_bar(
     options: &Options,
 ) -> Result<Counts, LabError> {
     let reopen = || Lab::open(home.clone(), device.options());
-    with_bar("points ", |on_progress| run_sweep(&reopen, &super::open_scene, sweep, options, on_progress))
+    run_sweep(&reopen, &super::open_scene, sweep, options, &mut bar("points "))
 }
 
 fn parse_shard(text: &str) -> Result<Shard, LabError> {

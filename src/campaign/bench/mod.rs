@@ -12,9 +12,10 @@ pub use record::{RECORD_SCHEMA, Record, Recorded, check_record, record_file};
 pub use tables::{csv, text};
 
 use crate::campaign::points::SweepPoint;
+use crate::campaign::runner::{Progress, Runner};
 use crate::graph::run::FrameTimes;
-use crate::lab::{Lab, LabError, ReusableParts, Session};
-use crate::measure::{Frames, Timed, Warm, timed};
+use crate::lab::{LabError, ReusableParts, Session};
+use crate::measure::{Frames, Timed, timed};
 use crate::results::stats::{self, DeviceStats, Spread, Stats, spread};
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -67,79 +68,71 @@ pub struct Times {
     pub stage_rounds: IndexMap<String, Vec<f64>>,
 }
 
-/// What a configuration has gathered so far.
+/// The turns that a configuration has had.
 #[derive(Default)]
-struct Gathered {
-    reuse: Option<ReusableParts>,
+struct Turns {
+    /// What its last one has left.
+    left: Option<ReusableParts>,
     /// Frames of every round.
     rounds: Vec<Vec<FrameTimes>>,
     /// Frames before those measured, in the round with the fewest.
     warmup: Option<usize>,
-    result: Option<Result<Times, String>>,
 }
 
-/// Measures every configuration `rounds` times in turn. `tick` is called after every turn. Textures are made anew for
-/// each turn, as all of them together might not fit; pipelines and scenes are kept.
+/// Measures every configuration `rounds` times in turn. Textures are made anew for each turn, as all of them together
+/// might not fit; pipelines and scenes are kept.
 ///
 /// # Errors
 /// A graph that cannot be read. A configuration that fails is left out of the rounds that follow, with its error.
 pub fn bench(
-    lab: &Lab,
-    warm: &mut Warm,
+    runner: &mut Runner,
     names: Vec<String>,
     points: &[SweepPoint],
     rounds: usize,
     frames: Frames,
-    tick: &dyn Fn(),
 ) -> Result<Bench, LabError> {
-    let mut all: Vec<Gathered> = points.iter().map(|_| Gathered::default()).collect();
+    runner.tell(Progress::Begins { todo: points.len() * rounds, before: 0 });
+    let configuration = |p: &SweepPoint| Configuration {
+        labels: p.labels.iter().cloned().collect(),
+        size: p.experiment.size,
+        experiment: p.experiment.name.clone(),
+        times: None,
+        error: None,
+    };
+    let mut configurations: Vec<Configuration> = points.iter().map(configuration).collect();
+    let mut turns: Vec<Turns> = points.iter().map(|_| Turns::default()).collect();
     for round in 0..rounds {
         let mut last: Option<ReusableParts> = None;
-        for (point, gathered) in points.iter().zip(&mut all) {
-            let failed_before = matches!(gathered.result, Some(Err(_)));
-            if !failed_before {
+        for ((point, configuration), turns) in points.iter().zip(&mut configurations).zip(&mut turns) {
+            if configuration.error.is_none() {
+                let Runner { lab, warm, .. } = &mut *runner;
                 let loaded = warm.graph(&lab.home, &point.experiment.graph)?;
-                let reuse = gathered.reuse.as_ref().or(last.as_ref());
+                let reuse = turns.left.as_ref().or(last.as_ref());
                 match timed(lab, loaded, &point.experiment, &point.scene, frames, &[], reuse) {
                     Ok(Timed { mut session, times, warmup }) => {
-                        gathered.warmup = gathered.warmup.map_or(Some(warmup), |least| Some(least.min(warmup)));
-                        gathered.rounds.push(times);
+                        let warmup = turns.warmup.map_or(warmup, |least| least.min(warmup));
+                        turns.warmup = Some(warmup);
+                        turns.rounds.push(times);
                         if round + 1 == rounds {
                             let warnings = session.failed_checks()?;
-                            let all = gathered.rounds.concat();
+                            let all = turns.rounds.concat();
                             let name = &point.experiment.name;
-                            let warmup = gathered.warmup.unwrap_or(warmup);
                             let stats = stats::collect(&lab.gpu.info, name, &session, &all, warmup, warnings);
-                            gathered.result = Some(Ok(times_of(&session, stats, &all, &gathered.rounds)));
+                            configuration.times = Some(times_of(&session, stats, &all, &turns.rounds));
                         }
                         // The next configuration's first turn starts from this one's pipelines and scene.
                         last = (round == 0).then(|| session.share());
-                        gathered.reuse = Some(session.share());
+                        turns.left = Some(session.share());
                     }
-                    Err(error) => gathered.result = Some(Err(error.to_string())),
+                    Err(error) => configuration.error = Some(error.to_string()),
                 }
             }
-            tick();
+            runner.tell(Progress::Finished(String::new(), Vec::new()));
         }
     }
-    let configurations = points.iter().zip(all).map(|(point, gathered)| {
-        let (times, error) = match gathered.result {
-            Some(Ok(times)) => (Some(times), None),
-            Some(Err(error)) => (None, Some(error)),
-            None => (None, None),
-        };
-        let experiment = &point.experiment;
-        let labels = point.labels.iter().cloned().collect();
-        Configuration { labels, size: experiment.size, experiment: experiment.name.clone(), times, error }
-    });
-    Ok(Bench {
-        schema: SCHEMA.into(),
-        device: DeviceStats::of(&lab.gpu.info),
-        rounds,
-        frames,
-        names,
-        configurations: configurations.collect(),
-    })
+    runner.tell(Progress::Ends);
+    let device = DeviceStats::of(&runner.lab.gpu.info);
+    Ok(Bench { schema: SCHEMA.into(), device, rounds, frames, names, configurations })
 }
 
 /// What the frames of all rounds, and of each, say.

@@ -42,7 +42,8 @@ pub(super) fn rows(bench: &Bench) -> Vec<Row<'_>> {
         let values: IndexSet<_> = bench.configurations.iter().map(|c| c.labels.get(name)).collect();
         values.len() > 1
     };
-    let mut rows: IndexMap<(String, (u32, u32)), Vec<Option<&Configuration>>> = IndexMap::new();
+    type Cells<'a> = Vec<Option<&'a Configuration>>;
+    let mut rows: IndexMap<(String, (u32, u32)), Cells> = IndexMap::new();
     for c in &bench.configurations {
         let title = labelled(c.labels.iter().filter(|(n, _)| **n != column && *n != "size" && varies(n)));
         let title = if title.is_empty() { c.experiment.clone() } else { title };

@@ -7,7 +7,6 @@ use super::chart_spec::CostChart;
 use super::file::{Method, Suite};
 use super::plan::{Job, Options, plan};
 use super::sequence::{cell_of, median, place};
-use crate::campaign::points::PointBuilder;
 use crate::campaign::record::{first_line, json, read_json, write_file};
 use crate::campaign::runner::{Progress, Runner};
 use crate::lab::LabError;
@@ -100,8 +99,8 @@ impl Cost {
 /// What is wrong with the suite; no device; a method that can be timed at none of its values.
 pub(super) fn costs(
     runner: &mut Runner,
-    builder: &mut PointBuilder,
-    (suite, chart): (&Suite, &CostChart),
+    suite: &Suite,
+    chart: &CostChart,
     options: &Options,
 ) -> Result<Vec<Cost>, LabError> {
     let charted = |m: &&Method| chart.groups.0.iter().any(|g| g.1.value.contains(&m.name));
@@ -114,8 +113,7 @@ pub(super) fn costs(
         ..suite.clone()
     };
     let options = Options { only: Vec::new(), ..options.clone() };
-    let (home, device) = (runner.lab.home.clone(), runner.lab.gpu.info.clone());
-    let jobs = plan(&home, &device, builder, &mut runner.warm, &timed, &options)?;
+    let jobs = plan(runner, &timed, &options)?;
     let first = jobs.first().ok_or_else(|| LabError::Request("a chart needs a method and a case".into()))?;
     let path = options.folder.join("cost.json");
     let kept = read(&path);
@@ -230,7 +228,7 @@ fn same(kept: &Cost, wanted: &Cost) -> bool {
 }
 
 fn told(runner: &mut Runner, job: &Job, done: usize, of: usize) {
-    (runner.on_progress)(Progress::Runs(format!("timing {}, {done} of {of}", job.method)));
+    runner.tell(Progress::Runs(format!("timing {}, {done} of {of}", job.method)));
 }
 
 /// What is kept; folders may come from anywhere, and what is no such file is nothing.

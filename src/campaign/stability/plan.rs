@@ -5,18 +5,16 @@ use super::file::{Case, Method, Suite};
 use super::motion::FrameState;
 use super::param_track::ParamTrack;
 use super::record::{About, Measured, title};
-use crate::campaign::points::{DIGITS, PointBuilder};
+use crate::campaign::points::DIGITS;
 use crate::campaign::record::Folder;
 use crate::campaign::runner::{self, Mistakes, Runner};
 use crate::campaign::settings::{Setting, lines, named, set_params};
 use crate::experiment::{Experiment, check_size};
 use crate::files::content_id;
-use crate::lab::{LabError, Workspace, camera_of, parts_of};
-use crate::measure::reference;
-use crate::measure::{Frames, Warm};
+use crate::lab::{LabError, camera_of, parts_of};
+use crate::measure::{Frames, reference};
 use crate::results::capture::scene_hash;
 use crate::scene::Scene;
-use crate::vulkan::DeviceInfo;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -76,27 +74,20 @@ pub struct Job {
 ///
 /// # Errors
 /// All that is wrong with its settings, scenes and motions: nothing is measured then.
-pub fn plan(
-    home: &Workspace,
-    device: &DeviceInfo,
-    builder: &mut PointBuilder,
-    warm: &mut Warm,
-    suite: &Suite,
-    options: &Options,
-) -> Result<Vec<Job>, LabError> {
+pub fn plan(runner: &mut Runner, suite: &Suite, options: &Options) -> Result<Vec<Job>, LabError> {
     if let Some(name) = options.only.iter().find(|n| !suite.cases.iter().any(|c| c.name == **n)) {
         let mut known: Vec<&str> = suite.cases.iter().map(|c| c.name.as_str()).collect();
         known.dedup();
         return Err(LabError::Request(format!("--only {name}: the suite's cases are {}", known.join(", "))));
     }
     // What the frames are compared with is part of a result.
-    let shaders = if options.reference { reference::shaders(home)? } else { String::new() };
+    let shaders = if options.reference { reference::shaders(&runner.lab.home)? } else { String::new() };
     let mut jobs: Vec<Job> = Vec::new();
     let mut mistakes = Mistakes::default();
     let wanted = |c: &&Case| options.only.is_empty() || options.only.contains(&c.name);
     for case in suite.cases.iter().filter(wanted) {
-        for method in suite.methods.iter().filter(|m| case.methods.is_empty() || case.methods.contains(&m.name)) {
-            let job = job(home, device, builder, warm, suite, options, (method, case, &shaders));
+        for method in suite.methods.iter().filter(|m| case.is_for(&m.name)) {
+            let job = job(runner, suite, options, (method, case, &shaders));
             jobs.extend(mistakes.take(job)?);
         }
     }
@@ -105,17 +96,15 @@ pub fn plan(
 }
 
 fn job(
-    home: &Workspace,
-    device: &DeviceInfo,
-    builder: &mut PointBuilder,
-    warm: &mut Warm,
+    runner: &mut Runner,
     suite: &Suite,
     options: &Options,
     (method, case, shaders): (&Method, &Case, &str),
 ) -> Result<Job, LabError> {
-    let mut params = |graph: &str| warm.graph(home, graph).ok().map(|l| l.graph.params.clone());
+    let Runner { lab, warm, .. } = runner;
+    let mut params = |graph: &str| warm.graph(&lab.home, graph).ok().map(|l| l.graph.params.clone());
     let mut experiment = suite.experiment(method, case, &mut params).map_err(LabError::Input)?;
-    let loaded = warm.graph(home, &experiment.graph)?.clone();
+    let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
     let other = experiment.graph != suite.experiment.graph;
     let set: Vec<(&str, &str)> =
         options.set.iter().map(|s| named("--set", s, "NAME=VALUE")).collect::<Result<_, LabError>>()?;
@@ -143,12 +132,15 @@ fn job(
         let (part, known) = (&suite.pictures, names.join(", "));
         return Err(wrong(format!("no pictures of '{part}': the parts of graph '{}' are {known}", loaded.graph.name)));
     }
-    let point = builder.point(warm, experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
+    let point = runner.point(experiment, Vec::new(), Frames { warmup: case.warmup, count: frames })?;
     case.motion.check(&point.scene).map_err(wrong)?;
     let params = point.experiment.params_over(&loaded.graph.params)?;
     let track = ParamTrack::of(&case.motion, &params, case.warmup, frames).map_err(wrong)?;
     let reference_moves = match &track {
-        Some(track) => home.graph(reference::GRAPH).map_err(LabError::Input)?.0.params.index(&track.name).is_some(),
+        Some(track) => {
+            let shared = &runner.warm.graph(&runner.lab.home, reference::GRAPH)?.graph.params;
+            shared.index(&track.name).is_some()
+        }
         None => false,
     };
     if let Some(at) = case.motion.event().filter(|at| frames.saturating_sub(2) < *at) {
@@ -169,6 +161,7 @@ fn job(
         setting: None,
     };
     let samples = options.reference.then(|| options.samples.unwrap_or(suite.samples));
+    let device = &runner.lab.gpu.info;
     let device = format!("{} {} {}", device.name, device.driver, device.api);
     let work = content_id([point.id, format!("{:?}", case.motion), device], DIGITS);
     let asked = format!("{samples:?} {} {} {} {} {shaders}", suite.bounces, suite.seed, case.voxels, suite.pictures);

@@ -115,7 +115,8 @@ fn table(group: &str, rows: &[Row]) -> Markup {
     table.column("GPU ms", |r| shortly(r.ms));
     table.marked("of the first's", |r| (cell(r.ratio.map(|v| format!("{v:.2}"))), r.off.then_some("bad")));
     table.column("MiB", |r| cell(r.memory_bytes.map(mebibytes)));
-    let scores: [(&str, fn(&Row) -> Option<Score>); 2] = [("relMSE", |r| r.error), ("E_t", |r| r.change)];
+    type Of = fn(&Row) -> Option<Score>;
+    let scores: [(&str, Of); 2] = [("relMSE", |r| r.error), ("E_t", |r| r.change)];
     for (title, score) in scores {
         let noisy = |s: Option<Score>| s.is_some_and(|s| s.noisy()).then_some("noise");
         table.marked(title, |r| (shortly(score(r).map(|s| s.value)), noisy(score(r))));

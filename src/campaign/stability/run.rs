@@ -7,11 +7,10 @@ use super::plot::Plot;
 use super::record::{CaseRecord, Report, SCHEMA, folder, picture};
 use super::sequence::{Tracing, measure};
 use super::{chart, cost, page, table};
-use crate::campaign::points::PointBuilder;
+use crate::campaign::points::OpenScene;
 use crate::campaign::record::{json, write_files};
 use crate::campaign::runner::{Counts, Open, Progress, Runner};
 use crate::lab::LabError;
-use crate::scene::Scene;
 
 /// Runs what is not finished of a suite, and writes tables, charts and the page of all of it. An error that belongs to a
 /// method in a case is kept in its place; it is tried again by the next run.
@@ -20,21 +19,18 @@ use crate::scene::Scene;
 /// What is wrong with the suite as a whole, before anything is measured; a folder that cannot be written to; no device.
 pub fn run(
     open: &Open,
-    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    open_scene: &OpenScene,
     suite: &Suite,
     options: &Options,
     on_progress: &mut dyn FnMut(Progress),
 ) -> Result<(Counts, Report), LabError> {
-    let mut runner = Runner::open(open, on_progress)?;
-    let (home, device) = (runner.lab.home.clone(), runner.lab.gpu.info.clone());
-    // Opens each scene once for all plans.
-    let mut builder = PointBuilder::new(&home, open_scene);
-    let mut jobs = plan(&home, &device, &mut builder, &mut runner.warm, suite, options)?;
+    let mut runner = Runner::open(open, open_scene, on_progress)?;
+    let mut jobs = plan(&mut runner, suite, options)?;
     let mut costs = Vec::new();
     if let Some(chart) = &suite.chart {
-        costs = cost::costs(&mut runner, &mut builder, (suite, chart), options)?;
+        costs = cost::costs(&mut runner, suite, chart, options)?;
         let chosen = cost::chosen(suite, chart, &costs);
-        jobs = plan(&home, &device, &mut builder, &mut runner.warm, &chosen, options)?;
+        jobs = plan(&mut runner, &chosen, options)?;
     }
     let folder = folder(&options.folder);
     let samples = options.samples.unwrap_or(suite.samples);

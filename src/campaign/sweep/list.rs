@@ -1,8 +1,8 @@
 //! The points of a sweep.
 
 use super::points::Sweep;
-use crate::campaign::points::{DIGITS, Labels, PointBuilder, Subject, SweepPoint};
-use crate::campaign::runner::Mistakes;
+use crate::campaign::points::{DIGITS, Labels, Subject, SweepPoint};
+use crate::campaign::runner::{Mistakes, Runner};
 use crate::experiment::Experiment;
 use crate::files::content_id;
 use crate::lab::{LabError, Workspace};
@@ -31,18 +31,13 @@ fn absent(experiment: Experiment, labels: Labels, why: &SceneError) -> SweepPoin
 ///
 /// # Errors
 /// Everything that is wrong with the sweep's settings: nothing is measured then.
-pub fn list(
-    builder: &mut PointBuilder,
-    warm: &mut Warm,
-    sweep: &Sweep,
-    frames: Frames,
-) -> Result<(Vec<SweepPoint>, usize), LabError> {
+pub fn list(runner: &mut Runner, sweep: &Sweep, frames: Frames) -> Result<(Vec<SweepPoint>, usize), LabError> {
     let mut points: Vec<SweepPoint> = Vec::new();
     let mut known = HashSet::new();
     let mut mistakes = Mistakes::default();
     for index in 0..sweep.len() {
         let point = sweep.point(index).map_err(LabError::Input).and_then(|(experiment, labels)| {
-            match builder.point(warm, experiment.clone(), labels.clone(), frames) {
+            match runner.point(experiment.clone(), labels.clone(), frames) {
                 Err(LabError::Scene(
                     why @ (SceneError::NoModel { .. } | SceneError::Model { .. } | SceneError::SceneFile { .. }),
                 )) => Ok(absent(experiment, labels, &why)),

@@ -3,14 +3,13 @@
 use super::list::list;
 use super::points::Sweep;
 use super::record::{About, Manifest, PointRecord, collect, folder, jpeg, reference};
-use crate::campaign::points::{PointBuilder, SweepPoint, labelled};
+use crate::campaign::points::{OpenScene, SweepPoint, labelled};
 use crate::campaign::record::{File, Folder, Outcome, write_file};
 use crate::campaign::runner::{Counts, Job, Open, Progress, Runner};
 use crate::experiment::resolved_text;
 use crate::lab::{LabError, camera_of};
 use crate::measure::reference::Reference;
 use crate::measure::{Frames, Point, Wanted, measure};
-use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -81,17 +80,15 @@ impl Job for SweepPoint {
 /// What is wrong with the sweep as a whole, before anything is measured; a folder that cannot be written to; no device.
 pub fn run(
     open: &Open,
-    open_scene: &dyn Fn(&str) -> Result<Scene, LabError>,
+    open_scene: &OpenScene,
     sweep: &Sweep,
     options: &Options,
     on_progress: &mut dyn FnMut(Progress),
 ) -> Result<Counts, LabError> {
-    let mut runner = Runner::open(open, on_progress)?;
-    let home = runner.lab.home.clone();
-    let mut builder = PointBuilder::new(&home, open_scene);
-    let (points, equal) = list(&mut builder, &mut runner.warm, sweep, options.frames)?;
+    let mut runner = Runner::open(open, open_scene, on_progress)?;
+    let (points, equal) = list(&mut runner, sweep, options.frames)?;
     if equal > 0 {
-        runner.note(format!("{equal} combinations equal another one and are measured once"));
+        runner.tell(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
     }
     let folder = folder(&options.folder);
     folder.clean(&["points", "pictures", "errors", "references"]);
@@ -136,9 +133,8 @@ pub fn run(
     };
     let records = runner.run(&folder, &mine, &mut kept, &mut measured)?;
     if elsewhere > 0 {
-        runner.note(format!(
-            "{elsewhere} points were measured on another device; name another folder with -o to measure them here"
-        ));
+        let message = "points were measured on another device; name another folder with -o to measure them here";
+        runner.tell(Progress::Note(format!("{elsewhere} {message}")));
     }
     let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
     write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
