@@ -409,7 +409,7 @@ fn two_hundred_reloads_leave_nothing_behind() {
             assert!(count < objects + 10.0, "{objects} Vulkan objects became {count}");
         }
     }
-    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
+    // How fast a reload is has a test of its own, which runs alone.
     driver.close();
 }
 
