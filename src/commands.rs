@@ -230,7 +230,7 @@ fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
     if endings == ["json"] && is_json_output(path) {
         return Ok("json".into());
     }
-    let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
+    let ending = crate::files::ending(path);
     if !endings.contains(&ending.as_str()) {
         let message = format!("'{}': give it a name that ends in .{}", path.display(), endings.join(" or ."));
         return Err(LabError::Request(message));

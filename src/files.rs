@@ -72,6 +72,11 @@ pub fn write_checked(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     })
 }
 
+/// What a file's name says that it holds: what stands behind the last dot, in small letters; empty without one.
+pub fn ending(path: &Path) -> String {
+    path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase())
+}
+
 /// Bytes in hexadecimal.
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()

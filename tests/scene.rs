@@ -675,6 +675,16 @@ fn errors_in_shapes_have_a_place_and_limits_hold() {
         format!("Repeat(at: Grid(from: (0, 0, 0), steps: [((1, 0, 0), 60000)]), parts: [{inner}])")
     });
     error(&nested, &["x.ron:4:3", "parts"]);
+    // Each solid is small enough, and all of them would take half an hour.
+    let boxes: String = (0..30).fold(String::new(), |text, i| {
+        format!("{text}Box(material: \"a\", low: ({i}, {i}, {i}), high: ({i}.5, {i}.6, {i}.7)), ")
+    });
+    let since = Instant::now();
+    error(
+        &format!("Repeat(at: Grid(from: (0, 0, 0), steps: [((99, 0, 0), 8000)]), parts: [Solid([{boxes}])])"),
+        &["x.ron:4:3", "a solid counts by its cells"],
+    );
+    assert!(since.elapsed().as_secs() < 10, "{:?}", since.elapsed());
     let ball = "[Sphere(material: \"a\", radius: 1, level: 7)]";
     let text = format!(
         "(materials: {{\"a\": ()}}, meshes: {{\"m\": {ball}, \"n\": {ball}, \"o\": {ball}, \"p\": {ball}, \"q\": {ball}}})"

@@ -38,7 +38,7 @@ fn most(name: &str, highest: f64) -> f64 {
 }
 
 /// A number of a range: an end of it, or between, where wide ranges are drawn from by their logarithm.
-fn number(param: &Param, random: &mut Random) -> f64 {
+fn in_range(param: &Param, random: &mut Random) -> f64 {
     let (low, high) = param.range.unwrap_or((0.0, 1.0));
     let high = most(&param.name, high).max(low);
     let at = random.below(1001) as f64 / 1000.0;
@@ -52,7 +52,7 @@ fn number(param: &Param, random: &mut Random) -> f64 {
 }
 
 fn draw(param: &Param, random: &mut Random) -> Value {
-    let mut next = || number(param, random);
+    let mut next = || in_range(param, random);
     match &param.kind {
         Kind::Int => Value::Int(next().round() as i64),
         Kind::Float => Value::Float(next()),

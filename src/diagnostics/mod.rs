@@ -63,6 +63,11 @@ impl Diagnostic {
         self
     }
 
+    /// Messages one below the other.
+    pub fn joined(list: &[Diagnostic]) -> String {
+        list.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    }
+
     /// With the nearest of the known names, or all of them when they are few.
     pub fn nearest<'a>(self, name: &str, known: impl IntoIterator<Item = &'a str>) -> Diagnostic {
         let help = nearest(name, known);

@@ -20,7 +20,7 @@ use serde::Deserialize;
 #[derive(Debug, thiserror::Error)]
 pub enum ExperimentError {
     /// Mistakes in its file, with their places.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    #[error("{}", Diagnostic::joined(.0))]
     Input(Vec<Diagnostic>),
     /// What was asked for and cannot be had.
     #[error("{0}")]

@@ -102,9 +102,9 @@ pub enum Redo {
 
 /// A frame in flight.
 struct Slot {
-    commands: FrameSlot,
-    /// By parity, the commands of its last frame, and what they do.
+    /// By parity, the commands of its last frame, and what they do. Dropped before the queries that they write.
     recorded: [Option<(Recorded, Recording)>; 2],
+    commands: FrameSlot,
     cpu_ms: f64,
     /// Whether each of [`Program::starts`] has a timestamp.
     stamped: Vec<bool>,
@@ -894,13 +894,10 @@ impl Program {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // All frames in flight end before anything that one of them uses is destroyed, and what was recorded goes before the
-        // queries that it writes. Of a hung or lost device there is nothing to wait for.
+        // All frames in flight end before anything that one of them uses is destroyed. Of a hung or lost device there is
+        // nothing to wait for.
         for slot in &mut self.slots {
             let _ = slot.commands.wait();
-        }
-        for slot in &mut self.slots {
-            slot.recorded = [None, None];
         }
         self.slots.clear();
     }

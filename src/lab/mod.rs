@@ -20,9 +20,7 @@ pub use view::Viewpoint;
 pub use workspace::{Loaded, Workspace};
 
 use crate::diagnostics::{Diagnostic, nearest};
-use crate::experiment::{
-    ExperimentError, {CameraChoice, Experiment, PlacedCamera},
-};
+use crate::experiment::{CameraChoice, Experiment, ExperimentError, PlacedCamera};
 use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
 use crate::graph::hot_reload::Parts;
 use crate::graph::layouts::Layouts;
@@ -46,7 +44,7 @@ use std::sync::Arc;
 #[derive(Debug, thiserror::Error)]
 pub enum LabError {
     /// Mistakes in graphs, shaders or experiments, with their places.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    #[error("{}", Diagnostic::joined(.0))]
     Input(Vec<Diagnostic>),
     /// A scene that cannot be opened.
     #[error(transparent)]

@@ -1,7 +1,7 @@
 //! Results as files: PNG for what is display-encoded, EXR for what is linear.
 
 use crate::experiment::MAX_SIZE;
-use crate::files::check_input;
+use crate::files::{check_input, ending};
 use crate::lab::{LabError, Texels};
 use crate::metrics::colour::srgb_to_linear;
 use crate::metrics::{Kind, Linear, MAX_PIXELS};
@@ -22,9 +22,9 @@ const MAX_BYTES: u64 = 2 << 30;
 /// # Errors
 /// Another ending, a folder that cannot be written to. The file is whole or absent.
 pub fn write(path: &Path, texels: &Texels) -> Result<(), LabError> {
-    let bytes = match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
-        Some("png") => png(texels)?,
-        Some("exr") => exr(texels)?,
+    let bytes = match ending(path).as_str() {
+        "png" => png(texels)?,
+        "exr" => exr(texels)?,
         _ => {
             let message = format!("'{}': give the output a name that ends in .png or .exr", path.display());
             return Err(LabError::Request(message));
@@ -66,7 +66,7 @@ pub fn write_linear(path: &Path, picture: &Linear) -> Result<(), LabError> {
     let texels: Vec<[f32; 4]> = picture.rgb.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
     let format = Format::named("rgba32f").ok_or_else(|| LabError::Request("no format rgba32f".into()))?;
     let extent = [picture.size.0, picture.size.1, 1];
-    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("exr")) {
+    if ending(path) != "exr" {
         return Err(LabError::Request(format!("'{}': give it a name that ends in .exr", path.display())));
     }
     write(path, &Texels { extent, format, bytes: bytemuck::cast_slice(&texels).to_vec() })
@@ -159,7 +159,7 @@ fn decode_linear(path: &Path) -> Result<(Linear, Kind), LabError> {
         1..=MAX_PIXELS if w <= MAX_SIZE as usize && h <= MAX_SIZE as usize => Ok((w as u32, h as u32)),
         _ => Err(failed(format!("its size is {w}x{h}; at most {MAX_SIZE} a side and {MAX_PIXELS} pixels can be read"))),
     };
-    let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
+    let ending = ending(path);
     if ending == "exr" {
         let (w, h) = exr_size(path).map_err(failed)?;
         let size = fits(w, h)?;

@@ -20,7 +20,7 @@ pub(super) fn sun() -> Light {
 }
 
 /// A level view along the longest horizontal axis, from inside its positive end; from another place where that one is
-/// inside of something, or sees nothing.
+/// inside of something, or sees nothing. A place costs a tenth of a second at most, and the first is nearly always open.
 pub(super) fn camera(scene: &Scene) -> Camera {
     let mut best = (f32::NEG_INFINITY, place(scene, 0, PLACES[0]));
     for place in PLACES.iter().flat_map(|p| [place(scene, 0, *p), place(scene, 1, *p)]) {

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use glam::Mat4;
 
+use crate::files::ending;
 use crate::panics::caught;
 
 use super::limits::{check_extent, with_size_told};
@@ -57,7 +58,7 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
         return builtin::open(spec, progress);
     }
     let path = Path::new(spec);
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
+    if ending(path) == "ron" {
         return file::load(path, progress);
     }
     if path.extension().is_none() && !path.exists() {
@@ -77,8 +78,7 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
 
 /// A model with what its file says and no more.
 pub(super) fn load_model(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    let reader = match extension.as_str() {
+    let reader = match ending(path).as_str() {
         "obj" => obj::load,
         "gltf" | "glb" => gltf::load,
         _ => {

@@ -15,7 +15,7 @@ pub(super) struct Seen {
     pub hits: f32,
     /// The part that meets the back of one.
     pub backs: f32,
-    /// Median distance of the surfaces [m]; `None` where there are none.
+    /// Median distance of the surfaces, m; `None` where there are none.
     pub median: Option<f32>,
 }
 
@@ -48,10 +48,10 @@ impl Scene {
                     continue;
                 };
                 let triangle = Triangle { v0, v1, v2 };
-                let normal = (v1 - v0).cross(v2 - v0) * turned;
                 for (ray, nearest) in rays.iter().zip(&mut nearest) {
                     let distance = triangle.intersect(ray);
                     if distance < nearest.0 {
+                        let normal = (v1 - v0).cross(v2 - v0) * turned;
                         *nearest = (distance, normal.dot(ray.direction) > 0.0);
                     }
                 }

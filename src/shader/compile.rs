@@ -190,7 +190,7 @@ impl ShaderCompiler {
             hash.update((text.len() as u64).to_le_bytes());
             hash.update(text);
         }
-        hash.finalize().iter().take(16).map(|b| format!("{b:02x}")).collect()
+        crate::files::hex(&hash.finalize()[..16])
     }
 
     fn run(&self, source: &Source, texts: &BTreeMap<String, String>) -> Result<Vec<u32>, Vec<Diagnostic>> {

@@ -303,7 +303,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 core.vendor_id,
                 core.device_id,
                 core.driver_version,
-                core.pipeline_cache_uuid.iter().map(|b| format!("{b:02x}")).collect::<String>()
+                crate::files::hex(&core.pipeline_cache_uuid)
             ),
         }
     }
@@ -582,11 +582,12 @@ impl Drop for Gpu {
             return;
         }
         self.save_pipeline_cache();
+        // SAFETY: the device is alive. It may take long, and others need not wait for it.
+        let _ = unsafe { self.device.device_wait_idle() };
         let _door = door();
         // SAFETY: every object made from the device holds an `Arc` of this, so all are gone; the allocator frees its
         // memory before the device goes.
         unsafe {
-            let _ = self.device.device_wait_idle();
             self.device.destroy_pipeline_cache(self.pipeline_cache, None);
             if let Ok(mut allocator) = self.allocator.lock() {
                 allocator.take();

@@ -88,7 +88,7 @@ fn look(folder: &Path, deep: usize, list: &mut Vec<PathBuf>) {
         if list.len() >= MOST {
             return;
         }
-        let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
+        let ending = crate::files::ending(&path);
         if path.is_dir() {
             if deep > 0 {
                 look(&path, deep - 1, list);

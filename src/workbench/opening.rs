@@ -103,7 +103,7 @@ impl Workbench {
     /// A file was dropped on the window.
     pub fn dropped(&mut self, path: &Path) {
         let spec = path.to_string_lossy().into_owned();
-        let is_ron = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("ron"));
+        let is_ron = crate::files::ending(path) == "ron";
         match Experiment::read(path) {
             Ok(experiment) if is_ron => self.open(&experiment),
             _ => {

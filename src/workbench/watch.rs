@@ -126,8 +126,7 @@ impl Watch {
 fn is_of_a_scene(path: &Path) -> bool {
     const ENDINGS: [&str; 14] =
         ["ron", "obj", "mtl", "gltf", "glb", "bin", "png", "jpg", "jpeg", "tga", "bmp", "dds", "hdr", "exr"];
-    let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
-    ENDINGS.contains(&ending.as_str())
+    ENDINGS.contains(&crate::files::ending(path).as_str())
 }
 
 /// Not an editor's own file: hidden, or a backup, or a swap.

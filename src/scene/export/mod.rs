@@ -18,7 +18,7 @@ impl Scene {
     /// light casts shadows; a picture of the sky is written beside it, .sky.exr, as bright as it is here and not turned.
     /// Each file appears whole or not at all.
     pub fn export(&self, path: &Path) -> Result<(), SceneError> {
-        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let extension = crate::files::ending(path);
         match extension.as_str() {
             "obj" => obj::write(self, path),
             "glb" | "gltf" => {

@@ -14,6 +14,8 @@ use crate::scene::{Instance, MAX_COORDINATE, Material, Scene};
 
 /// Parts and places that are walked through, for all meshes.
 const MAX_PARTS: u32 = 1 << 18;
+/// Cells times boxes of a solid that take as long as a part at most: two seconds for all of a file.
+const SOLID_WORK: usize = 1 << 9;
 /// Groups and repetitions inside of each other.
 const MAX_DEPTH: u32 = 16;
 /// Places of one repetition, and all instances.
@@ -251,13 +253,15 @@ impl Walk<'_> {
         for part in parts {
             self.left = self.left.saturating_sub(1);
             if self.left == 0 || depth > MAX_DEPTH || self.progress.stopped() {
-                let limits = format!("more than {MAX_PARTS} parts, or groups inside of {MAX_DEPTH} others");
+                let limits = format!(
+                    "more than {MAX_PARTS} parts (a solid counts by its cells), or groups inside of {MAX_DEPTH} others"
+                );
                 mesh.fail("", limits);
             }
             if mesh.problem.is_some() {
                 return;
             }
-            mesh.transform = frame;
+            mesh.place(frame);
             match (part, solid.as_deref_mut()) {
                 (Part::Group(name), inside) => match self.groups.get(name) {
                     Some(group) => self.parts(group, mesh, inside, frame, at, depth + 1),
@@ -273,7 +277,7 @@ impl Walk<'_> {
                 (Part::Solid(parts), None) => {
                     let mut solid = Solid::default();
                     self.parts(parts, mesh, Some(&mut solid), frame, at, depth + 1);
-                    solid.build(mesh);
+                    self.left = self.left.saturating_sub((solid.build(mesh) / SOLID_WORK) as u32);
                 }
                 (Part::Seed(seed), _) => mesh.random = Random(*seed),
                 (Part::Box(shape), _) => shape.build(mesh, at),
@@ -287,7 +291,7 @@ impl Walk<'_> {
                 (Part::Sprigs(shape), _) => shape.build(mesh, at),
                 (Part::Triangle(shape), _) => shape.build(mesh, at),
                 (around_origin, _) => {
-                    mesh.transform = frame * Mat4::from_translation(at);
+                    mesh.place(frame * Mat4::from_translation(at));
                     match around_origin {
                         Part::Arch(shape) => shape.build(mesh),
                         Part::Banner(shape) => shape.build(mesh),

@@ -48,7 +48,9 @@ pub(super) struct MeshBuilder<'a> {
     /// The most vertices.
     room: u64,
     triangles: IndexMap<u32, Vec<u32>>,
-    pub transform: Mat4,
+    transform: Mat4,
+    /// The inverse transpose: how normals go, for placements that scale unevenly.
+    normals: Mat4,
     /// How often what surrounds the shape was repeated before.
     pub number: u32,
     pub random: Random,
@@ -64,10 +66,17 @@ impl<'a> MeshBuilder<'a> {
             room,
             triangles: IndexMap::new(),
             transform: Mat4::IDENTITY,
+            normals: Mat4::IDENTITY,
             number: 0,
             random: Random(0),
             problem: None,
         }
+    }
+
+    /// Where what follows stands.
+    pub fn place(&mut self, transform: Mat4) {
+        self.transform = transform;
+        self.normals = transform.inverse().transpose();
     }
 
     pub fn finish(self) -> Result<Mesh, Problem> {
@@ -114,8 +123,7 @@ impl<'a> MeshBuilder<'a> {
 
     pub fn vertex(&mut self, position: Vec3, normal: Vec3, uv: Vec2) -> u32 {
         let position = self.transform.transform_point3(position);
-        // Normals go by the inverse transpose, for placements that scale unevenly.
-        let normal = self.transform.inverse().transpose().transform_vector3(normal);
+        let normal = self.normals.transform_vector3(normal);
         self.vertices.push(Vertex {
             position: position.to_array(),
             normal: normal.normalize_or(Vec3::Y).to_array(),

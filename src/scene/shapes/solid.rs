@@ -9,7 +9,7 @@ use super::{FACES, MeshBuilder, Paint};
 /// Cuts closer than this are one, so that rounding makes no slivers (m).
 const SAME_CUT: f32 = 1e-4;
 
-/// Cells of the grid, times boxes.
+/// Cells of the grid, times boxes: of one solid.
 const MAX_WORK: usize = 1 << 24;
 
 /// Materials of a hollow's faces by their normals -x, +x, -y, +y, -z, +z.
@@ -56,13 +56,14 @@ impl Solid {
         self.boxes.push((low, high, Stuff::Solid(material)));
     }
 
-    /// Adds the surface: the faces between cells of the grid that are solid and those that are not.
-    pub fn build(&self, mesh: &mut MeshBuilder) {
+    /// Adds the surface: the faces between cells of the grid that are solid and those that are not. Returns what it took,
+    /// in cells times boxes.
+    pub fn build(&self, mesh: &mut MeshBuilder) -> usize {
         let cuts = [0, 1, 2].map(|axis| self.cuts(axis));
         let work = cuts.iter().fold(self.boxes.len(), |work, cuts| work.saturating_mul(cuts.len()));
         if self.boxes.is_empty() || work > MAX_WORK {
-            return mesh
-                .fail("", format!("a solid needs at least one box, and its cells times boxes be at most {MAX_WORK}"));
+            mesh.fail("", format!("a solid needs at least one box, and its cells times boxes be at most {MAX_WORK}"));
+            return 0;
         }
         let corner = |cell: [usize; 3]| Vec3::from_array([0, 1, 2].map(|axis| cuts[axis][cell[axis]]));
         let stuff = |cell: [usize; 3]| {
@@ -87,6 +88,7 @@ impl Solid {
                 mesh.cuboid(material, corner(cell), corner(cell.map(|i| i + 1)), 1.0, only);
             }
         }
+        work
     }
 
     /// Coordinates at which a box begins or ends, in order.
