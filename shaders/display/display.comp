@@ -8,6 +8,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2D source;
 uniform writeonly image2D display;
 
+// Texels whose light is no finite number: the 8-bit picture would hide them.
+layout(std430) buffer PictureErrors { uint not_finite; } pictureErrors;
+
 vec3 toneMap(vec3 c) {
     if (params.tone_map == TONE_MAP_REINHARD) return c / (c + 1.0); // thesis, Algorithm 3
     if (params.tone_map == TONE_MAP_ACES) // Narkowicz 2015
@@ -23,6 +26,8 @@ vec3 encode(vec3 c) {
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(display)))) return;
-    vec3 c = max(texelFetch(source, pixel, 0).rgb, 0.0);
+    vec3 light = texelFetch(source, pixel, 0).rgb;
+    if (any(isnan(light)) || any(isinf(light))) atomicAdd(pictureErrors.not_finite, 1u);
+    vec3 c = max(light, 0.0);
     imageStore(display, pixel, vec4(encode(toneMap(c * exp2(params.exposure))), 1.0));
 }
