@@ -49,9 +49,8 @@ impl Driver {
 
     /// Asks for another frame.
     fn ask(&mut self) {
-        self.request.number += 1;
         self.request.clock.jumps += 1;
-        self.engine.request(self.request.clone());
+        self.engine.request(self.request.clock.jumps, self.request.clone());
     }
 
     /// The first report that `pick` takes.
@@ -68,7 +67,7 @@ impl Driver {
 
     /// The graph's picture of the last request.
     fn picture(&self) -> PictureReport {
-        let number = self.request.number;
+        let number = self.request.clock.jumps;
         self.report("a picture", |r| match r {
             Report::Picture(p) if !p.preview && p.request >= number && p.bytes.is_some() => Some(p),
             _ => None,
@@ -125,7 +124,7 @@ fn an_engine_that_ends_by_a_fault_says_so_and_another_goes_on() {
         }
     };
     assert!(why.contains("a fault in the program") && why.contains("asked for by a test"), "{why}");
-    let failed = driver.request.clone();
+    let failed = (driver.request.clock.jumps, driver.request.clone());
     driver.engine = Engine::replace(driver.home.clone(), driver.options.clone(), Arc::new(|| {}), failed);
     // It does not try the same again by itself.
     assert!(driver.engine.reports.recv_timeout(Duration::from_millis(300)).is_err());

@@ -1,7 +1,7 @@
 //! Saving experiments, captures, and the gallery of captures.
 
 use super::engine::Order;
-use super::{Workbench, save, short};
+use super::{Tab, Workbench, save, short};
 use crate::experiment::{Experiment, checked_name};
 use crate::lab::LabError;
 use crate::results::capture::{self, Summary};
@@ -9,6 +9,8 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::{ColorImage, TextureHandle, Ui, Vec2};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+
+pub(super) const TAB: Tab = Tab::new("Save", |workbench, ui, _| workbench.gallery_tab(ui));
 
 /// A picture's file and its small picture, if it could be read.
 type Thumbnail = (PathBuf, Option<ColorImage>);

@@ -114,11 +114,10 @@ impl Workbench {
     pub(super) fn return_to_scene(&mut self) {
         let Some(before) = self.before_loading.take() else { return };
         let failed = (self.desired.scene.clone(), self.desired.environment.clone());
-        let (number, revision, scene_revision) =
-            (self.desired.number, self.desired.revision, self.desired.scene_revision);
+        let (revision, scene_revision) = (self.desired.revision, self.desired.scene_revision);
         let (clock, continuous, redo) = (self.desired.clock, self.desired.continuous, self.desired.redo);
         self.desired = before.desired.clone();
-        (self.desired.number, self.desired.revision, self.desired.scene_revision) = (number, revision, scene_revision);
+        (self.desired.revision, self.desired.scene_revision) = (revision, scene_revision);
         (self.desired.clock, self.desired.continuous, self.desired.redo) = (clock, continuous, redo);
         self.name.clone_from(&before.name);
         self.fixed_size = before.fixed_size;

@@ -1,7 +1,7 @@
 //! The panels at the sides, and what keys do.
 
 use super::engine::Order;
-use super::{Tab, Workbench, help, panel, zoom};
+use super::{TABS, Workbench, help, panel, zoom};
 use egui::{TextureId, Ui};
 
 impl Workbench {
@@ -42,32 +42,16 @@ impl Workbench {
             // All of them in one row.
             ui.spacing_mut().item_spacing.x = 1.0;
             ui.spacing_mut().button_padding.x = 3.0;
-            for (tab, name) in [
-                (Tab::Surroundings, "Scene"),
-                (Tab::Times, "Time"),
-                (Tab::Chart, "Chart"),
-                (Tab::Graph, "Graph"),
-                (Tab::Inspector, "Inspect"),
-                (Tab::Tables, "Tables"),
-                (Tab::Paths, "Motion"),
-                (Tab::Gallery, "Save"),
-            ] {
-                ui.selectable_value(&mut self.tab, tab, egui::RichText::new(name).size(12.0));
+            for tab in TABS {
+                if ui.selectable_label(self.tab.is(tab), egui::RichText::new(tab.title).size(12.0)).clicked() {
+                    self.tab = tab;
+                }
             }
         });
         ui.separator();
         // What no tab shows need not be made.
         (self.desired.inspect, self.desired.table) = (None, None);
-        match self.tab {
-            Tab::Surroundings => self.surroundings(ui),
-            Tab::Times => self.times_tab(ui),
-            Tab::Chart => self.chart_tab(ui),
-            Tab::Graph => self.graph_tab(ui),
-            Tab::Inspector => self.inspector_tab(ui, textures),
-            Tab::Tables => self.tables_tab(ui),
-            Tab::Paths => self.paths_tab(ui),
-            Tab::Gallery => self.gallery_tab(ui),
-        }
+        (self.tab.show)(self, ui, textures);
     }
 
     pub(super) fn shortcuts(&mut self, ui: &Ui) {

@@ -106,18 +106,31 @@ struct Side {
     picture: Option<PictureReport>,
 }
 
-/// Tabs of the right panel.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Tab {
-    Surroundings,
-    Times,
-    Chart,
-    Graph,
-    Inspector,
-    Tables,
-    Paths,
-    Gallery,
+/// A part of the interface; it may show the hosts' pictures.
+type Show = fn(&mut Workbench, &mut Ui, &[TextureId]);
+
+/// A tab of the right panel.
+#[derive(Clone, Copy)]
+struct Tab {
+    title: &'static str,
+    show: Show,
+    /// What stands in the middle of the window while the tab is open.
+    middle: Show,
 }
+
+impl Tab {
+    const fn new(title: &'static str, show: Show) -> Tab {
+        Tab { title, show, middle: |workbench, ui, textures| workbench.picture(ui, textures) }
+    }
+
+    fn is(self, other: Tab) -> bool {
+        self.title == other.title
+    }
+}
+
+/// The tabs, in order.
+const TABS: [Tab; 8] =
+    [surroundings::TAB, times::TAB, chart::TAB, nodes::TAB, inspector::TAB, tables::TAB, paths::TAB, gallery::TAB];
 
 /// How to open the workbench.
 pub struct Options {
@@ -142,8 +155,9 @@ pub struct Workbench {
     engine: Engine,
     watch: watch::Watch,
     desired: RenderRequest,
-    /// The request that the engine was sent last.
+    /// The request that the engine was sent last, and how many it was sent.
     sent: RenderRequest,
+    sent_number: u64,
     name: String,
     sides: [Side; 2],
     scene: Option<Arc<Scene>>,
@@ -233,6 +247,7 @@ impl Workbench {
             engine,
             watch,
             sent: RenderRequest::default(),
+            sent_number: 0,
             desired,
             name: experiment.name.clone(),
             sides: Default::default(),
@@ -251,7 +266,7 @@ impl Workbench {
             panel_side: 0,
             effects: effects::Effects::default(),
             view: view::View::default(),
-            tab: Tab::Surroundings,
+            tab: surroundings::TAB,
             times: times::Times::default(),
             chart: chart::Chart::default(),
             nodes: nodes::Nodes::default(),
@@ -325,19 +340,16 @@ impl Workbench {
     fn show_tables(&mut self) {
         let fills = |o: &Arc<GraphInfo>| o.graph.pointer.is_some() && !o.graph.tables.is_empty();
         if self.sides[0].info.as_ref().is_some_and(fills) {
-            self.tab = Tab::Tables;
+            self.tab = tables::TAB;
         }
     }
 
     /// Sends the desired state to the engine, if it changed.
     fn send_request(&mut self) {
-        let mut desired = self.desired.clone();
-        desired.number = self.sent.number;
-        if differs(&desired, &self.sent) {
-            desired.number += 1;
-            self.desired.number = desired.number;
-            self.sent = desired.clone();
-            self.engine.request(desired);
+        if self.desired != self.sent {
+            self.sent = self.desired.clone();
+            self.sent_number += 1;
+            self.engine.request(self.sent_number, self.sent.clone());
         }
     }
 
@@ -353,7 +365,7 @@ impl Workbench {
                 || self.sides[i]
                     .picture
                     .as_ref()
-                    .is_some_and(|p| !p.preview && p.request >= self.sent.number && self.sides[i].info.is_some())
+                    .is_some_and(|p| !p.preview && p.request >= self.sent_number && self.sides[i].info.is_some())
         };
         shown(0)
             && shown(1)
@@ -379,12 +391,8 @@ impl Workbench {
                 .size_range(180.0..=760.0)
                 .show(ui, |ui| self.right(ui, textures));
         }
-        let inspecting = self.tab == Tab::Inspector && self.inspector.fills_viewport();
-        let central = egui::CentralPanel::no_frame().show(ui, |ui| match (inspecting, self.tab) {
-            (true, _) => self.inspected(ui, textures),
-            (false, Tab::Graph) => self.graph_view(ui),
-            (false, _) => self.picture(ui, textures),
-        });
+        let middle = self.tab.middle;
+        let central = egui::CentralPanel::no_frame().show(ui, |ui| middle(self, ui, textures));
         let place = central.response.rect;
         self.messages(ui, place);
         if self.help {
@@ -433,24 +441,6 @@ impl Workbench {
         messages.extend(self.engine.stop(Duration::from_secs(20)));
         messages
     }
-}
-
-/// Whether two requests differ in anything but their number.
-fn differs(a: &RenderRequest, b: &RenderRequest) -> bool {
-    a.sides != b.sides
-        || a.scene != b.scene
-        || a.environment != b.environment
-        || a.lights != b.lights
-        || a.camera != b.camera
-        || a.path != b.path
-        || a.size != b.size
-        || a.clock != b.clock
-        || a.continuous != b.continuous
-        || a.redo != b.redo
-        || (a.revision, a.scene_revision) != (b.revision, b.scene_revision)
-        || a.inspect != b.inspect
-        || a.table != b.table
-        || (a.window, a.bytes) != (b.window, b.bytes)
 }
 
 fn ron_files(folder: &Path) -> Vec<PathBuf> {

@@ -31,7 +31,7 @@ impl Workbench {
         if self.desired.sides[1].is_some() {
             timers.title[0].insert_str(0, ["A: ", "B: "][side.min(1)]);
         }
-        if let Some((metric, error)) = self.chart.known_error(side, self.sent.number) {
+        if let Some((metric, error)) = self.chart.known_error(side, self.sent_number) {
             timers.title.push(format!("{metric} {error:.3e}"));
         }
         timers.total = medians.total;

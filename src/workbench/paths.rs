@@ -2,12 +2,14 @@
 
 use super::control::spin;
 use super::sequence::Sequence;
-use super::{Workbench, ron_files, short};
+use super::{Tab, Workbench, ron_files, short};
 use crate::camera_path::{self, CameraPath, Key};
 use crate::experiment::{PlacedCamera, checked_name};
 use crate::lab::{LabError, Viewpoint};
 use egui::{DragValue, Ui};
 use std::path::PathBuf;
+
+pub(super) const TAB: Tab = Tab::new("Motion", |workbench, ui, _| workbench.paths_tab(ui));
 
 /// State of this tab.
 pub struct Paths {

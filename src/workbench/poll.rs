@@ -57,7 +57,7 @@ impl Workbench {
 
     /// Leaves an engine that is no longer there to itself, and starts another.
     fn replace_engine(&mut self, why: &str) {
-        let failed = self.sent.clone();
+        let failed = (self.sent_number, self.sent.clone());
         self.engine = Engine::replace(self.home.clone(), self.gpu.clone(), self.wake.clone(), failed);
         (self.loading, self.device) = (None, None);
         let text = format!("{why}. Another engine was started: change a shader or a value, or press Restart device");

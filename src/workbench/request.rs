@@ -79,7 +79,7 @@ impl LightState {
 }
 
 /// Everything that decides what is rendered.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RenderRequest {
     /// A and, when compared, B.
     pub sides: [Option<SideRequest>; 2],
@@ -113,8 +113,6 @@ pub struct RenderRequest {
     pub window: Option<DeviceId>,
     /// Whether every picture is wanted in main memory; the last one before a rest comes there all the same.
     pub bytes: bool,
-    /// Counts requests.
-    pub number: u64,
 }
 
 impl RenderRequest {

@@ -1,14 +1,16 @@
 //! Camera, lights, sky and time: what is around the method.
 
-use super::Workbench;
 use super::control::spin;
 use super::messages::AMBER;
 use super::motion;
 use super::request::LightState;
+use super::{Tab, Workbench};
 use crate::lab::Viewpoint;
 use crate::scene::{Light, LightKind};
 use egui::{DragValue, RichText, Ui};
 use glam::Vec3;
+
+pub(super) const TAB: Tab = Tab::new("Scene", |workbench, ui, _| workbench.surroundings(ui));
 
 const RGB: [&str; 3] = ["red", "green", "blue"];
 

@@ -1,9 +1,11 @@
 //! Buffers of the graph as tables.
 
-use super::Workbench;
+use super::{Tab, Workbench};
 use crate::graph::table::{Cell, CellKind, Column, Table, decode};
 use egui::{Align2, FontId, Ui};
 use egui_extras::{Column as Width, TableBuilder};
+
+pub(super) const TAB: Tab = Tab::new("Tables", |workbench, ui, _| workbench.tables_tab(ui));
 
 /// State of this tab.
 #[derive(Default)]

@@ -4,7 +4,7 @@
 use super::super::engine::Order;
 use super::super::error_worker::{ErrorQuery, ErrorResult};
 use super::super::report::PictureReport;
-use super::super::{Tab, Workbench, save};
+use super::super::{Workbench, save};
 use super::gather::{Gather, Job};
 use super::plot::Live;
 use crate::campaign::sweep::Subject;
@@ -156,9 +156,9 @@ impl Workbench {
 
     /// Whether a side shows something whose error was not asked for.
     fn needs_error(&self, side: usize, query: &ErrorQuery) -> bool {
-        let shows = self.sides[side].picture.as_ref().is_some_and(|p| !p.preview && p.request >= self.sent.number);
+        let shows = self.sides[side].picture.as_ref().is_some_and(|p| !p.preview && p.request >= self.sent_number);
         let asked = self.chart.live.sides[side].asked.as_ref();
-        let known = asked.is_some_and(|a| a.0 >= self.sent.number && a.1 == *query);
+        let known = asked.is_some_and(|a| a.0 >= self.sent_number && a.1 == *query);
         self.desired.sides[side].is_some() && shows && self.sides[side].errors.is_empty() && !known
     }
 
@@ -170,10 +170,10 @@ impl Workbench {
 
     /// Asks for the errors of pictures that have come to rest.
     pub(in super::super) fn request_errors(&mut self, ui: &Ui) {
-        if self.chart.live.since.0 != self.sent.number {
-            self.chart.live.since = (self.sent.number, Instant::now());
+        if self.chart.live.since.0 != self.sent_number {
+            self.chart.live.since = (self.sent_number, Instant::now());
         }
-        if self.tab != Tab::Chart || !self.error_pending() {
+        if !self.tab.is(super::TAB) || !self.error_pending() {
             return;
         }
         let stood = self.chart.live.since.1.elapsed();
@@ -184,7 +184,7 @@ impl Workbench {
         let query = self.query();
         for side in 0..2 {
             if self.needs_error(side, &query) {
-                self.chart.live.sides[side].asked = Some((self.sent.number, query.clone()));
+                self.chart.live.sides[side].asked = Some((self.sent_number, query.clone()));
                 self.engine.order(Order::MeasureError(side, query.clone()));
             }
         }

@@ -8,8 +8,8 @@ mod plot;
 mod rows;
 mod thumbnail;
 
-use super::Workbench;
 use super::control::named;
+use super::{Tab, Workbench};
 use crate::campaign::report::{Data, Dot, axis_title};
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
@@ -20,6 +20,8 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+
+pub(super) const TAB: Tab = Tab::new("Chart", |workbench, ui, _| workbench.chart_tab(ui));
 
 /// Most dots whose places are logged for scripts.
 const MAX_LOGGED: usize = 2000;
@@ -61,7 +63,7 @@ impl Workbench {
         let swept = data.as_ref().and_then(|d| d.samples.get(self.chart.choice.subject));
         differences.extend(swept.and_then(|swept| self.chart.live.reference_differs(swept)));
         let title = axis_title(self.chart.choice.metric);
-        let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent.number));
+        let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent_number));
         let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
         let shown = plot::Shown {
             chosen: &self.chart.chosen,
@@ -222,7 +224,7 @@ impl Workbench {
     /// Whether something is about to come.
     pub(super) fn chart_awaits(&self) -> bool {
         let reading = self.chart.folder.as_ref().is_some_and(|f| f.data.is_none());
-        self.tab == super::Tab::Chart && (reading || self.chart.live.awaits() || self.error_pending())
+        self.tab.is(TAB) && (reading || self.chart.live.awaits() || self.error_pending())
     }
 }
 

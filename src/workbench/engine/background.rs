@@ -15,7 +15,7 @@ impl Run<'_> {
         let shown = side.session.as_ref().filter(|_| side.key.as_ref() == Some(&self.key(desired, number)));
         let (Some(session), Some(loaded)) = (shown, &side.loaded) else {
             let result = Err("what is asked for is not shown".into());
-            self.out.send(Report::Error(ErrorResult { side: number, request: self.desired.number, query, result }));
+            self.out.send(Report::Error(ErrorResult { side: number, request: self.number, query, result }));
             return;
         };
         let request = ErrorRequest {

@@ -47,9 +47,12 @@ pub enum Order {
     Quit,
 }
 
+/// A request, and how many there were.
+type Numbered = (u64, RenderRequest);
+
 /// The window's end of an engine.
 pub struct Engine {
-    desired: Arc<Mutex<RenderRequest>>,
+    desired: Arc<Mutex<Numbered>>,
     orders: Sender<Order>,
     /// Messages from the engine.
     pub reports: Receiver<Report>,
@@ -69,7 +72,7 @@ impl Engine {
         home: Workspace,
         options: GpuOptions,
         wake: Arc<dyn Fn() + Send + Sync>,
-        failed: RenderRequest,
+        failed: (u64, RenderRequest),
     ) -> Engine {
         Engine::begin(home, options, wake, Some(failed))
     }
@@ -78,7 +81,7 @@ impl Engine {
         home: Workspace,
         options: GpuOptions,
         wake: Arc<dyn Fn() + Send + Sync>,
-        failed: Option<RenderRequest>,
+        failed: Option<Numbered>,
     ) -> Engine {
         let waits = failed.is_some();
         let patience = Some(options.patience.unwrap_or(FRAME_PATIENCE));
@@ -110,9 +113,9 @@ impl Engine {
         self.pulse.beats()
     }
 
-    /// Works towards this from now on.
-    pub fn request(&self, request: RenderRequest) {
-        *self.desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = request;
+    /// Works towards this from now on. Requests are numbered in their order: what answers one says its number.
+    pub fn request(&self, number: u64, request: RenderRequest) {
+        *self.desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = (number, request);
         self.order(Order::Reconcile);
     }
 
@@ -189,6 +192,8 @@ struct Run<'a> {
     lab: Lab,
     out: &'a Out,
     desired: RenderRequest,
+    /// Of the desired state.
+    number: u64,
     sides: [Side; 2],
     jobs: Sender<Job>,
     error_requests: Sender<ErrorRequest>,
@@ -220,7 +225,7 @@ struct Clocked {
 fn run(
     home: Workspace,
     options: GpuOptions,
-    desired: &Mutex<RenderRequest>,
+    desired: &Mutex<Numbered>,
     inbox: &Receiver<Order>,
     out: &Out,
     pulse: &Pulse,
@@ -261,7 +266,7 @@ enum End {
 fn session(
     home: Workspace,
     options: &GpuOptions,
-    desired: &Mutex<RenderRequest>,
+    desired: &Mutex<Numbered>,
     inbox: &Receiver<Order>,
     (out, pulse): (&Out, &Pulse),
     messages: &mut Vec<String>,
@@ -281,6 +286,7 @@ fn session(
         lab,
         out,
         desired: RenderRequest::default(),
+        number: 0,
         sides: Default::default(),
         jobs,
         error_requests,
@@ -367,7 +373,7 @@ impl Run<'_> {
         orders: Vec<Order>,
         builds: Vec<Done>,
         scenes: Vec<Result<Arc<Scene>, SceneError>>,
-        desired: &Mutex<RenderRequest>,
+        desired: &Mutex<Numbered>,
     ) -> Result<(), LabError> {
         for scene in scenes {
             self.scene_came(scene)?;
@@ -393,14 +399,15 @@ impl Run<'_> {
             }
         }
         let latest = desired.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
-        if latest.number != self.desired.number {
+        if latest.0 != self.number {
             self.change(latest)?;
         }
         Ok(())
     }
 
     /// Takes in a new request.
-    fn change(&mut self, desired: RenderRequest) -> Result<(), LabError> {
+    fn change(&mut self, (number, desired): Numbered) -> Result<(), LabError> {
+        self.number = number;
         let old = std::mem::replace(&mut self.desired, desired);
         if self.desired.clock.jumps != self.clock.jumps {
             self.clock.jumps = self.desired.clock.jumps;
@@ -414,16 +421,19 @@ impl Run<'_> {
                 side.lights = true;
             }
         }
-        // Files, parameters and sizes ask for frames when what they lead to has been built.
-        let view = |w: &RenderRequest| (w.camera, w.clock, w.continuous, w.redo, w.inspect.clone(), w.table);
-        // While another scene is loaded, and when it cannot be, the one before answers.
-        let scene = |w: &RenderRequest| (w.scene.clone(), w.environment.clone());
-        let same = scene(&self.desired) == scene(&old);
-        if !same
-            || view(&self.desired) != view(&old)
-            || self.desired.lights != old.lights
-            || self.desired.path != old.path
-        {
+        // Files, parameters and sizes ask for frames when what they lead to has been built. While another scene is loaded,
+        // and when it cannot be, the one before answers.
+        let new = &self.desired;
+        let unseen = RenderRequest {
+            sides: new.sides.clone(),
+            size: new.size,
+            revision: new.revision,
+            scene_revision: new.scene_revision,
+            window: new.window,
+            bytes: new.bytes,
+            ..old
+        };
+        if unseen != self.desired {
             self.request_frames(1);
         }
         for i in 0..2 {

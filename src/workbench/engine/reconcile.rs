@@ -46,11 +46,11 @@ impl Run<'_> {
         if side.key.as_ref() == Some(&key) {
             // What failed meanwhile is taken back.
             side.failed = None;
-            side.answered = self.desired.number;
+            side.answered = self.number;
             return Ok(());
         }
         if side.failed.as_ref() == Some(&key) {
-            side.answered = self.desired.number;
+            side.answered = self.number;
             return Ok(());
         }
         let same_files = |k: &Key| k.graph == key.graph && k.revision == key.revision;
@@ -65,7 +65,7 @@ impl Run<'_> {
                 Ok(Some(params)) => {
                     side.key = Some(key);
                     side.failed = None;
-                    side.answered = self.desired.number;
+                    side.answered = self.number;
                     self.out.send(Report::Set { side: number, params });
                     self.request_frames(1);
                     return Ok(());

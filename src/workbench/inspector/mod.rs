@@ -10,7 +10,7 @@ mod work;
 use super::control::{named, spin};
 use super::report::GraphInfo;
 use super::request::InspectTarget;
-use super::{INSPECTOR, Workbench};
+use super::{INSPECTOR, Tab, Workbench};
 use crate::graph::plan::TexturePlan;
 use crate::lab::Texels;
 use crate::vulkan::format::Channels;
@@ -18,6 +18,14 @@ use egui::{Color32, DragValue, Slider, TextureId, Ui, Vec2};
 use image::{Channel, Tone};
 use std::sync::Arc;
 use work::{Done, Source, Work};
+
+pub(super) const TAB: Tab = Tab {
+    middle: |workbench, ui, textures| match workbench.inspector.fills_viewport() {
+        true => workbench.inspected(ui, textures),
+        false => workbench.picture(ui, textures),
+    },
+    ..Tab::new("Inspect", |workbench, ui, textures| workbench.inspector_tab(ui, textures))
+};
 
 /// State of this tab.
 pub struct Inspector {

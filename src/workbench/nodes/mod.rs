@@ -8,6 +8,11 @@ use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, 
 use layout::{Layout, ROW, TITLE, WIDTH};
 use std::sync::Arc;
 
+pub(super) const TAB: Tab = Tab {
+    middle: |workbench, ui, _| workbench.graph_view(ui),
+    ..Tab::new("Graph", |workbench, ui, _| workbench.graph_tab(ui))
+};
+
 /// State of this tab.
 #[derive(Default)]
 pub struct Nodes {
@@ -83,7 +88,7 @@ impl Workbench {
             Some(Asked::Choose(name)) => self.nodes.chosen = Some(name),
             Some(Asked::Inspect(texture)) => {
                 self.inspector.open(side, texture);
-                self.tab = Tab::Inspector;
+                self.tab = super::inspector::TAB;
             }
             None => {}
         }
@@ -162,7 +167,7 @@ impl Workbench {
                 let text = format!("{resource}  {}", texture.map_or(String::new(), |t| of(info, t)));
                 if ui.add_enabled(texture.is_some(), egui::Button::new(text).small().frame(false)).clicked() {
                     self.inspector.open(side, resource.clone());
-                    self.tab = Tab::Inspector;
+                    self.tab = super::inspector::TAB;
                 }
             }
         }

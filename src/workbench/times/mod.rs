@@ -15,6 +15,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+pub(super) const TAB: Tab = Tab::new("Time", |workbench, ui, _| workbench.times_tab(ui));
+
 /// How long a table stands before it is worked out anew.
 const TABLE_AGE: Duration = Duration::from_millis(250);
 /// Height of a row of the tables, points.
@@ -215,7 +217,7 @@ impl Workbench {
             return;
         };
         self.inspector.open(side, texture);
-        self.tab = Tab::Inspector;
+        self.tab = super::inspector::TAB;
     }
 }
 
