@@ -2,21 +2,12 @@
 
 mod common;
 
-use common::{conelab, fails, root, succeeds, table};
+use common::{conelab, fails, home, succeeds, table};
 use std::path::Path;
 use std::process::Command;
 use std::time::SystemTime;
-use tempfile::TempDir;
 
 /// A folder with the program's graphs and shaders, so that references are the test's own.
-fn home() -> TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders", "configs"] {
-        std::os::unix::fs::symlink(root().join(folder), home.path().join(folder)).unwrap();
-    }
-    home
-}
-
 /// Cornell in 64x36 pixels and 32 voxels.
 fn ablate(home: &Path, more: &[&str]) -> Command {
     let mut command = conelab(home);

@@ -293,7 +293,11 @@ fn standard_output_is_json_alone_or_an_error_when_full() {
     let list = |name: &str| outline[name].as_array().unwrap().clone();
     let picture = list("textures").into_iter().find(|t| t["name"] == "display").unwrap();
     assert_eq!((&picture["extent"], &picture["bytes"]), (&serde_json::json!([64, 48, 1]), &(64 * 48 * 4).into()));
-    assert!(list("passes").iter().any(|p| p["name"] == "display" && p["writes"] == serde_json::json!(["display"])));
+    assert!(
+        list("passes")
+            .iter()
+            .any(|p| p["name"] == "display" && p["writes"] == serde_json::json!(["display", "pictureErrors"]))
+    );
 
     let out = Out::new();
     let stats = succeeds(render("cornell", &out.path("x.png")).args(["--frames", "1", "--json", "-"]));

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, fails, root, succeeds};
+use common::{conelab, fails, home, root, succeeds};
 use conelab::metrics::Linear;
 use conelab::results::picture;
 use serde_json::Value;
@@ -122,18 +122,6 @@ fn what_cannot_be_compared_is_said() {
 }
 
 /// A copy of the program's graphs and shaders, so that what is cached in it is the test's own.
-fn home() -> TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders"] {
-        common::copy(&root().join(folder), &home.path().join(folder));
-    }
-    std::fs::create_dir(home.path().join("configs")).unwrap();
-    for file in ["default.ron", "thesis.ron"] {
-        std::fs::copy(root().join("configs").join(file), home.path().join("configs").join(file)).unwrap();
-    }
-    home
-}
-
 const CORNELL: [&str; 4] = ["--scene", "cornell", "--size", "48x36"];
 const COARSE: [&str; 4] = ["--set", "voxel_dim=32", "--set", "shadow_dim=256"];
 

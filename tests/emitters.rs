@@ -2,26 +2,16 @@
 
 mod common;
 
-use common::{assert_clean, copy, experiment, floats, lab, mean, root, scene};
+use common::{assert_clean, experiment, floats, home, lab, mean, root, scene};
 use conelab::experiment::{CameraChoice, PlacedCamera};
 use conelab::measure::reference::{Goal, gather};
 use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Texture, TextureFormat, Vertex};
 use glam::{Mat4, Quat, Vec3, Vec4};
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use tempfile::TempDir;
 
 const ALBEDO: f64 = 0.5;
 const RADIANCE: f64 = 7.0;
-
-/// A place for references of a test alone.
-fn own_home() -> TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders"] {
-        copy(&root().join(folder), &home.path().join(folder));
-    }
-    home
-}
 
 /// A level square around the origin, by its edge.
 fn square(edge: f32, material: u32) -> Mesh {
@@ -67,7 +57,7 @@ fn form_factor(edge: f64) -> f64 {
 
 /// Mean diffuse light of the floor's middle after one turn, and the noise of its total, by so many samples.
 fn floor_light(scene: Scene, samples: u64, time: f64) -> (f64, f64) {
-    let home = own_home();
+    let home = home();
     let lab = lab(home.path());
     let mut look = experiment("lamp", (16, 12), &[]);
     look.camera = CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 1.0));
@@ -123,7 +113,7 @@ fn a_lamp_that_moves_takes_its_light_along() {
 /// A box lit by a lamp of 47 x 38 cm under its ceiling, seen from inside and from 7 m away: what all wide cones lost.
 #[test]
 fn a_small_lamp_lights_its_room() {
-    let home = own_home();
+    let home = home();
     let lab = lab(home.path());
     for camera in ["default", "outside"] {
         let mut look = experiment("small-quad", (48, 36), &[("voxel_dim", "64"), ("gather_frames", "4")]);

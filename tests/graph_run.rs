@@ -1603,10 +1603,7 @@ fn what_is_left_out_is_the_default() {
 fn the_example_of_the_documentation_runs() {
     let text = std::fs::read_to_string(common::root().join("docs/graph.md")).unwrap();
     let example = text.split("## A complete example").nth(1).unwrap();
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders", "configs"] {
-        common::copy(&common::root().join(folder), &home.path().join(folder));
-    }
+    let home = common::home();
     // Each file is a block behind a line with its name: `passes/sketch.ron`:
     let mut files = 0;
     let blocks: Vec<&str> = example.split("\n```").collect();

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, copy, fails, root};
+use common::{conelab, fails, home, root};
 use conelab::scene::{Scene, SceneError};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -16,12 +16,6 @@ fn folder() -> TempDir {
 }
 
 /// A copy of the program's folders.
-fn home() -> TempDir {
-    let home = folder();
-    ["passes", "shaders", "configs"].iter().for_each(|name| copy(&root().join(name), &home.path().join(name)));
-    home
-}
-
 fn write(folder: &TempDir, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
     std::fs::write(folder.path().join(name), content).unwrap();
     folder.path().join(name)

@@ -305,10 +305,7 @@ fn method((lab, e, scene, frames): &(Lab, Experiment, Arc<Scene>, usize), textur
 
 /// Of one part of the reference.
 fn reference((_, e, scene, _): &(Lab, Experiment, Arc<Scene>, usize), part: &str, samples: u64) -> Vec<[f32; 3]> {
-    let home = folder();
-    for folder in ["passes", "shaders", "configs"] {
-        common::copy(&common::root().join(folder), &home.path().join(folder));
-    }
+    let home = common::home();
     let lab = lab(home.path());
     let found = gather(&lab, e, scene, 1, Goal::Samples(samples), &mut |_| ControlFlow::Continue(())).unwrap();
     assert_clean(&lab);

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{assert_clean, conelab, copy, experiment, fails, floats, lab, mean, prepare, root, scene, succeeds};
+use common::{assert_clean, conelab, experiment, fails, floats, lab, mean, prepare, root, scene, succeeds};
 use conelab::experiment::Experiment;
 use conelab::graph::hot_reload::Change;
 use conelab::graph::load::{Folders, Graph, load};
@@ -47,11 +47,7 @@ fn page() -> Page {
 
 /// A copy of the method with the page's model in it: one file, one line.
 fn home_with_model(page: &Page) -> TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders"] {
-        copy(&root().join(folder), &home.path().join(folder));
-    }
-    copy_file("configs/default.ron", home.path());
+    let home = common::home();
     assert!(!home.path().join(&page.shader).exists(), "{} is a new file", page.shader.display());
     std::fs::write(home.path().join(&page.shader), &page.glsl).unwrap();
     assert_eq!(page.line.lines().count(), 1, "one line");
@@ -63,11 +59,6 @@ fn home_with_model(page: &Page) -> TempDir {
         format!("{}{}{}", &text[..end], page.line, &text[end..])
     });
     home
-}
-
-fn copy_file(name: &str, home: &Path) {
-    std::fs::create_dir_all(home.join(name).parent().unwrap()).unwrap();
-    std::fs::copy(root().join(name), home.join(name)).unwrap();
 }
 
 fn edit(home: &Path, file: &Path, change: impl FnOnce(String) -> String) {

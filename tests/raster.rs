@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{assert_clean, copy, experiment, floats, lab, root, scene};
+use common::{assert_clean, experiment, floats, lab, root, scene};
 use conelab::experiment::PlacedCamera;
 use conelab::lab::{Lab, Session};
 use conelab::scene::{Light, LightKind, Scene};
@@ -94,10 +94,7 @@ fn threads_see_the_surfaces_that_the_rasteriser_sees() {
 
 #[test]
 fn atomics_of_32_bits_and_full_queues_and_any_order_give_the_same_bits() {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders", "configs"] {
-        copy(&root().join(folder), &home.path().join(folder));
-    }
+    let home = common::home();
     let file = home.path().join("passes/parts/raster.ron");
     let text = std::fs::read_to_string(&file).unwrap();
     let small = text.replace("262144 *", "40 *").replace("1048576 *", "7 *");

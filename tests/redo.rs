@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{assert_clean, copy, experiment, floats, lab, mean, root, scene};
+use common::{assert_clean, experiment, floats, lab, mean, root, scene};
 use conelab::diagnostics::{At, Loc};
 use conelab::experiment::{Experiment, PlacedCamera};
 use conelab::graph::run::{FrameTimes, Redo};
@@ -160,10 +160,7 @@ const BY_RASTER: [(&str, &str); 3] = [("voxelizer", "raster"), ("shadow_map", "r
 
 #[test]
 fn pictures_are_the_same_whatever_is_edited() {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders", "configs"] {
-        copy(&root().join(folder), &home.path().join(folder));
-    }
+    let home = common::home();
     // So that what gathers rests now and then between two edits.
     settles(home.path(), "bounces", "32 * bounce_frames", "5");
     settles(home.path(), "shade", "turns + 1", "3");

@@ -13,20 +13,6 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
-use tempfile::TempDir;
-
-/// A folder with the repository's graphs, shaders and experiments, and no references.
-fn empty_home() -> TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders"] {
-        common::copy(&root().join(folder), &home.path().join(folder));
-    }
-    std::fs::create_dir(home.path().join("configs")).unwrap();
-    for file in ["default.ron", "thesis.ron"] {
-        std::fs::copy(root().join("configs").join(file), home.path().join("configs").join(file)).unwrap();
-    }
-    home
-}
 
 #[track_caller]
 fn trace(lab: &Lab, experiment: &Experiment, scene: &Arc<Scene>, bounces: u32, samples: u64) -> Reference {
@@ -98,7 +84,7 @@ const SPOT: Means = &[
 /// Compares references of 1, 2, ... bounces with what was recorded.
 #[track_caller]
 fn assert_means(experiment: &Experiment, samples: u64, expected: Means) {
-    let home = empty_home();
+    let home = common::home();
     let lab = lab(home.path());
     let scene = scene(&experiment.scene);
     let bounces = expected.iter().filter(|m| m.0.starts_with("bounce")).count() as u32;
@@ -157,7 +143,7 @@ fn a_bright_spot_of_the_sky_lights_a_ball_and_a_floor_as_an_independent_renderer
 #[test]
 fn the_furnace_gains_what_every_bounce_must_bring() {
     // Emission 1, albedo 0.5. What is reflected specularly is at least 0 and at most its own share for the worst angle.
-    let home = empty_home();
+    let home = common::home();
     let lab = lab(home.path());
     let furnace = scene("furnace");
     let [least, most] = specular_albedo(f64::from(furnace.materials[0].roughness));
@@ -211,7 +197,7 @@ fn specular_albedo(roughness: f64) -> [f64; 2] {
 
 #[test]
 fn a_white_sphere_vanishes_before_a_white_sky() {
-    let home = empty_home();
+    let home = common::home();
     let lab = lab(home.path());
     let reference = trace(&lab, &experiment("white-sky", (48, 48), &[]), &scene("white-sky"), 1, 32);
     let part = |name: &str| reference.parts[name].mean.rgb.clone();
@@ -238,7 +224,7 @@ fn slope(y: &[f64]) -> f64 {
 
 #[test]
 fn twice_the_samples_halve_the_relmse() {
-    let home = empty_home();
+    let home = common::home();
     let lab = lab(home.path());
     let (cornell, experiment) = (scene("cornell"), experiment("cornell", (32, 24), &[]));
     let steps: Vec<Reference> = (5..=10).map(|i| trace(&lab, &experiment, &cornell, 1, 1 << i)).collect();
@@ -252,7 +238,7 @@ fn twice_the_samples_halve_the_relmse() {
 
 #[test]
 fn samples_depend_on_the_seed_alone_and_not_on_where_a_run_was_stopped() {
-    let (one, two) = (empty_home(), empty_home());
+    let (one, two) = (common::home(), common::home());
     let cornell = scene("cornell");
     let size = (32, 24);
     let whole = trace(&lab(one.path()), &experiment("cornell", size, &[]), &cornell, 2, 96);
@@ -292,7 +278,7 @@ fn samples_depend_on_the_seed_alone_and_not_on_where_a_run_was_stopped() {
 
 #[test]
 fn a_killed_run_loses_no_kept_sample() {
-    let (home, calm) = (empty_home(), empty_home());
+    let (home, calm) = (common::home(), common::home());
     let run = |home: &Path, samples: &str| {
         let mut command = conelab(home);
         command.args(["reference", "configs/default.ron", "--scene", "cornell", "--size", "32x24", "--spp", samples]);
@@ -335,7 +321,7 @@ type Change = (&'static str, fn(&mut Scene));
 
 #[test]
 fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
-    let home = empty_home();
+    let home = common::home();
     let lab = lab(home.path());
     let cornell = scene("cornell");
     let plain = || experiment("cornell", (16, 12), &[]);
@@ -380,7 +366,7 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
 
 #[test]
 fn damaged_references_are_told_and_not_trusted() {
-    let home = empty_home();
+    let home = common::home();
     let lab = lab(home.path());
     let (cornell, experiment) = (scene("cornell"), experiment("cornell", (16, 12), &[]));
     let folder = trace(&lab, &experiment, &cornell, 1, 32).folder;

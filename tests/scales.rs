@@ -117,19 +117,10 @@ fn a_room_far_from_the_origin_looks_as_one_at_it() {
     assert_alike("far-away", &placed(&scene("far-away"), Vec3::new(-80_000.0, 0.0, 60_000.0), 1.0));
 }
 
-/// A place for references of this test alone.
-fn own_home() -> tempfile::TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders"] {
-        common::copy(&root().join(folder), &home.path().join(folder));
-    }
-    home
-}
-
 /// One map over 200 km has texels of 50 m, in which a house casts no shadow.
 #[test]
 fn what_is_small_in_a_huge_scene_casts_its_shadow() {
-    let home = own_home();
+    let home = common::home();
     let lab = lab(home.path());
     for (name, least) in [("plain", 0.05), ("huge-ground", 0.0)] {
         let with = |maps: &str| experiment(name, (120, 68), &[("shadow_maps", maps), ("voxel_dim", "32")]);
@@ -191,7 +182,7 @@ fn shadow_maps_move_by_whole_texels() {
 
 #[test]
 fn paths_see_what_is_small_or_far_away_too() {
-    let home = own_home();
+    let home = common::home();
     let lab = lab(home.path());
     for (name, offset, scale) in
         [("pocket", Vec3::ZERO, 1000.0), ("far-away", Vec3::new(-80_000.0, 0.0, 60_000.0), 1.0)]
@@ -234,7 +225,7 @@ fn lamps(mesh: &Mesh, size: f32) -> Arc<Scene> {
 /// Lamps of a voxel or so are as bright as they are: what voxels keep of them is neither their cells nor nothing.
 #[test]
 fn small_lamps_shine_as_bright_as_they_are() {
-    let home = own_home();
+    let home = common::home();
     let lab = lab(home.path());
     const CELL: f32 = 5.4 / 59.0; // of 64 across the scene, five of them beside it
     let ball = cube(3, 1.0);

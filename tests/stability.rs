@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, fails, root, succeeds, table};
+use common::{conelab, fails, home, root, succeeds, table};
 use conelab::campaign::stability::{Suite, change, flicker, settling, step};
 use conelab::metrics::colour::display;
 use conelab::metrics::{Kind, Linear};
@@ -10,7 +10,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
 fn grey(values: &[f32]) -> Linear {
     Linear { size: (values.len() as u32, 1), rgb: values.iter().map(|v| [*v; 3]).collect() }
@@ -77,14 +76,6 @@ fn step_response() {
 }
 
 /// A folder with the program's graphs and shaders, so that references and captures are the test's own.
-fn home() -> TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders", "configs"] {
-        std::os::unix::fs::symlink(root().join(folder), home.path().join(folder)).unwrap();
-    }
-    home
-}
-
 /// A suite on small voxels of the room with the moving box.
 fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
     let path = home.join("small.ron");

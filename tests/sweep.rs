@@ -2,23 +2,14 @@
 
 mod common;
 
-use common::{conelab, fails, root, succeeds, table};
+use common::{conelab, fails, home, succeeds, table};
 use conelab::campaign::sweep::Sweep;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
 /// A folder with the program's graphs and shaders, so that references and captures are the test's own.
-fn home() -> TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders", "configs"] {
-        std::os::unix::fs::symlink(root().join(folder), home.path().join(folder)).unwrap();
-    }
-    home
-}
-
 /// A sweep of cornell that a software device measures in tens of milliseconds a point.
 fn sweep_file(home: &Path, axes: &str) -> PathBuf {
     let path = home.join("small.ron");

@@ -3,7 +3,7 @@
 mod common;
 
 use common::closed_meshes::{placed, torus};
-use common::{assert_clean, copy, experiment, floats, lab, prepare, root, scene};
+use common::{assert_clean, experiment, floats, lab, prepare, root, scene};
 use conelab::diagnostics::{At, Loc};
 use conelab::experiment::PlacedCamera;
 use conelab::graph::table::{Cell, decode};
@@ -147,10 +147,7 @@ void main() {
 ";
 
 fn home() -> TempDir {
-    let home = tempfile::tempdir().unwrap();
-    for folder in ["passes", "shaders"] {
-        copy(&root().join(folder), &home.path().join(folder));
-    }
+    let home = common::home();
     std::fs::write(home.path().join("passes/mapping.ron"), GRAPH).unwrap();
     std::fs::write(home.path().join("shaders/map_points.comp"), MAP_POINTS).unwrap();
     home

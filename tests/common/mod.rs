@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Arc;
+use tempfile::TempDir;
 
 /// The repository.
 pub fn root() -> &'static Path {
@@ -145,6 +146,15 @@ pub fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
         cells.map(|(name, value)| (name.to_string(), value.to_string())).collect()
     };
     reader.records().map(|r| line(r.unwrap())).collect()
+}
+
+/// A copy of the repository's graphs, shaders and experiments, for what a test writes.
+pub fn home() -> TempDir {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["passes", "shaders", "configs"] {
+        copy(&root().join(folder), &home.path().join(folder));
+    }
+    home
 }
 
 /// Copies a folder with all that is in it.

@@ -1,7 +1,7 @@
 //! A driver: a virtual screen with the program on it, a hand for mouse and keys, and an eye on pixels and events.
 #![allow(dead_code, reason = "each test uses a part")]
 
-use crate::common::{conelab, root};
+use crate::common::conelab;
 use serde_json::Value;
 use std::collections::HashMap;
 use std::fs::File;
@@ -110,10 +110,7 @@ impl WindowDriver {
     #[track_caller]
     pub fn open_with(experiment: &str, args: &[&str], variables: &[(&str, &str)]) -> WindowDriver {
         let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
-        let home = tempfile::tempdir().unwrap();
-        for folder in ["passes", "shaders", "configs"] {
-            copy(&root().join(folder), &home.path().join(folder));
-        }
+        let home = crate::common::home();
         std::fs::write(home.path().join("configs/opened.ron"), experiment).unwrap();
         let (server, display) = screen();
         let log = home.path().join("events.jsonl");
@@ -592,16 +589,4 @@ pub fn centre(r: Rect) -> (f64, f64) {
 pub fn with(text: &str, old: &str, new: &str) -> String {
     assert_eq!(text.matches(old).count(), 1, "'{old}' stands once");
     text.replace(old, new)
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap().flatten() {
-        let target = to.join(entry.file_name());
-        if entry.path().is_dir() {
-            copy(&entry.path(), &target);
-        } else {
-            std::fs::copy(entry.path(), target).unwrap();
-        }
-    }
 }
