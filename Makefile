@@ -10,12 +10,17 @@ SIZE ?= 1280x720
 ARGS ?=
 # Run only the tests whose names hold this, for example: make test TESTS=voxel
 TESTS ?=
+# Suites that take a minute and more; what takes a second at most; and all others (files of tests/).
+SLOW := chart emitters options readme redo reference scales settings stability sweep turns volume window
+QUICK := effects floors graph_errors hostile metrics results structure
+SUITES := $(filter-out $(SLOW),$(basename $(notdir $(wildcard tests/*.rs))))
+RUN := cargo test --release --locked --no-fail-fast
 
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 CONELAB := cargo run --quiet --release --locked --
 OUT := captures/demo
 
-.PHONY: help demo view shot test check fmt dist setup clean
+.PHONY: help demo view shot quick test slow check record fmt dist setup clean
 
 help: ## Say what there is
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1	\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -43,16 +48,30 @@ shot: ## Take the README's picture of the workbench
 	@$(CONELAB) screenshot configs/default.ron --scene atrium --window 1600x900 \
 		--click "raster | tessellated" --click Time --click "keep rendering" --measure 400 $(ARGS) -o docs/workbench.jpg
 
-test: ## Run all tests
+quick: ## Run the tests that take a minute together
 	@scripts/setup.sh build run test
-	@cargo test --locked --quiet --doc $(TESTS)
-	@cargo test --locked --no-fail-fast --lib --bins --tests $(TESTS)
+	@$(RUN) --lib $(QUICK:%=--test %) $(TESTS)
+
+test: ## Run the tests, but for the slow suites
+	@scripts/setup.sh build run test
+	@cargo test --release --locked --quiet --doc $(TESTS)
+	@$(RUN) --lib --bins $(SUITES:%=--test %) $(TESTS)
+
+slow: ## Run the slow suites
+	@scripts/setup.sh build run test
+	@$(RUN) $(SLOW:%=--test %) $(TESTS)
 
 check: ## Check formatting, lints, graphs, shaders and experiments
 	@scripts/setup.sh build
 	@cargo fmt --check
-	@cargo clippy --locked --all-targets -- -D warnings
-	@cargo run --quiet --locked -- check
+	@cargo clippy --release --locked --all-targets -- -D warnings
+	@$(CONELAB) check
+
+record: ## Measure again what docs/results.md has tables of, and write them (an hour of a GPU)
+	@scripts/setup.sh build run
+	@cargo build --release --locked
+	@scripts/record.sh
+	@CONELAB_BLESS=1 cargo test --release --locked --test results
 
 fmt: ## Format the source
 	@cargo fmt
