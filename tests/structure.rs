@@ -118,7 +118,7 @@ fn regions_count_the_pairs_whose_blocks_are_both_inside() {
     let compared = Compared::new(&edge, &flat, Kind::Radiance).unwrap();
     let of = |inside: &dyn Fn(u32, u32) -> bool| {
         let mask: Vec<bool> = (0..SIDE * SIDE).map(|i| inside(i % SIDE, i / SIDE)).collect();
-        compared.scores(Some(&mask)).unwrap().structure
+        compared.scores(Some(&mask)).unwrap().get("structure")
     };
     // Ten columns of blocks, whose right ones end at the edge: none of its pairs.
     close(of(&|x, _| x < 20), 0.0);
@@ -152,7 +152,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
     let (x, r) = (picture(|x, y| random(x, y, 3)), picture(|x, y| random(x, y, 4)));
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| scores(&x, &r).unwrap().structure.to_bits())
+        pool.install(|| scores(&x, &r).unwrap().get("structure").to_bits())
     };
     assert_eq!(with(1), with(5));
 }

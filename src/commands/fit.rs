@@ -2,12 +2,13 @@
 
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
-use crate::campaign::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
+use crate::campaign::fit::{self, Axis, Evaluator, Found, Goal, Limits, Step, Stop, Subject};
 use crate::campaign::settings::{named, values};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace, params_of};
 use crate::measure::Frames;
 use crate::measure::reference::{self, ALL_BOUNCES};
+use crate::metrics::{Metric, RELMSE, within_noise};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -26,8 +27,8 @@ pub struct FitArgs {
     #[arg(long, value_name = "MS")]
     max_ms: Option<f64>,
     /// How the error is measured.
-    #[arg(long, value_enum, default_value = "relmse")]
-    metric: Metric,
+    #[arg(long, default_value = RELMSE, value_parser = super::metric_of(Metric::ranking()))]
+    metric: &'static Metric,
     /// Part of the light that is compared.
     #[arg(long, default_value = "total")]
     part: String,
@@ -116,8 +117,9 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     let wanted = reference::Goal::Samples(args.spp);
     let reference = super::reference::with_bar(&lab, &experiment, &scene, args.bounces, wanted)?;
     let noise = reference.parts.get(&args.part).map_or(0.0, |p| p.noise.relmse);
-    if let (Goal::Error(bound), Metric::Relmse) = (goal, args.metric)
-        && bound < 4.0 * noise
+    if let Goal::Error(bound) = goal
+        && args.metric.key == RELMSE
+        && within_noise(bound, Some(noise))
     {
         eprintln!(
             "warning: an error of {bound} is below four times the reference's noise ({noise:.2e}) and cannot be told \
@@ -204,11 +206,7 @@ fn why(stop: Stop) -> &'static str {
 /// What the search has found, for people.
 fn summary(found: &Found, goal: Goal, args: &FitArgs, sizes: &[usize]) -> Vec<String> {
     let (ms, error) = goal.time_and_error(found.trial);
-    let metric = match args.metric {
-        Metric::Relmse => "relMSE",
-        Metric::HdrFlip => "HDR-FLIP",
-        Metric::Structure => "structure",
-    };
+    let metric = args.metric.axis();
     let bound = match goal {
         Goal::Error(bound) => format!("{metric} at most {bound}"),
         Goal::Time(bound) => format!("at most {bound} ms"),

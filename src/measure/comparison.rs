@@ -4,12 +4,11 @@ mod table;
 mod verdict;
 
 pub use table::table;
-pub use verdict::{NOISE_FACTOR, Verdict, within_noise};
+pub use verdict::Verdict;
 
-use crate::measure::reference::Noise;
 use crate::metrics::maps::{MapFile, maps};
 use crate::metrics::region::{Region, regions};
-use crate::metrics::{Compared, Kind, Linear, MetricError, Scores};
+use crate::metrics::{Compared, Kind, Linear, MetricError, Noise, RELMSE, Scores, within_noise};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -175,13 +174,13 @@ fn compare_part(part: &str, compared: &[Compared], noise: Option<Noise>, areas: 
             _ => BTreeMap::new(),
         };
         let within =
-            |s: &Option<Scores>| s.as_ref().is_some_and(|s| verdict::within_noise(s.relmse, noise.map(|n| n.relmse)));
+            |s: &Option<Scores>| s.as_ref().is_some_and(|s| within_noise(s.get(RELMSE), noise.map(|n| n.relmse)));
         let within_noise = scores.iter().map(within).collect();
         RegionComparison { region: name.into(), share, scores, within_noise, better }
     };
     let mut list = vec![region(FRAME, 1.0, None)];
     list.extend(areas.iter().map(|a| region(&a.name, a.share(), Some(&a.mask))));
-    let exposures = compared.first().map(|c| c.exposures);
+    let exposures = compared.first().map(Compared::exposures);
     PartComparison {
         part: part.into(),
         noise: noise.map(|n| n.relmse),

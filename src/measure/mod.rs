@@ -14,7 +14,7 @@ use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::measure::reference::Reference;
-use crate::metrics::{Compared, Kind, Linear, Scores};
+use crate::metrics::{Compared, Kind, Linear, Noise, Scores};
 use crate::results::stats::{self, Stats};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,14 @@ pub struct Point {
     pub structure_noise: BTreeMap<String, f64>,
     /// Samples a pixel of each reference, by its number of bounces.
     pub references: BTreeMap<u32, u64>,
+}
+
+impl Point {
+    /// Noise of a part's reference; 0 where it is not known.
+    pub fn noise_of(&self, part: &str) -> Noise {
+        let of = |list: &BTreeMap<String, f64>| list.get(part).copied().unwrap_or(0.0);
+        Noise { relmse: of(&self.noise), structure: of(&self.structure_noise) }
+    }
 }
 
 /// A point with small pictures, JPEG.

@@ -1,7 +1,7 @@
 //! Maps of the error, as pictures for the eye and as numbers.
 
 use super::colour::luminance;
-use super::sums::relative_square;
+use super::means::relative_square;
 use super::{Compared, MetricError};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use std::io::Cursor;
@@ -33,7 +33,7 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         .map(|(x, r)| (x.iter().zip(r).map(|(x, r)| relative_square(*x, *r, *r)).sum::<f64>() / 3.0) as f32)
         .collect();
     let difference: Vec<f32> = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32).collect();
-    let structure = compared.structure.map();
+    let structure = compared.structure().map();
     // What is dark is a known part of the mean.
     let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);
     let size = compared.test.size;
@@ -44,8 +44,8 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         Ok::<_, MetricError>(MapFile { name, bytes: encode_png(size, &rgb)?, scale })
     };
     Ok(vec![
-        png("flip.png", compared.flip.iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
-        png("hdr-flip.png", compared.hdr_flip.iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
+        png("flip.png", compared.flip().iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
+        png("hdr-flip.png", compared.hdr_flip().iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
         png(
             "relative-error.png",
             relative.iter().map(|v| magma.at(logarithmic(v))).collect(),
@@ -66,8 +66,8 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
             bytes: encode_exr(
                 size,
                 [
-                    ("flip", &compared.flip),
-                    ("hdrFlip", &compared.hdr_flip),
+                    ("flip", compared.flip()),
+                    ("hdrFlip", compared.hdr_flip()),
                     ("luminanceDifference", &difference),
                     ("relativeSquaredError", &relative),
                     ("structure", &structure),
@@ -111,8 +111,8 @@ fn encode_png((width, height): (u32, u32), rgb: &[[u8; 3]]) -> Result<Vec<u8>, M
     Ok(out.into_inner())
 }
 
-fn encode_exr((width, height): (u32, u32), channels: [(&str, &Vec<f32>); 5]) -> Result<Vec<u8>, MetricError> {
-    let channel = |(name, values): (&str, &Vec<f32>)| AnyChannel::new(name, FlatSamples::F32(values.clone()));
+fn encode_exr((width, height): (u32, u32), channels: [(&str, &[f32]); 5]) -> Result<Vec<u8>, MetricError> {
+    let channel = |(name, values): (&str, &[f32])| AnyChannel::new(name, FlatSamples::F32(values.to_vec()));
     let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
     let size = (width as usize, height as usize);
     let layer = Layer::new(size, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels);

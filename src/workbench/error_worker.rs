@@ -4,24 +4,23 @@
 use super::guard::guarded;
 use super::report::Report;
 use super::request::LightState;
-use crate::campaign::report::error_of;
-use crate::campaign::sweep::{Subject, numbers};
+use crate::campaign::sweep::Subject;
 use crate::experiment::{Experiment, placed_text};
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of, params_of};
 use crate::measure::reference::{GRAPH, Reference, find};
-use crate::metrics::{Compared, Kind, Linear, relmse, structure};
+use crate::metrics::{Compared, Kind, Linear, Metric, Noise};
 use crate::results::capture::scene_hash;
 use crate::scene::Scene;
 use crossbeam_channel::Receiver;
 use std::sync::Arc;
 
 /// The error that is asked for.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ErrorQuery {
     /// Part of the light, as the graph names it.
     pub part: String,
-    /// Field of [`crate::metrics::Scores`].
-    pub metric: String,
+    /// Metric.
+    pub metric: &'static Metric,
     /// Bounces of the reference.
     pub bounces: u32,
     /// References gathered so far: the cached one may be another after each.
@@ -81,8 +80,8 @@ pub struct PictureError {
 pub struct ReferenceError {
     /// 0 is perfect; no number where the metric is not defined.
     pub error: f64,
-    /// relMSE between the halves of the reference's samples.
-    pub noise: f64,
+    /// Noise of the reference.
+    pub noise: Noise,
     /// Samples a pixel of the reference.
     pub samples: u64,
 }
@@ -123,18 +122,9 @@ impl Cache {
         let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
         let expected = reference.parts.get(&part).ok_or_else(|| wrong("the reference does not have it".into()))?;
         let light = light_of(request, &part)?;
-        let error = match metric.as_str() {
-            "relmse" => relmse(&light, &expected.mean).map_err(|e| wrong(e.0))?,
-            "structure" => structure(&light, &expected.mean).map_err(|e| wrong(e.0))?,
-            _ => {
-                let compared = Compared::new(&light, &expected.mean, Kind::of_part(&part)).map_err(|e| wrong(e.0))?;
-                let scores = compared.scores(None);
-                let scores = scores.ok_or_else(|| wrong("no pixel is a number in both pictures".into()))?;
-                numbers(&scores).get(&metric).copied().unwrap_or(f64::NAN)
-            }
-        };
-        let (noise, samples) = (expected.noise.relmse, reference.samples);
-        let error = ReferenceError { error: error_of(&metric, error), noise, samples };
+        let compared = Compared::new(&light, &expected.mean, Kind::of_part(&part)).map_err(|e| wrong(e.0))?;
+        let error = metric.distance(compared.score(metric).map_err(|e| wrong(e.0))?);
+        let error = ReferenceError { error, noise: expected.noise, samples: reference.samples };
         Ok(PictureError { subject, error: Some(error) })
     }
 

@@ -6,24 +6,11 @@ use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts};
 use crate::measure::reference::Reference;
 use crate::measure::{Frames, Timed, timed};
-use crate::metrics::{Compared, Kind, Linear, relmse, structure};
+use crate::metrics::{Compared, Kind, Linear, Metric};
 use crate::results::stats::spread;
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
-use clap::ValueEnum;
 use std::sync::Arc;
-
-/// Which error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-pub enum Metric {
-    /// mean (x - r)^2 / (r^2 + 0.01).
-    Relmse,
-    /// Mean HDR-FLIP.
-    HdrFlip,
-    /// Edges that the reference does not have.
-    Structure,
-}
 
 /// What is made small and what is bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +55,7 @@ pub struct Subject<'a> {
     /// Part of the light that is compared.
     pub part: &'a str,
     /// How it is compared.
-    pub metric: Metric,
+    pub metric: &'static Metric,
     /// How long a setting is timed.
     pub frames: Frames,
     /// The quantity that is minimised, and the bound of the other.
@@ -143,14 +130,8 @@ impl<'a> Evaluator<'a> {
             session.finish()?;
         }
         let light = session.texels(&self.texture, 0, 0)?.linear();
-        let error = match s.metric {
-            Metric::Relmse => relmse(&light, self.expected)?,
-            Metric::Structure => structure(&light, self.expected)?,
-            Metric::HdrFlip => {
-                let compared = Compared::new(&light, self.expected, Kind::of_part(s.part))?;
-                compared.scores(None).map_or(f64::NAN, |scores| scores.hdr_flip)
-            }
-        };
+        let compared = Compared::new(&light, self.expected, Kind::of_part(s.part))?;
+        let error = compared.score(s.metric).map_or(f64::NAN, |value| s.metric.distance(value));
         Ok(Some(match s.goal {
             Goal::Error(_) => Trial { cost: ms, bounded: error },
             Goal::Time(_) => Trial { cost: error, bounded: ms },

@@ -4,7 +4,7 @@ mod evaluate;
 mod model;
 mod search;
 
-pub use evaluate::{Evaluator, Goal, Metric, Subject};
+pub use evaluate::{Evaluator, Goal, Subject};
 pub use search::{Found, Limits, Step, Stop, Trial, search};
 
 use crate::experiment::Experiment;

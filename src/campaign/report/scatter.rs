@@ -17,19 +17,6 @@ const DOTS: [RGBColor; 5] = [
 ];
 const FRONT: RGBColor = RGBColor(200, 60, 40);
 
-/// A metric by its usual name.
-pub fn axis_title(metric: &str) -> String {
-    match metric {
-        "relmse" => "relMSE".into(),
-        "rmse" => "RMSE".into(),
-        "flip" => "FLIP".into(),
-        "hdr_flip" => "HDR-FLIP".into(),
-        "smape" => "SMAPE".into(),
-        "energy_ratio" => "|ln energy ratio|".into(),
-        other => other.replace('_', " "),
-    }
-}
-
 /// The chart as SVG: its circles are the dots in their order, of a colour for each experiment; those on the front are larger and
 /// joined by a red line, and red where there is one experiment; those that are not told apart from the reference's noise are
 /// hollow.

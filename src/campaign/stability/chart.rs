@@ -4,6 +4,7 @@ use super::record::{CaseRecord, FrameScore, PartResult, Report};
 use crate::campaign::charts::{Axis, Bar, Line, bars, file_name, lines};
 use crate::campaign::table::short;
 use crate::lab::LabError;
+use crate::metrics::RELMSE;
 
 /// A chart.
 pub(super) struct Chart {
@@ -23,7 +24,7 @@ const BARS: [Bars; 4] = [
     ("diffuse", "all flicker of diffuse", "Flicker index of diffuse light, mean over pixels", |p| {
         p.flicker.map(|f| f.mean)
     }),
-    ("total", "all relMSE", "relMSE of the total, last frame", |p| p.scores.as_ref().map(|s| s.relmse)),
+    ("total", "all relMSE", "relMSE of the total, last frame", |p| p.scores.as_ref().map(|s| s.get(RELMSE))),
 ];
 
 /// Over the frames of each case E_t, after a switch or a cut the error, for a switched light its response; bars over

@@ -3,7 +3,7 @@
 use super::chart::Chart;
 use super::plot::Plot;
 use super::record::{CaseRecord, Report, picture};
-use super::table::{COLUMNS, parts};
+use super::table::{columns, parts};
 use crate::campaign::page::{figure, page as whole_page};
 use crate::campaign::table::{Table, cell, short, shortly};
 use maud::{Markup, html};
@@ -77,10 +77,10 @@ fn worst(record: &CaseRecord) -> Markup {
 fn table(part: &str, records: &[&CaseRecord]) -> Markup {
     let mut table = Table::new(records);
     table.column(part, |r| r.about.method.clone());
-    for (_, title, value) in COLUMNS {
+    for (_, title, value) in columns() {
         let Some(title) = title else { continue };
         let noisy = |r: &CaseRecord| title == "E_t" && r.part(part).is_some_and(|p| p.told_apart == Some(false));
-        table.marked(title, |r| (shortly(r.part(part).and_then(value)), noisy(r).then_some("noise")));
+        table.marked(title, |r| (shortly(r.part(part).and_then(&value)), noisy(r).then_some("noise")));
     }
     table.column("voxel recall", |r| shortly(r.done().and_then(|m| m.voxels.as_ref()?.recall)));
     table.marked("failed", |r| (cell(r.error()), Some("bad")));

@@ -7,7 +7,7 @@ use crate::campaign::charts::{Axis, color, cut, drawn, plane, text};
 use crate::campaign::page::figure;
 use crate::campaign::table::{Table, cell, mebibytes, number, shortly};
 use crate::lab::LabError;
-use crate::measure::comparison::{NOISE_FACTOR, within_noise};
+use crate::metrics::{NOISE_FACTOR, RELMSE, within_noise};
 use maud::{Markup, html};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -147,11 +147,13 @@ fn row(report: &Report, spec: &CostChart, method: &str) -> Row {
         off: tolerance.zip(ratio).is_some_and(|(t, r)| (r - 1.0).abs() > t),
         memory_bytes: taken.map(|c| c.memory_bytes),
         // The halves differ by four times the variance of their mean (half the samples each, and two of them).
-        error: values(report, spec, &spec.error, method, |p| Some((p.scores.as_ref()?.relmse, p.noise?))).map(|list| {
-            let mean = |f: fn(&(f64, f64)) -> f64| list.iter().map(f).sum::<f64>() / list.len() as f64;
-            let (value, noise) = (mean(|v| v.0), mean(|v| v.1));
-            Score { value, noise, without: (value - noise / 4.0).max(0.0) }
-        }),
+        error: values(report, spec, &spec.error, method, |p| Some((p.scores.as_ref()?.get(RELMSE), p.noise?))).map(
+            |list| {
+                let mean = |f: fn(&(f64, f64)) -> f64| list.iter().map(f).sum::<f64>() / list.len() as f64;
+                let (value, noise) = (mean(|v| v.0), mean(|v| v.1));
+                Score { value, noise, without: (value - noise / 4.0).max(0.0) }
+            },
+        ),
         change: values(report, spec, &spec.motions, method, |p| Some((p.e?, p.e_noise?))).map(|list| {
             let square = |f: fn(&(f64, f64)) -> f64| list.iter().map(|v| f(v).powi(2)).sum::<f64>() / list.len() as f64;
             let (value, noise) = (square(|v| v.0), square(|v| v.1));

@@ -4,7 +4,7 @@ use super::cost::Cost;
 use super::score::{Change, Flicker, Step};
 use crate::campaign::record::{Folder, Record};
 use crate::measure::oracle::Score;
-use crate::metrics::Scores;
+use crate::metrics::{Noise, Scores};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -64,6 +64,14 @@ pub struct PartResult {
     pub structure_noise: Option<f64>,
     /// Frame by frame.
     pub frames: Vec<FrameScore>,
+}
+
+impl PartResult {
+    /// The noise of the last frame's reference; no number where it is not known.
+    pub fn reference_noise(&self) -> Noise {
+        let known = |v: Option<f64>| v.unwrap_or(f64::NAN);
+        Noise { relmse: known(self.noise), structure: known(self.structure_noise) }
+    }
 }
 
 /// The frame that is farthest from its reference.

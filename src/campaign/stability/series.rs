@@ -2,10 +2,9 @@
 
 use super::record::{FrameScore, PartResult};
 use super::score::{FlickerSeries, change, settling, step};
-use crate::measure::comparison::within_noise;
 use crate::measure::reference::ReferencePart;
 use crate::metrics::colour::luminance;
-use crate::metrics::{Compared, Kind, Linear, relmse};
+use crate::metrics::{Compared, Kind, Linear, relmse, within_noise};
 
 /// What is known of the reference at a frame.
 #[derive(Clone, Copy)]

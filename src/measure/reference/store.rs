@@ -1,12 +1,12 @@
 //! Sums of samples, and their files: `sums-N.exr` with a layer for each part and half, and `reference.json`, which
 //! names the one that counts.
 
-use super::{Noise, Reference, ReferencePart};
+use super::{Reference, ReferencePart};
 use crate::experiment::Experiment;
 use crate::files::{check_input, hex, read_input};
 use crate::graph::load::Graph;
 use crate::lab::LabError;
-use crate::metrics::{Linear, MetricError, relmse, structure_noise};
+use crate::metrics::{Linear, MetricError, Noise, relmse, structure_noise};
 use crate::vulkan::DeviceInfo;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
