@@ -37,18 +37,17 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
     // What is dark is a known part of the mean.
     let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);
     let size = compared.test.size;
-    let magma = Magma::new();
     let logarithmic = |v: &f32| (f64::from(*v).log10() - DECADES.0) / (DECADES.1 - DECADES.0);
     let flip_scale = "magma, 0 to 1";
     let png = |name, rgb: Vec<[u8; 3]>, scale: String| {
         Ok::<_, MetricError>(MapFile { name, bytes: encode_png(size, &rgb)?, scale })
     };
     Ok(vec![
-        png("flip.png", compared.flip().iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
-        png("hdr-flip.png", compared.hdr_flip().iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
+        png("flip.png", compared.flip().iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
+        png("hdr-flip.png", compared.hdr_flip().iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
         png(
             "relative-error.png",
-            relative.iter().map(|v| magma.at(logarithmic(v))).collect(),
+            relative.iter().map(|v| magma(logarithmic(v))).collect(),
             format!("(x - r)^2 / (r^2 + 0.01), magma, logarithmic from 1e{} to 1e{}", DECADES.0, DECADES.1),
         )?,
         png(
@@ -58,7 +57,7 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         )?,
         png(
             "structure.png",
-            structure.iter().map(|v| magma.at(f64::from(*v) / STRUCTURE)).collect(),
+            structure.iter().map(|v| magma(f64::from(*v) / STRUCTURE)).collect(),
             format!("structure error, magma, 0 to {STRUCTURE}"),
         )?,
         MapFile {
@@ -78,20 +77,14 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
     ])
 }
 
-/// The colours of NVIDIA's maps.
-struct Magma(Vec<u8>);
+/// The colours of NVIDIA's maps (matplotlib's magma), sRGB, from 0 to 1 in 256 steps.
+const MAGMA: &[u8; 768] = include_bytes!("magma.rgb");
 
-impl Magma {
-    fn new() -> Magma {
-        Magma(nv_flip::magma_lut().to_vec())
-    }
-
-    /// The colour of a value, 0 to 1; numbers that are none are as bright as can be.
-    fn at(&self, value: f64) -> [u8; 3] {
-        let value = if value.is_nan() { 1.0 } else { value.clamp(0.0, 1.0) };
-        let i = 3 * (value * 255.0 + 0.5) as usize;
-        self.0.get(i..i + 3).map_or([0; 3], |c| [c[0], c[1], c[2]])
-    }
+/// The colour of a value, 0 to 1; numbers that are none are as bright as can be.
+pub fn magma(value: f64) -> [u8; 3] {
+    let value = if value.is_nan() { 1.0 } else { value.clamp(0.0, 1.0) };
+    let i = 3 * (value * 255.0 + 0.5) as usize;
+    [MAGMA[i], MAGMA[i + 1], MAGMA[i + 2]]
 }
 
 /// Blue at -1 over white at 0 to red at 1; black where there is no number.
