@@ -7,7 +7,7 @@ use std::path::Path;
 
 fn picture(size: (u32, u32), rgb: impl Fn(u32, u32) -> [f32; 3]) -> Linear {
     let at = |i: u32| rgb(i % size.0, i / size.0);
-    Linear { size, rgb: (0..size.0 * size.1).map(at).collect() }
+    Linear::radiance(size, (0..size.0 * size.1).map(at).collect())
 }
 
 fn flat(v: f32) -> Linear {
@@ -52,7 +52,7 @@ fn light_behind_a_wall_is_leak_and_a_lit_wall_gone_black_is_over_occlusion() {
     close(s.get("over_occlusion"), 1.0);
     close(s.get("over_occluded"), 0.25);
     // The mask of the first half: what is dark is still said by the whole frame.
-    let compared = Compared::new(&x, &r, Kind::Radiance).unwrap();
+    let compared = Compared::new(&x, &r).unwrap();
     let half = compared.scores(Some(&[true, true, false, false])).unwrap();
     close(half.get("leak"), 0.2);
     close(half.get("dark"), 0.5);
@@ -100,9 +100,10 @@ fn pictures_that_do_not_fit_are_refused() {
     let other = picture((4, 8), |_, _| [1.0; 3]);
     let said = scores(&flat(1.0), &other).unwrap_err().to_string();
     assert_eq!(said, "pictures of 8x4 and 4x8 cannot be compared; render both at one size");
-    let short = Linear { size: (8, 4), rgb: vec![[1.0; 3]; 31] };
+    let short = Linear::radiance((8, 4), vec![[1.0; 3]; 31]);
     assert!(scores(&short, &flat(1.0)).is_err());
-    assert!(scores(&Linear { size: (0, 0), rgb: Vec::new() }, &Linear { size: (0, 0), rgb: Vec::new() }).is_err());
+    let none = Linear::radiance((0, 0), Vec::new());
+    assert!(scores(&none, &none).is_err());
 }
 
 proptest! {
@@ -200,14 +201,15 @@ fn lamp(x: u32, y: u32) -> [f32; 3] {
 }
 
 fn decoded(rgb: Bytes) -> Linear {
-    picture(SIZE, |x, y| rgb(x, y).map(|v| colour::srgb_to_linear(f32::from(v) / 255.0)))
+    let light = picture(SIZE, |x, y| rgb(x, y).map(|v| colour::srgb_to_linear(f32::from(v) / 255.0)));
+    Linear { kind: Kind::Displayed, ..light }
 }
 
 #[test]
 fn flip_is_that_of_the_evaluator() {
     for (name, expected, reference, test) in DISPLAYED {
         let (x, r) = (decoded(test), decoded(reference));
-        let found = Compared::new(&x, &r, Kind::Displayed).unwrap().scores(None).unwrap().get("flip");
+        let found = Compared::new(&x, &r).unwrap().scores(None).unwrap().get("flip");
         assert!((found - expected).abs() < 1e-3, "{name}: {found}, the evaluator says {expected}");
     }
 }

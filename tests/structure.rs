@@ -1,6 +1,6 @@
 //! The structure error, on pictures whose answer is known.
 
-use conelab::metrics::{Compared, Kind, Linear, relmse, scores, structure, structure_noise};
+use conelab::metrics::{Compared, Linear, relmse, scores, structure, structure_noise};
 
 /// Half of a difference of this size counts; see `docs/metrics.md`.
 const HALF: f64 = 0.1;
@@ -12,7 +12,7 @@ const PAIRS: f64 = 2.0 * BLOCKS * (BLOCKS - 1.0);
 
 fn picture(light: impl Fn(u32, u32) -> f32) -> Linear {
     let rgb = (0..SIDE * SIDE).map(|i| [light(i % SIDE, i / SIDE); 3]).collect();
-    Linear { size: (SIDE, SIDE), rgb }
+    Linear::radiance((SIDE, SIDE), rgb)
 }
 
 fn counted(difference: f64) -> f64 {
@@ -115,7 +115,7 @@ fn what_noise_alone_scores_follows_from_two_halves_of_the_samples() {
 #[test]
 fn regions_count_the_pairs_whose_blocks_are_both_inside() {
     let (flat, edge) = (picture(|_, _| 1.0), picture(|x, _| if x < 20 { 1.0 } else { 0.5 }));
-    let compared = Compared::new(&edge, &flat, Kind::Radiance).unwrap();
+    let compared = Compared::new(&edge, &flat).unwrap();
     let of = |inside: &dyn Fn(u32, u32) -> bool| {
         let mask: Vec<bool> = (0..SIDE * SIDE).map(|i| inside(i % SIDE, i / SIDE)).collect();
         compared.scores(Some(&mask)).unwrap().get("structure")
@@ -134,7 +134,7 @@ fn regions_count_the_pairs_whose_blocks_are_both_inside() {
 fn pixels_that_are_no_number_are_left_out_and_odd_sizes_have_smaller_blocks() {
     let odd = |edit: &dyn Fn(u32, u32) -> f32| {
         let rgb = (0..7 * 5).map(|i| [edit(i % 7, i / 7); 3]).collect();
-        Linear { size: (7, 5), rgb }
+        Linear::radiance((7, 5), rgb)
     };
     // The last column of blocks, one pixel wide, is dark: 3 of 3 * 3 + 4 * 2 pairs.
     let flat = odd(&|_, _| 1.0);

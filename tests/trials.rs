@@ -90,7 +90,7 @@ fn run(lab: &Lab, experiment: &Experiment, samples: u64) -> (BTreeMap<String, Li
     let experiment = &with(experiment.clone(), "gather_frames", turns.as_deref().unwrap_or("1"));
     let mut wanted = Vec::new();
     let prepared = lab.prepare(experiment, scene.clone(), |graph| {
-        wanted.extend(parts_of(graph).into_iter().map(|p| p.1));
+        wanted.extend(parts_of(graph).into_iter().map(|p| p.texture));
         Ok(wanted)
     });
     let (mut session, _) = prepared.unwrap_or_else(|e| panic!("{e}"));

@@ -112,7 +112,7 @@ fn mask(text: &str) -> Result<Region, LabError> {
     let Some((name, file)) = text.split_once('=').filter(|(name, _)| !name.is_empty()) else {
         return Err(LabError::Request(format!("--mask {text}: expected NAME=FILE")));
     };
-    Ok(Region::painted(name, &picture::read_linear(Path::new(file))?.0))
+    Ok(Region::painted(name, &picture::read_linear(Path::new(file))?))
 }
 
 fn write_maps(

@@ -12,7 +12,7 @@ mod variables;
 mod view;
 mod workspace;
 
-pub use parts::parts_of;
+pub use parts::{focus_of, parts_of};
 pub use scene::SceneGpu;
 pub use texels::Texels;
 pub use variables::{environment, values_of};

@@ -14,7 +14,7 @@ use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::measure::reference::Reference;
-use crate::metrics::{Compared, Kind, Linear, Noise, Scores};
+use crate::metrics::{Compared, Linear, Noise, Scores};
 use crate::results::stats::{self, Stats};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -106,7 +106,7 @@ pub fn measure(
                     continue;
                 };
                 let wrong = |why: &str| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
-                let compared = Compared::new(light, &expected.mean, Kind::of_part(part)).map_err(|e| wrong(&e.0))?;
+                let compared = Compared::new(light, &expected.mean).map_err(|e| wrong(&e.0))?;
                 let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
                 let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
                 point.scores.insert(name.clone(), scores);
@@ -175,7 +175,7 @@ fn parts_of(
     scene: &Arc<Scene>,
     frames: Frames,
 ) -> Result<BTreeMap<String, Linear>, LabError> {
-    let wanted = loaded.graph.parts.iter().map(|p| p.1.clone()).collect();
+    let wanted = loaded.graph.parts.iter().map(|p| p.texture.clone()).collect();
     // The timed session's scene is on the device already: another upload of it would cost memory.
     let reuse = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;

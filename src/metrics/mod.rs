@@ -13,6 +13,7 @@ pub use structure::{structure, structure_noise};
 pub use table::{Best, METRICS, Metric, Noise, OfNoise, RELMSE, Scores};
 
 use hdr_flip::Exposures;
+use serde::Deserialize;
 use std::sync::OnceLock;
 use structure::Structure;
 
@@ -34,9 +35,16 @@ pub struct Linear {
     pub size: (u32, u32),
     /// Radiance, or whatever a part holds; rows from the top, `width * height` texels.
     pub rgb: Vec<[f32; 3]>,
+    /// What its numbers are.
+    pub kind: Kind,
 }
 
 impl Linear {
+    /// A picture of radiance.
+    pub fn radiance(size: (u32, u32), rgb: Vec<[f32; 3]>) -> Linear {
+        Linear { size, rgb, kind: Kind::Radiance }
+    }
+
     /// Mean over pixels and channels.
     pub fn mean(&self) -> f64 {
         self.rgb.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / (3 * self.rgb.len().max(1)) as f64
@@ -63,20 +71,29 @@ pub fn relative_distance(x: &Linear, y: &Linear, reference: &Linear) -> Result<f
     Ok(sum / (3 * x.rgb.len()) as f64)
 }
 
-/// What a picture's numbers are, which says how FLIP shows it to its observer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What a picture's numbers are, in the order in which parts of the light are listed. It says how FLIP shows them to its
+/// observer, and which regions follow from them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Kind {
+    /// Radiance that comes straight from lights.
+    Direct,
     /// Radiance of any range: shown by c / (1 + c), which is how the program shows pictures by default.
     #[default]
     Radiance,
-    /// 0 to 1, shown as it is: pictures that were made for a display, and openness.
+    /// The part of what is above a surface that is open, 0 to 1, shown as it is.
+    Openness,
+    /// 0 to 1, shown as it is: pictures that were made for a display.
     Displayed,
 }
 
 impl Kind {
-    /// The kind of a lighting part that a graph declares.
-    pub fn of_part(part: &str) -> Kind {
-        if part == "occlusion" { Kind::Displayed } else { Kind::Radiance }
+    /// How a value of 0 or more is shown, 0 to 1.
+    pub fn shown(self, v: f32) -> f32 {
+        match self {
+            Kind::Direct | Kind::Radiance => v / (1.0 + v),
+            Kind::Openness | Kind::Displayed => v.min(1.0),
+        }
     }
 }
 
@@ -86,7 +103,7 @@ impl Kind {
 /// Pictures of different sizes, without pixels, of more than [`MAX_PIXELS`], or without one pixel that is a number in
 /// both.
 pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> {
-    let compared = Compared::new(test, reference, Kind::Radiance)?;
+    let compared = Compared::new(test, reference)?;
     compared.scores(None).ok_or_else(no_number)
 }
 
@@ -102,7 +119,6 @@ pub fn within_noise(relmse: f64, noise: Option<f64>) -> bool {
 pub struct Compared<'a> {
     test: &'a Linear,
     reference: &'a Linear,
-    kind: Kind,
     /// Luminance up to which a pixel is dark ([`DARK`]).
     pub dark: f64,
     flip: OnceLock<Vec<f32>>,
@@ -111,15 +127,15 @@ pub struct Compared<'a> {
 }
 
 impl<'a> Compared<'a> {
-    /// Compares.
+    /// Compares; both are what the reference's kind says.
     ///
     /// # Errors
     /// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
-    pub fn new(test: &'a Linear, reference: &'a Linear, kind: Kind) -> Result<Compared<'a>, MetricError> {
+    pub fn new(test: &'a Linear, reference: &'a Linear) -> Result<Compared<'a>, MetricError> {
         check(test, reference)?;
         let dark = dark(test, reference);
         let (flip, hdr_flip, structure) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-        Ok(Compared { test, reference, kind, dark, flip, hdr_flip, structure })
+        Ok(Compared { test, reference, dark, flip, hdr_flip, structure })
     }
 
     /// The scores over the pixels of a mask, or over all of them; nothing where none of them is a number in both.
@@ -140,8 +156,7 @@ impl<'a> Compared<'a> {
     pub fn flip(&self) -> &[f32] {
         self.flip.get_or_init(|| {
             let show = |picture: &Linear| -> Vec<[f32; 3]> {
-                let display = |v: f32| if self.kind == Kind::Radiance { v / (1.0 + v) } else { v.min(1.0) };
-                self.visible(picture).iter().map(|c| c.map(display)).collect()
+                self.visible(picture).iter().map(|c| c.map(|v| self.reference.kind.shown(v))).collect()
             };
             self.marked(flip::flip(&show(self.test), &show(self.reference), self.width()))
         })

@@ -8,7 +8,7 @@ use crate::campaign::sweep::Subject;
 use crate::experiment::{Experiment, placed_text};
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of, params_of};
 use crate::measure::reference::{GRAPH, Reference, find};
-use crate::metrics::{Compared, Kind, Linear, Metric, Noise};
+use crate::metrics::{Compared, Linear, Metric, Noise};
 use crate::results::capture::scene_hash;
 use crate::scene::Scene;
 use crossbeam_channel::Receiver;
@@ -122,7 +122,7 @@ impl Cache {
         let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
         let expected = reference.parts.get(&part).ok_or_else(|| wrong("the reference does not have it".into()))?;
         let light = light_of(request, &part)?;
-        let compared = Compared::new(&light, &expected.mean, Kind::of_part(&part)).map_err(|e| wrong(e.0))?;
+        let compared = Compared::new(&light, &expected.mean).map_err(|e| wrong(e.0))?;
         let error = metric.distance(compared.score(metric).map_err(|e| wrong(e.0))?);
         let error = ReferenceError { error, noise: expected.noise, samples: reference.samples };
         Ok(PictureError { subject, error: Some(error) })
@@ -187,8 +187,8 @@ impl Cache {
 fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
     let ErrorRequest { lab, loaded, reuse, experiment, scene, lights, frames, .. } = request;
     let missing = || LabError::Request(format!("the graph '{}' does not make the part '{part}'", loaded.graph.name));
-    let named = crate::lab::parts_of(&loaded.graph).into_iter().find(|p| p.0 == part);
-    let (_, texture) = named.ok_or_else(missing)?;
+    let named = crate::lab::parts_of(&loaded.graph).into_iter().find(|p| p.name == part);
+    let texture = named.ok_or_else(missing)?.texture;
     let mut session: Session = lab.build(&experiment, &loaded, scene, vec![texture], Some(&reuse))?;
     if lights.is_some_and(|lights| !lights.light(&mut session)) {
         return Err(LabError::Request("the light changed more than a session can follow".into()));

@@ -10,8 +10,6 @@ use std::collections::HashMap;
 use std::fmt;
 use std::path::PathBuf;
 
-/// Parts of the light that are looked at.
-pub(super) const PARTS: [&str; 2] = ["total", "diffuse"];
 /// Changes by a smaller part are none, however little noise there is.
 const LEAST: f64 = 0.01;
 
@@ -37,7 +35,7 @@ pub struct Delta {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorChange {
     /// Part of the light.
-    pub part: &'static str,
+    pub part: String,
     /// Metric; of the energy ratio the error is its absolute logarithm.
     pub metric: &'static Metric,
     /// By how much.
@@ -139,11 +137,17 @@ impl Delta {
 /// Points by scene and by what was set.
 type Points = HashMap<(String, String), Result<Point, String>>;
 
-/// A row for each change. `folders`: the sweep of all changes, then those that repeat the unchanged experiment.
+/// A row for each change, with errors of these parts of the light. `folders`: the sweep of all changes, then those that
+/// repeat the unchanged experiment.
 ///
 /// # Errors
 /// Folders that are none of sweeps.
-pub fn rows(folders: &[PathBuf], scenes: &[String], changes: &[Change]) -> Result<Vec<Row>, LabError> {
+pub fn rows(
+    folders: &[PathBuf],
+    scenes: &[String],
+    changes: &[Change],
+    parts: &[String],
+) -> Result<Vec<Row>, LabError> {
     let runs: Vec<Points> = folders.iter().map(read).collect::<Result<_, LabError>>()?;
     let unchanged: Vec<(&String, Vec<&Point>)> = scenes
         .iter()
@@ -153,7 +157,7 @@ pub fn rows(folders: &[PathBuf], scenes: &[String], changes: &[Change]) -> Resul
         })
         .collect();
     let first = runs.first();
-    Ok(changes.iter().map(|change| row(change, &unchanged, first)).collect())
+    Ok(changes.iter().map(|change| row(change, &unchanged, first, parts)).collect())
 }
 
 fn read(folder: &PathBuf) -> Result<Points, LabError> {
@@ -170,7 +174,7 @@ fn read(folder: &PathBuf) -> Result<Points, LabError> {
     Ok(points)
 }
 
-fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Points>) -> Row {
+fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Points>, parts: &[String]) -> Row {
     let (mut measured, mut failed) = (Vec::new(), Vec::new());
     for (scene, before) in unchanged {
         let key = ((*scene).clone(), change.setting());
@@ -191,10 +195,10 @@ fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Point
         Delta::over(&samples)
     };
     let mut errors = Vec::new();
-    for part in PARTS {
+    for part in parts {
         for metric in Metric::few() {
             let delta = over(&|before, after| error(before.first()?, after, part, metric));
-            errors.extend(delta.map(|delta| ErrorChange { part, metric, delta }));
+            errors.extend(delta.map(|delta| ErrorChange { part: part.clone(), metric, delta }));
         }
     }
     let ms = over(&|before, after| Some(time(before, after)));

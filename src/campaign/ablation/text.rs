@@ -1,9 +1,10 @@
 //! The rows as text: Markdown that is aligned for terminals too, and comma-separated values.
 
-use super::row::{Delta, PARTS, Row};
+use super::row::{Delta, Row};
 use crate::campaign::table::{self, Table, short};
 use crate::lab::LabError;
 use crate::metrics::{Best, Metric};
+use indexmap::IndexSet;
 
 /// The tables as Markdown: costs and verdicts, then the errors of each part.
 pub fn markdown(rows: &[Row]) -> String {
@@ -22,7 +23,8 @@ pub fn markdown(rows: &[Row]) -> String {
         verdicts.push(vec![name, from, to, cost(&row.ms), cost(&row.bytes), named(1), named(-1), verdict]);
     }
     let mut out = table::markdown(&verdicts);
-    for part in PARTS {
+    let parts: IndexSet<&str> = rows.iter().flat_map(|r| &r.errors).map(|e| e.part.as_str()).collect();
+    for part in parts {
         let table = errors(rows, part);
         if table.len() > 1 {
             out += "\n";
@@ -96,7 +98,7 @@ pub fn csv(rows: &[Row]) -> Result<String, LabError> {
     for row in rows {
         let costs = [("ms", &row.ms), ("bytes", &row.bytes)];
         lines.extend(costs.into_iter().filter_map(|(quantity, delta)| Some((row, "", quantity, delta.as_ref()?))));
-        lines.extend(row.errors.iter().map(|e| (row, e.part, e.metric.key, &e.delta)));
+        lines.extend(row.errors.iter().map(|e| (row, e.part.as_str(), e.metric.key, &e.delta)));
     }
     let mut table = Table::new(&lines);
     table.column("parameter", |l| l.0.change.name.clone());

@@ -6,7 +6,7 @@ use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts};
 use crate::measure::reference::Reference;
 use crate::measure::{Frames, Timed, timed};
-use crate::metrics::{Compared, Kind, Linear, Metric};
+use crate::metrics::{Compared, Linear, Metric};
 use crate::results::stats::spread;
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
@@ -79,13 +79,13 @@ impl<'a> Evaluator<'a> {
     /// No such part in the graph or in the reference.
     pub fn new(subject: &'a Subject<'a>) -> Result<Evaluator<'a>, LabError> {
         let parts = crate::lab::parts_of(&subject.loaded.graph);
-        let texture = parts.iter().find(|p| p.0 == subject.part).map(|p| p.1.clone());
+        let texture = parts.iter().find(|p| p.name == subject.part).map(|p| p.texture.clone());
         match (texture, subject.reference.parts.get(subject.part)) {
             (Some(texture), Some(part)) => {
                 Ok(Evaluator { subject, texture, expected: &part.mean, reuse: None, refused: None })
             }
             _ => {
-                let all: Vec<&str> = parts.iter().map(|p| p.0.as_str()).collect();
+                let all: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
                 Err(LabError::Request(format!("no part '{}'; there are {}", subject.part, all.join(", "))))
             }
         }
@@ -130,7 +130,7 @@ impl<'a> Evaluator<'a> {
             session.finish()?;
         }
         let light = session.texels(&self.texture, 0, 0)?.linear();
-        let compared = Compared::new(&light, self.expected, Kind::of_part(s.part))?;
+        let compared = Compared::new(&light, self.expected)?;
         let error = compared.score(s.metric).map_or(f64::NAN, |value| s.metric.distance(value));
         Ok(Some(match s.goal {
             Goal::Error(_) => Trial { cost: ms, bounded: error },

@@ -150,6 +150,12 @@ pub struct Report {
     pub text: String,
     /// Samples a pixel and bounces of the references; none without.
     pub reference: Option<(u64, u32)>,
+    /// Parts of the light that have tables on the page; the others are in the files.
+    #[serde(default)]
+    pub tables: Vec<String>,
+    /// The part that has charts besides the total: its name, and that within a sentence.
+    #[serde(default)]
+    pub focus: Option<(String, String)>,
     /// What charted methods cost; empty without a chart.
     #[serde(default)]
     pub costs: Vec<Cost>,

@@ -34,14 +34,14 @@ impl<'a> Sources<'a> {
         let name = shown(path).display().to_string();
         if path.is_dir() {
             let parts = capture::parts(path, &Manifest::read(path)?)?;
-            return Ok(Side { name, kind: Default::default(), parts, noise: BTreeMap::new() });
+            return Ok(Side { name, parts, noise: BTreeMap::new() });
         }
         if path.extension().is_some_and(|e| e == "ron") {
             let parts = self.render(path, set)?;
-            return Ok(Side { name, kind: Default::default(), parts, noise: BTreeMap::new() });
+            return Ok(Side { name, parts, noise: BTreeMap::new() });
         }
-        let (linear, kind) = picture::read_linear(path)?;
-        Ok(Side { name, kind, parts: BTreeMap::from([("total".into(), linear)]), noise: BTreeMap::new() })
+        let parts = BTreeMap::from([("total".into(), picture::read_linear(path)?)]);
+        Ok(Side { name, parts, noise: BTreeMap::new() })
     }
 
     /// The cached reference of the first experiment, if there are both.
@@ -56,7 +56,6 @@ impl<'a> Sources<'a> {
         let found = reference::find(&Workspace::find()?, experiment, scene, bounces)?;
         Ok(found.map(|r| Side {
             name: format!("path traced, {} samples a pixel, bounces {bounces}", r.samples),
-            kind: Default::default(),
             noise: r.parts.iter().map(|(part, p)| (part.clone(), p.noise)).collect(),
             parts: r.parts.into_iter().map(|(part, p)| (part, p.mean)).collect(),
         }))
@@ -91,7 +90,7 @@ impl<'a> Sources<'a> {
                     format!("graph '{}' has neither `parts` nor `hdr`: there is nothing to compare", graph.name);
                 return Err(LabError::Request(message));
             }
-            Ok(parts.into_iter().map(|p| p.1).collect())
+            Ok(parts.into_iter().map(|p| p.texture).collect())
         })?;
         for warning in warnings {
             eprintln!("{warning}");

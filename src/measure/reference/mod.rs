@@ -26,7 +26,7 @@ pub struct Reference {
     pub size: (u32, u32),
     /// Samples of every pixel.
     pub samples: u64,
-    /// Parts of the graph by name: total, direct, diffuse, specular, occlusion.
+    /// Parts of the graph by name.
     pub parts: BTreeMap<String, ReferencePart>,
     /// Folder of the reference.
     pub folder: PathBuf,
@@ -75,7 +75,7 @@ pub fn find(
     let key = key::key(&traced, &loaded, scene)?;
     let folder = home.root.join("captures/reference").join(&key);
     match store::read(&folder, traced.size, &loaded.graph)? {
-        Some(sums) => Ok(Some(sums.reference(&folder, false)?)),
+        Some(sums) => Ok(Some(sums.reference(&loaded.graph, &folder, false)?)),
         None => Ok(None),
     }
 }

@@ -13,6 +13,7 @@ use super::control::named;
 use crate::campaign::report::{Data, Dot};
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
+use crate::lab::parts_of;
 use crate::metrics::Metric;
 use choice::{Choice, Chosen};
 use egui::Ui;
@@ -137,12 +138,12 @@ impl Workbench {
             let fits = |key: &_| folder::differences(now, device, key).is_empty();
             self.chart.choice.subject = data.keys.iter().position(fits).unwrap_or(self.chart.choice.subject);
         }
+        let graph = self.sides[0].info.as_ref().map(|info| &info.graph);
+        let own = graph.map_or(Vec::new(), |graph| parts_of(graph).into_iter().map(|p| p.name).collect());
         let choice = &mut self.chart.choice;
         ui.horizontal_wrapped(|ui| {
             egui::ComboBox::from_id_salt("part").selected_text(format!("part: {}", choice.part)).show_ui(ui, |ui| {
-                let own = ["total", "direct", "diffuse", "specular", "occlusion"].map(String::from);
-                let parts = data.map(|d| d.parts.as_slice()).filter(|p| !p.is_empty()).unwrap_or(&own);
-                for part in parts {
+                for part in data.map(|d| &d.parts).filter(|p| !p.is_empty()).unwrap_or(&own) {
                     ui.selectable_value(&mut choice.part, part.clone(), part);
                 }
             });
