@@ -2,11 +2,12 @@
 //! defaults.
 
 mod adapt;
+mod fields;
 mod read;
 mod spans;
 mod write;
 
-pub(crate) use read::{in_folder, scene_path};
+pub use fields::{FIELDS, Field};
 pub(crate) use write::{environment_text, placed_text};
 pub use write::{resolved_text, write};
 

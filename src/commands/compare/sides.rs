@@ -2,7 +2,7 @@
 
 use super::super::{DeviceArgs, open_scene, shown, validated};
 use crate::commands::adapt::Changes;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, FIELDS};
 use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::measure::comparison::Side;
 use crate::measure::reference;
@@ -110,8 +110,6 @@ impl<'a> Sources<'a> {
 /// Whether two experiments look at the same: only then can one reference be for both.
 fn same_view(a: &Experiment, b: &Experiment) -> bool {
     let lights = |e: &Experiment| e.lights.iter().map(|(name, l)| (name.value.clone(), *l)).collect::<Vec<_>>();
-    let picture = |e: &Experiment| e.environment.as_ref().map(|e| e.value.clone());
-    (&a.scene, &a.camera, a.time, a.sky) == (&b.scene, &b.camera, b.time, b.sky)
-        && lights(a) == lights(b)
-        && picture(a) == picture(b)
+    let mut seen = FIELDS.iter().filter(|f| !["graph", "size"].contains(&f.name));
+    seen.all(|f| (f.same)(a, b)) && lights(a) == lights(b)
 }
