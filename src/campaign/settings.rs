@@ -63,18 +63,30 @@ fn last_source(experiment: &Experiment) -> u32 {
 /// # Errors
 /// The text has no name and value.
 pub fn named<'t>(option: &str, text: &'t str, form: &str) -> Result<(&'t str, &'t str), LabError> {
-    let parts = text.split_once('=').map(|(name, value)| (name.trim(), value));
+    let parts = text.split_once('=').map(|(name, value)| (name.trim(), value)).filter(|parts| !parts.0.is_empty());
     parts.ok_or_else(|| LabError::Request(format!("{option} {text}: expected {form}")))
 }
 
-/// Values between commas; those inside brackets belong to a value.
-pub fn values(text: &str) -> Vec<String> {
+/// A setting, and the values in RON that it is varied over.
+pub type Axis = (String, Vec<String>);
+
+/// What an option of the command line varies: `NAME=VALUE,VALUE`, or as `form` says. Commas inside brackets belong to a
+/// value.
+///
+/// # Errors
+/// The text has no name, or a value is missing.
+pub fn axis(option: &str, text: &str, form: &str) -> Result<Axis, LabError> {
+    let (name, list) = named(option, text, form)?;
     let mut depth = 0;
     let between = |c: char| {
         depth += i32::from(matches!(c, '(' | '[')) - i32::from(matches!(c, ')' | ']'));
         c == ',' && depth == 0
     };
-    text.split(between).map(|v| v.trim().to_string()).collect()
+    let values: Vec<String> = list.split(between).map(|v| v.trim().to_string()).collect();
+    match values.iter().any(String::is_empty) {
+        true => Err(LabError::Request(format!("{option} {text}: expected {form}"))),
+        false => Ok((name.into(), values)),
+    }
 }
 
 impl Setting {

@@ -2,8 +2,8 @@
 
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
-use crate::campaign::fit::{self, Axis, Evaluator, Found, Goal, Limits, Step, Stop, Subject};
-use crate::campaign::settings::{named, values};
+use crate::campaign::fit::{self, Evaluator, Found, Goal, Limits, Step, Stop, Subject};
+use crate::campaign::settings::{Axis, axis};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace, params_of};
 use crate::measure::Frames;
@@ -78,7 +78,7 @@ struct Log {
     grid: u64,
     reference_samples: u64,
     noise: f64,
-    axes: Vec<(String, Vec<String>)>,
+    axes: Vec<Axis>,
     /// Settings in the order in which they were tried: values by axis, ms, error.
     tried: Vec<Tried>,
     best: Tried,
@@ -110,7 +110,7 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         None => home.root.join("captures/fit").join(format!("{}.ron", experiment.name)),
     };
     let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
-    let given = args.vary.iter().map(|text| axis(text)).collect::<Result<Vec<_>, _>>()?;
+    let given = args.vary.iter().map(|text| axis("--vary", text, "NAME=VALUE,VALUE")).collect::<Result<Vec<_>, _>>()?;
     let axes = fit::axes(&loaded.graph, &given)?;
     let scene = Arc::new(adapt::open_scene(&experiment)?);
     let lab = Lab::open(home, args.device.options())?;
@@ -127,7 +127,7 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         );
     }
     let start = fit::start(&axes, &params_of(&loaded.graph, &experiment)?);
-    let sizes: Vec<usize> = axes.iter().map(|a| a.values.len()).collect();
+    let sizes: Vec<usize> = axes.iter().map(|a| a.1.len()).collect();
     let subject = Subject {
         lab: &lab,
         loaded: &loaded,
@@ -177,20 +177,9 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     if within { Ok(()) } else { Err(LabError::Request("no setting that was tried is within the bound".into())) }
 }
 
-/// `NAME=VALUE,VALUE`; values with commas in parentheses stay whole.
-fn axis(text: &str) -> Result<Axis, LabError> {
-    let form = "NAME=VALUE,VALUE";
-    let (name, list) = named("--vary", text, form)?;
-    let values = values(list);
-    match name.is_empty() || values.iter().any(String::is_empty) {
-        true => Err(LabError::Request(format!("--vary {text}: expected {form}"))),
-        false => Ok(Axis { name: name.into(), values }),
-    }
-}
-
 fn names(axes: &[Axis], place: &[usize]) -> String {
-    let list = axes.iter().zip(place).filter(|(axis, _)| axis.values.len() > 1);
-    list.map(|(axis, i)| format!("{}={}", axis.name, axis.values[*i])).collect::<Vec<_>>().join(" ")
+    let list = axes.iter().zip(place).filter(|(axis, _)| axis.1.len() > 1);
+    list.map(|((name, values), i)| format!("{name}={}", values[*i])).collect::<Vec<_>>().join(" ")
 }
 
 fn why(stop: Stop) -> &'static str {
@@ -243,7 +232,7 @@ fn comment(
 fn log(found: &Found, goal: Goal, subject: &Subject<'_>, summary: &[String], sizes: &[usize], noise: f64) -> Log {
     let tried = |step: &Step| {
         let both = step.trial.map(|t| goal.time_and_error(t));
-        let set = subject.axes.iter().zip(&step.place).map(|(axis, i)| axis.values[*i].clone()).collect();
+        let set = subject.axes.iter().zip(&step.place).map(|(axis, i)| axis.1[*i].clone()).collect();
         Tried { set, ms: both.map(|b| b.0), error: both.map(|b| b.1) }
     };
     Log {
@@ -257,7 +246,7 @@ fn log(found: &Found, goal: Goal, subject: &Subject<'_>, summary: &[String], siz
         grid: sizes.iter().map(|n| *n as u64).product(),
         reference_samples: subject.reference.samples,
         noise,
-        axes: subject.axes.iter().map(|a| (a.name.clone(), a.values.clone())).collect(),
+        axes: subject.axes.to_vec(),
         tried: found.tried.iter().map(tried).collect(),
         best: tried(&Step { place: found.place.clone(), trial: Some(found.trial) }),
     }

@@ -12,8 +12,7 @@ pub struct Field {
     /// Its name in files.
     pub name: &'static str,
     set: fn(&mut Experiment, &Given) -> Result<(), String>,
-    /// As RON in the file of that path; empty where nothing is said.
-    pub(super) text: fn(&Experiment, &Path) -> String,
+    text: fn(&Experiment, &Path) -> String,
     /// Whether leaving it out says the same.
     pub(super) absent: fn(&Experiment) -> bool,
     /// Whether two experiments say the same.
@@ -108,6 +107,11 @@ impl Field {
     /// The field of a name.
     pub fn of(name: &str) -> Option<&'static Field> {
         FIELDS.iter().find(|f| f.name == name)
+    }
+
+    /// What an experiment says, as RON in the file of that path; empty where it says nothing.
+    pub fn text(&self, experiment: &Experiment, path: &Path) -> String {
+        (self.text)(experiment, path)
     }
 
     /// Sets it to a value in RON that stands at `at` of the experiment's sources.

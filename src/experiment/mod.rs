@@ -8,7 +8,7 @@ mod spans;
 mod write;
 
 pub use fields::{FIELDS, Field};
-pub(crate) use write::{environment_text, placed_text};
+pub(crate) use write::placed_text;
 pub use write::{resolved_text, write};
 
 use crate::diagnostics::{At, Diagnostic, Loc, Sources};

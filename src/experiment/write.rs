@@ -3,7 +3,7 @@
 use super::ExperimentError;
 use super::adapt::change_to;
 use super::spans::{self, Body, Edits};
-use super::{CameraChoice, EnvironmentChange, Experiment, FIELDS, Field, LightChange, PlacedCamera};
+use super::{CameraChoice, EnvironmentChange, Experiment, FIELDS, LightChange, PlacedCamera};
 use crate::diagnostics::{At, Diagnostic, Loc};
 use crate::graph::param::Params;
 use crate::scene::Scene;
@@ -168,7 +168,7 @@ pub(super) fn environment_in(experiment: &Experiment, path: &Path) -> String {
 }
 
 /// An environment as RON.
-pub(crate) fn environment_text(change: &EnvironmentChange) -> String {
+fn environment_text(change: &EnvironmentChange) -> String {
     let file = change.file.as_ref().map(|file| format!("file: {}", quoted(file)));
     let numbers = [("rotation", change.rotation), ("intensity", change.intensity)];
     let numbers = numbers.iter().filter_map(|(n, v)| v.map(|v| format!("{n}: {v:?}")));
@@ -226,10 +226,10 @@ impl Wanted<'_> {
 
 fn fresh(wanted: &Wanted) -> String {
     let mut out = String::from("(\n");
-    for Field { name, text, absent, .. } in &FIELDS {
+    for field in &FIELDS {
         // Camera and size are always said, so that nobody has to look up what they are.
-        if !absent(wanted.experiment) || ["camera", "size"].contains(name) {
-            out += &format!("    {name}: {},\n", text(wanted.experiment, wanted.path));
+        if !(field.absent)(wanted.experiment) || ["camera", "size"].contains(&field.name) {
+            out += &format!("    {}: {},\n", field.name, field.text(wanted.experiment, wanted.path));
         }
     }
     let lights = wanted.lights();
@@ -258,7 +258,7 @@ fn edited(wanted: &Wanted, defaults: &Params) -> Option<String> {
     let mut lines = Vec::new();
     let mut keeps_last = true;
     for field in &FIELDS {
-        let (name, new) = (field.name, (field.text)(wanted.experiment, wanted.path));
+        let (name, new) = (field.name, field.text(wanted.experiment, wanted.path));
         match body.entries.iter().enumerate().find(|(_, e)| e.key == name) {
             Some(_) if (field.same)(&old, wanted.experiment) => {}
             Some((i, entry)) if new.is_empty() => {

@@ -442,6 +442,17 @@ impl Session {
         self.viewpoint.place_camera(placed, self.bounds);
     }
 
+    /// Runs so many frames, and waits for them.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn run(&mut self, frames: usize) -> Result<(), LabError> {
+        for _ in 0..frames {
+            self.frame(0.0)?;
+        }
+        self.finish().map(drop)
+    }
+
     /// Waits for all frames.
     ///
     /// # Errors

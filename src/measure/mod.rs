@@ -179,10 +179,7 @@ fn parts_of(
     // The timed session's scene is on the device already: another upload of it would cost memory.
     let reuse = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;
-    for _ in 0..frames.warmup + frames.count {
-        session.frame(0.0)?;
-    }
-    session.finish()?;
+    session.run(frames.warmup + frames.count)?;
     let out = session.parts()?;
     warm.scored = Some((scene.clone(), session.share()));
     Ok(out)

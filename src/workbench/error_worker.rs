@@ -6,8 +6,9 @@ use super::report::Report;
 use super::request::LightState;
 use crate::campaign::sweep::Subject;
 use crate::experiment::{Experiment, placed_text};
-use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of, params_of};
-use crate::measure::reference::{GRAPH, Reference, find};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of};
+use crate::measure::reference::Reference;
+use crate::measure::{Wanted, Warm};
 use crate::metrics::{Compared, Linear, Metric, Noise};
 use crate::results::capture::scene_hash;
 use crate::scene::Scene;
@@ -89,12 +90,11 @@ pub struct ReferenceError {
 /// Loaded things that the next request may need again.
 #[derive(Default)]
 struct Cache {
-    /// The graph of references, as of a revision of the files.
-    traced: Option<(u64, Loaded)>,
+    /// References and graphs, as of a revision of the files and a number of gathered references.
+    warm: Warm,
+    as_of: (u64, u64),
     /// The scene's content, by the scene and its light.
     hash: Option<(Arc<Scene>, String, String)>,
-    /// The reference, by everything that it depends on.
-    reference: Option<(Arc<Scene>, String, Option<Arc<Reference>>)>,
 }
 
 /// Measures errors until the requests' sender is gone; of several requests for a side only the newest counts.
@@ -117,7 +117,9 @@ pub(super) fn run(requests: &Receiver<ErrorRequest>, send: &dyn Fn(Report)) {
 impl Cache {
     fn evaluate(&mut self, request: ErrorRequest) -> Result<PictureError, LabError> {
         let subject = self.subject(&request)?;
-        let Some(reference) = self.reference(&request)? else { return Ok(PictureError { subject, error: None }) };
+        let Some(reference) = self.reference(&request, &subject)? else {
+            return Ok(PictureError { subject, error: None });
+        };
         let ErrorQuery { part, metric, .. } = request.query.clone();
         let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
         let expected = reference.parts.get(&part).ok_or_else(|| wrong("the reference does not have it".into()))?;
@@ -151,35 +153,15 @@ impl Cache {
     }
 
     /// The cached reference, read once for everything that it does not depend on.
-    fn reference(&mut self, request: &ErrorRequest) -> Result<Option<Arc<Reference>>, LabError> {
-        let ErrorRequest { experiment, scene, query, .. } = request;
-        let home = &request.lab.home;
-        if self.traced.as_ref().is_none_or(|t| t.0 != request.revision) {
-            self.traced = Some((request.revision, home.load(GRAPH).map_err(LabError::Input)?));
+    fn reference(&mut self, request: &ErrorRequest, subject: &Subject) -> Result<Option<Arc<Reference>>, LabError> {
+        let ErrorRequest { lab, loaded, experiment, scene, query, .. } = request;
+        if self.as_of != (request.revision, query.gathered) {
+            (self.warm, self.as_of) = (Warm::default(), (request.revision, query.gathered));
         }
-        let shared = self.traced.iter().flat_map(|t| &t.1.graph.params.list);
-        let params = params_of(&request.loaded.graph, experiment)?;
-        let shared: Vec<String> = shared
-            .filter_map(|p| Some(format!("{} {:?}", p.name, params.values.get(params.index(&p.name)?)?)))
-            .collect();
-        let key = format!(
-            "{:?} {:?} {:?} {:?} {} {} {} {}",
-            request.lights,
-            experiment.camera,
-            experiment.size,
-            experiment.time,
-            query.bounces,
-            query.gathered,
-            request.revision,
-            shared.join(" ")
-        );
-        if let Some(known) = self.reference.as_ref().filter(|r| Arc::ptr_eq(&r.0, scene) && r.1 == key) {
-            return Ok(known.2.clone());
-        }
+        self.warm.keep(&experiment.graph, loaded);
         let lit = experiment.adapted(scene.clone())?;
-        let found = find(home, experiment, &lit, query.bounces)?.map(Arc::new);
-        self.reference = Some((scene.clone(), key, found.clone()));
-        Ok(found)
+        let wanted = Wanted { bounces: query.bounces, samples: None, seed: None };
+        self.warm.reference(lab, (experiment, &lit), &format!("{subject:?}"), wanted, &mut |_| {})
     }
 }
 
@@ -193,9 +175,6 @@ fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
     if lights.is_some_and(|lights| !lights.light(&mut session)) {
         return Err(LabError::Request("the light changed more than a session can follow".into()));
     }
-    for _ in 0..frames {
-        session.frame(0.0)?;
-    }
-    session.finish()?;
+    session.run(frames)?;
     session.parts()?.remove(part).ok_or_else(missing)
 }

@@ -1,7 +1,8 @@
 //! Runs settings and measures both of their quantities.
 
+use super::at;
 use super::search::Trial;
-use super::{Axis, at};
+use crate::campaign::settings::Axis;
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts};
 use crate::measure::reference::Reference;
@@ -124,10 +125,7 @@ impl<'a> Evaluator<'a> {
         if !together {
             let reuse = self.reuse.as_ref();
             session = s.lab.build(experiment, s.loaded, s.scene.clone(), vec![self.texture.clone()], reuse)?;
-            for _ in 0..s.frames.warmup + s.frames.count {
-                session.frame(0.0)?;
-            }
-            session.finish()?;
+            session.run(s.frames.warmup + s.frames.count)?;
         }
         let light = session.texels(&self.texture, 0, 0)?.linear();
         let compared = Compared::new(&light, self.expected)?;

@@ -191,7 +191,7 @@ function update() {
       const index = chart.points[i];
       const hollow = circle.dataset.hollow ?? (circle.dataset.hollow = circle.getAttribute("fill") === "none" ? "yes" : "no");
       const red = best.includes(index);
-      const ink = red ? "#C83C28" : "#466EA0";
+      const ink = red ? "#C83C28" : data.colors[0];
       circle.classList.toggle("off", !kept(data.dots[index]));
       circle.classList.toggle("held", index === state.held);
       circle.setAttribute("r", red ? 5 : 4);

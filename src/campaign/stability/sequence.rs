@@ -169,8 +169,7 @@ pub(super) fn cell_of(session: &mut Session, job: &Job) -> Result<f32, LabError>
         return Ok(0.0);
     }
     session.place_camera(&job.start.camera);
-    session.frame(0.0)?;
-    session.finish()?;
+    session.run(1)?;
     let (x, y, z) = job.start.camera.eye;
     let edges = oracle::grid(session)?.edges_at(DVec3::new(x.into(), y.into(), z.into()));
     Ok(edges.min_element() as f32)

@@ -95,10 +95,7 @@ impl<'a> Sources<'a> {
         for warning in warnings {
             eprintln!("{warning}");
         }
-        for _ in 0..self.frames.unwrap_or(session.settling_frames()) {
-            session.frame(0.0)?;
-        }
-        session.finish()?;
+        session.run(self.frames.unwrap_or(session.settling_frames()))?;
         for message in session.failed_checks()? {
             eprintln!("warning: {}: {message}", path.display());
         }

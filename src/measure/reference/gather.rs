@@ -176,8 +176,7 @@ fn frame(lab: &Lab, session: &mut Session, sums: &mut Sums, samples: u64) -> Res
     if !session.set_params(lab, &params)? {
         return Err(LabError::Request("'first_sample' of the reference graph must not change what is planned".into()));
     }
-    session.frame(0.0)?;
-    session.finish()?;
+    session.run(1)?;
     if let Some(message) = session.failed_checks()?.into_iter().next() {
         return Err(LabError::Request(message));
     }
