@@ -33,11 +33,19 @@ mod voxels;
 
 use crate::diagnostics::excerpt::excerpt;
 use crate::lab::{Lab, LabError, Workspace};
+use crate::metrics::Metric;
 use crate::vulkan::{GpuOptions, list_devices};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use output::{is_json_output, write_json, written};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+/// Reads a metric by its key.
+fn metric_of(list: impl Iterator<Item = &'static Metric>) -> impl TypedValueParser<Value = &'static Metric> {
+    let keys = list.map(|m| PossibleValue::new(m.key).help(m.help));
+    PossibleValuesParser::new(keys).try_map(|key| Metric::of(&key).ok_or("no such metric"))
+}
 
 /// A research workbench for voxel cone tracing.
 #[derive(Debug, Parser)]

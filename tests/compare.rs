@@ -20,7 +20,7 @@ fn compare() -> Command {
 fn exr(folder: &TempDir, name: &str, rgb: impl Fn(u32, u32) -> [f32; 3]) -> PathBuf {
     let rgb = (0..128).map(|i| rgb(i % 16, i / 16)).collect();
     let path = folder.path().join(name);
-    picture::write_linear(&path, &Linear { size: (16, 8), rgb }).unwrap();
+    picture::write_linear(&path, &Linear::radiance((16, 8), rgb)).unwrap();
     path
 }
 
@@ -110,7 +110,7 @@ fn what_cannot_be_compared_is_said() {
     let said = fails(compare().args([&a, &a]).args(["--part", "sheen"]));
     assert!(said.contains("no part 'sheen' in all pictures; they have: total"), "{said}");
     let small = folder.path().join("small.exr");
-    picture::write_linear(&small, &Linear { size: (2, 2), rgb: vec![[1.0; 3]; 4] }).unwrap();
+    picture::write_linear(&small, &Linear::radiance((2, 2), vec![[1.0; 3]; 4])).unwrap();
     let said = fails(compare().args([&a, &small]));
     assert!(said.contains("pictures of 16x8 and 2x2 cannot be compared"), "{said}");
     let mask = png(&folder, "mask.png", |_, _| 0);

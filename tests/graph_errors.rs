@@ -202,6 +202,20 @@ fn a_graph_pins_what_it_declares() {
     assert!(said.contains("unknown variable 'methd'") && said.contains("did you mean 'method'?"), "{said}");
 }
 
+#[test]
+fn a_part_of_the_light_is_a_texture_or_says_more() {
+    let parts =
+        |text: &str| graph("    output: \"picture\",", &format!("    output: \"picture\",\n    parts: {{ {text} }},"));
+    assert_eq!(parts("\"total\": \"picture\", \"lamp\": (texture: \"picture\", kind: direct, focus: true)"), "");
+    let said = parts("\"total\": (texture: \"pictur\"), \"lamp\": \"depht\"");
+    assert!(said.contains("graph.ron:30:33") && said.contains("did you mean 'picture'?"), "{said}");
+    assert!(said.contains("graph.ron:30:52") && said.contains("did you mean 'depth'?"), "{said}");
+    let said = parts("\"total\": (texture: \"picture\", kind: opennes)");
+    assert!(said.contains("unknown name 'opennes'") && said.contains("did you mean 'openness'?"), "{said}");
+    let said = parts("\"total\": (kind: direct)");
+    assert!(said.contains("field 'texture' is missing"), "{said}");
+}
+
 /// One mistake in a shader.
 #[track_caller]
 fn shader(name: &str, old: &str, new: &str) -> String {

@@ -12,7 +12,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 fn grey(values: &[f32]) -> Linear {
-    Linear { size: (values.len() as u32, 1), rgb: values.iter().map(|v| [*v; 3]).collect() }
+    Linear::radiance((values.len() as u32, 1), values.iter().map(|v| [*v; 3]).collect())
 }
 
 /// A sequence of one pixel as `flicker` takes it: differences to its first frame, and its area.
@@ -40,12 +40,12 @@ fn flicker_index() {
 #[test]
 fn change_of_a_frame() {
     let (a, b) = (grey(&[0.1, 0.2, 0.3]), grey(&[0.2, 0.4, 0.1]));
-    let none = change(Kind::Radiance, [&a, &b], Some([&a, &b]));
+    let none = change([&a, &b], Some([&a, &b]));
     assert_eq!((none.rms, none.p999, none.jump), (0.0, 0.0, 0.0));
     // The reference rises by 1 everywhere, the method in one of four pixels only: errors 0, 1, 1, 1.
     let (x0, x1) = (grey(&[0.0; 4]), grey(&[1.0, 0.0, 0.0, 0.0]));
     let (r0, r1) = (grey(&[0.0; 4]), grey(&[1.0; 4]));
-    let c = change(Kind::Radiance, [&x0, &x1], Some([&r0, &r1]));
+    let c = change([&x0, &x1], Some([&r0, &r1]));
     assert!((c.rms - 0.75f64.sqrt()).abs() < 1e-12 && (c.p999 - 1.0).abs() < 1e-12);
     // 1 is shown as 1/2, which sRGB encodes as 0.7354.
     assert!((c.jump - 255.0 * 0.735_357).abs() < 0.01, "{}", c.jump);
@@ -53,7 +53,7 @@ fn change_of_a_frame() {
     // One pixel in 500 pops.
     let (calm, mut pop) = (vec![0.5; 500], vec![0.5; 500]);
     pop[77] = 1.5;
-    let c = change(Kind::Radiance, [&grey(&calm), &grey(&pop)], None);
+    let c = change([&grey(&calm), &grey(&pop)], None);
     assert!((c.p999 - 1.0).abs() < 1e-6 && (c.rms - (1.0f64 / 500.0).sqrt()).abs() < 1e-6);
 }
 

@@ -1,6 +1,6 @@
 //! The structure error, on pictures whose answer is known.
 
-use conelab::metrics::{Compared, Kind, Linear, relmse, scores, structure, structure_noise};
+use conelab::metrics::{Compared, Linear, relmse, scores, structure, structure_noise};
 
 /// Half of a difference of this size counts; see `docs/metrics.md`.
 const HALF: f64 = 0.1;
@@ -12,7 +12,7 @@ const PAIRS: f64 = 2.0 * BLOCKS * (BLOCKS - 1.0);
 
 fn picture(light: impl Fn(u32, u32) -> f32) -> Linear {
     let rgb = (0..SIDE * SIDE).map(|i| [light(i % SIDE, i / SIDE); 3]).collect();
-    Linear { size: (SIDE, SIDE), rgb }
+    Linear::radiance((SIDE, SIDE), rgb)
 }
 
 fn counted(difference: f64) -> f64 {
@@ -115,10 +115,10 @@ fn what_noise_alone_scores_follows_from_two_halves_of_the_samples() {
 #[test]
 fn regions_count_the_pairs_whose_blocks_are_both_inside() {
     let (flat, edge) = (picture(|_, _| 1.0), picture(|x, _| if x < 20 { 1.0 } else { 0.5 }));
-    let compared = Compared::new(&edge, &flat, Kind::Radiance).unwrap();
+    let compared = Compared::new(&edge, &flat).unwrap();
     let of = |inside: &dyn Fn(u32, u32) -> bool| {
         let mask: Vec<bool> = (0..SIDE * SIDE).map(|i| inside(i % SIDE, i / SIDE)).collect();
-        compared.scores(Some(&mask)).unwrap().structure
+        compared.scores(Some(&mask)).unwrap().get("structure")
     };
     // Ten columns of blocks, whose right ones end at the edge: none of its pairs.
     close(of(&|x, _| x < 20), 0.0);
@@ -134,7 +134,7 @@ fn regions_count_the_pairs_whose_blocks_are_both_inside() {
 fn pixels_that_are_no_number_are_left_out_and_odd_sizes_have_smaller_blocks() {
     let odd = |edit: &dyn Fn(u32, u32) -> f32| {
         let rgb = (0..7 * 5).map(|i| [edit(i % 7, i / 7); 3]).collect();
-        Linear { size: (7, 5), rgb }
+        Linear::radiance((7, 5), rgb)
     };
     // The last column of blocks, one pixel wide, is dark: 3 of 3 * 3 + 4 * 2 pairs.
     let flat = odd(&|_, _| 1.0);
@@ -152,7 +152,7 @@ fn bits_do_not_depend_on_the_number_of_threads() {
     let (x, r) = (picture(|x, y| random(x, y, 3)), picture(|x, y| random(x, y, 4)));
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| scores(&x, &r).unwrap().structure.to_bits())
+        pool.install(|| scores(&x, &r).unwrap().get("structure").to_bits())
     };
     assert_eq!(with(1), with(5));
 }

@@ -118,9 +118,7 @@ impl<'a> PointBuilder<'a> {
 
     /// The scene under the experiment's light, with its hash.
     fn scene(&mut self, experiment: &Experiment) -> Result<(Arc<Scene>, String), LabError> {
-        let lights: Vec<String> = experiment.lights.iter().map(|(name, l)| format!("{} {l:?}", name.value)).collect();
-        let environment = experiment.environment.as_ref().map(|e| &e.value);
-        let key = format!("{:?} {:?} {environment:?} {:?}", experiment.scene, experiment.sky, lights);
+        let key = format!("{:?} {}", experiment.scene, experiment.light());
         if let Some(found) = self.lit.get(&key) {
             return Ok(found.clone());
         }

@@ -1,23 +1,19 @@
 //! What a point sets: parameters of the graph, and fields of the experiment.
 
-use crate::diagnostics::{At, Diagnostic, Entries, Loc, options};
-use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, check_size, in_folder, scene_path};
+use crate::diagnostics::{At, Diagnostic, Entries, Loc};
+use crate::experiment::{Experiment, Field};
 use crate::graph::file::RawText;
 use crate::lab::LabError;
-use serde::de::DeserializeOwned;
 use std::path::Path;
 
 /// Name and value as RON.
 #[derive(Clone, Debug)]
 pub struct Setting {
-    /// graph, scene, camera, size, time, sky, environment, or a parameter.
+    /// A field of the experiment ([`crate::experiment::FIELDS`]), or a parameter.
     pub name: Loc<String>,
     /// RON.
     pub text: String,
 }
-
-/// Fields of an experiment that are set by name; every other name is a parameter's.
-pub const FIELDS: [&str; 7] = ["graph", "scene", "camera", "size", "time", "sky", "environment"];
 
 /// Settings as they stand in a file.
 pub fn settings(list: &Entries<RawText>) -> Vec<Setting> {
@@ -67,18 +63,30 @@ fn last_source(experiment: &Experiment) -> u32 {
 /// # Errors
 /// The text has no name and value.
 pub fn named<'t>(option: &str, text: &'t str, form: &str) -> Result<(&'t str, &'t str), LabError> {
-    let parts = text.split_once('=').map(|(name, value)| (name.trim(), value));
+    let parts = text.split_once('=').map(|(name, value)| (name.trim(), value)).filter(|parts| !parts.0.is_empty());
     parts.ok_or_else(|| LabError::Request(format!("{option} {text}: expected {form}")))
 }
 
-/// Values between commas; those inside brackets belong to a value.
-pub fn values(text: &str) -> Vec<String> {
+/// A setting, and the values in RON that it is varied over.
+pub type Axis = (String, Vec<String>);
+
+/// What an option of the command line varies: `NAME=VALUE,VALUE`, or as `form` says. Commas inside brackets belong to a
+/// value.
+///
+/// # Errors
+/// The text has no name, or a value is missing.
+pub fn axis(option: &str, text: &str, form: &str) -> Result<Axis, LabError> {
+    let (name, list) = named(option, text, form)?;
     let mut depth = 0;
     let between = |c: char| {
         depth += i32::from(matches!(c, '(' | '[')) - i32::from(matches!(c, ')' | ']'));
         c == ',' && depth == 0
     };
-    text.split(between).map(|v| v.trim().to_string()).collect()
+    let values: Vec<String> = list.split(between).map(|v| v.trim().to_string()).collect();
+    match values.iter().any(String::is_empty) {
+        true => Err(LabError::Request(format!("{option} {text}: expected {form}"))),
+        false => Ok((name.into(), values)),
+    }
 }
 
 impl Setting {
@@ -88,36 +96,9 @@ impl Setting {
     }
 
     fn apply(&self, experiment: &mut Experiment, file: u32, folder: &Path) -> Result<(), String> {
-        let name = self.name.value.as_str();
-        match name {
-            "graph" => experiment.graph = self.read("the name of a graph")?,
-            "scene" => experiment.scene = scene_path(folder, &self.read::<String>("a scene's name or file")?),
-            "camera" => experiment.camera = self.read::<CameraChoice>("a camera's name, or a camera written out")?,
-            "size" => {
-                experiment.size = self.read("(width, height)")?;
-                check_size(experiment.size)?;
-            }
-            "time" => {
-                experiment.time = self.read("a number of seconds")?;
-                if !experiment.time.is_finite() {
-                    return Err("the time must be a finite number of seconds".into());
-                }
-            }
-            "sky" => {
-                let sky: (f32, f32, f32) = self.read("(r, g, b)")?;
-                if [sky.0, sky.1, sky.2].iter().any(|v| !v.is_finite() || *v < 0.0) {
-                    return Err("the sky's radiance must be finite and not negative".into());
-                }
-                experiment.sky = Some(sky);
-            }
-            "environment" => {
-                let change = self.read::<EnvironmentChange>("(file: \"sky.hdr\", rotation: degrees, intensity: 1)")?;
-                change.check()?;
-                let before = experiment.environment.take().map(|e| e.value).unwrap_or_default();
-                let value = before.overlaid(in_folder(folder, change));
-                experiment.environment = Some(Loc { value, at: At { file, offset: self.name.at.offset } });
-            }
-            _ => self.set_param(experiment, file),
+        match Field::of(&self.name.value) {
+            Some(field) => field.set(experiment, &self.text, folder, At { file, offset: self.name.at.offset })?,
+            None => self.set_param(experiment, file),
         }
         Ok(())
     }
@@ -125,10 +106,5 @@ impl Setting {
     fn set_param(&self, experiment: &mut Experiment, file: u32) {
         let at = At { file, offset: self.name.at.offset };
         experiment.params.push((Loc { value: self.name.value.clone(), at }, self.text.clone()));
-    }
-
-    fn read<T: DeserializeOwned>(&self, expected: &str) -> Result<T, String> {
-        let text = &self.text;
-        options().from_str(text).map_err(|_| format!("'{}': expected {expected}, got {text}", self.name.value))
     }
 }

@@ -8,7 +8,7 @@ use super::sweep::run_with_bar;
 use crate::campaign::ablation::{changes, csv, markdown, rows};
 use crate::campaign::record::write_files;
 use crate::campaign::sweep::{Options, Shard, Sweep};
-use crate::lab::{LabError, Workspace, params_of};
+use crate::lab::{LabError, Workspace, focus_of, params_of};
 use crate::measure::Frames;
 use crate::measure::reference::ALL_BOUNCES;
 use clap::Args;
@@ -86,7 +86,8 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
         failed += run_with_bar(&home, &args.device, &sweep, &options)?.failed;
     }
 
-    let rows = rows(&folders, &scenes, &changes)?;
+    let parts: Vec<String> = std::iter::once("total".into()).chain(focus_of(&graph).map(|p| p.name.clone())).collect();
+    let rows = rows(&folders, &scenes, &changes, &parts)?;
     let table = markdown(&rows);
     let text = format!(
         "# {}: each parameter at its plain value\n\nScenes: {}; {} bounces; {}x{}; {} frames; {} runs.\n\n{table}",

@@ -9,7 +9,7 @@ use crate::campaign::bench::{
 use crate::campaign::points::SweepPoint;
 use crate::campaign::record::{json, write_file, write_files};
 use crate::campaign::runner::Runner;
-use crate::campaign::settings::{named, values};
+use crate::campaign::settings::axis;
 use crate::campaign::sweep::{Sweep, list};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace};
@@ -188,8 +188,7 @@ fn sweep_of(args: &BenchArgs, frames: Frames) -> Result<Sweep, LabError> {
     }
     let settings = args.axis.iter().map(|a| ("--axis", a, "NAME=VALUE,VALUE"));
     for (option, text, form) in settings.chain(args.set.iter().map(|s| ("--set", s, "NAME=VALUE"))) {
-        let (name, list) = named(option, text, form)?;
-        axes.push((name.to_string(), values(list)));
+        axes.push(axis(option, text, form)?);
     }
     Sweep::of(experiments, &axes, frames)
 }

@@ -4,6 +4,7 @@ mod sides;
 
 use super::adapt::Changes;
 use super::{DeviceArgs, writable};
+use crate::campaign::settings::named;
 use crate::lab::LabError;
 use crate::measure::comparison::{Request, Side, compare, table};
 use crate::measure::reference::ALL_BOUNCES;
@@ -109,10 +110,8 @@ fn roles(a: Side, b: Option<Side>, reference: Option<Side>) -> Result<(Vec<Side>
 
 /// A region painted in a file, `NAME=FILE`.
 fn mask(text: &str) -> Result<Region, LabError> {
-    let Some((name, file)) = text.split_once('=').filter(|(name, _)| !name.is_empty()) else {
-        return Err(LabError::Request(format!("--mask {text}: expected NAME=FILE")));
-    };
-    Ok(Region::painted(name, &picture::read_linear(Path::new(file))?.0))
+    let (name, file) = named("--mask", text, "NAME=FILE")?;
+    Ok(Region::painted(name, &picture::read_linear(Path::new(file))?))
 }
 
 fn write_maps(

@@ -2,12 +2,13 @@
 
 use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs};
-use crate::campaign::fit::{self, Axis, Evaluator, Found, Goal, Limits, Metric, Step, Stop, Subject};
-use crate::campaign::settings::{named, values};
+use crate::campaign::fit::{self, Evaluator, Found, Goal, Limits, Step, Stop, Subject};
+use crate::campaign::settings::{Axis, axis};
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Workspace, params_of};
 use crate::measure::Frames;
 use crate::measure::reference::{self, ALL_BOUNCES};
+use crate::metrics::{Metric, RELMSE, within_noise};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -26,8 +27,8 @@ pub struct FitArgs {
     #[arg(long, value_name = "MS")]
     max_ms: Option<f64>,
     /// How the error is measured.
-    #[arg(long, value_enum, default_value = "relmse")]
-    metric: Metric,
+    #[arg(long, default_value = RELMSE, value_parser = super::metric_of(Metric::ranking()))]
+    metric: &'static Metric,
     /// Part of the light that is compared.
     #[arg(long, default_value = "total")]
     part: String,
@@ -77,7 +78,7 @@ struct Log {
     grid: u64,
     reference_samples: u64,
     noise: f64,
-    axes: Vec<(String, Vec<String>)>,
+    axes: Vec<Axis>,
     /// Settings in the order in which they were tried: values by axis, ms, error.
     tried: Vec<Tried>,
     best: Tried,
@@ -109,15 +110,16 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         None => home.root.join("captures/fit").join(format!("{}.ron", experiment.name)),
     };
     let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
-    let given = args.vary.iter().map(|text| axis(text)).collect::<Result<Vec<_>, _>>()?;
+    let given = args.vary.iter().map(|text| axis("--vary", text, "NAME=VALUE,VALUE")).collect::<Result<Vec<_>, _>>()?;
     let axes = fit::axes(&loaded.graph, &given)?;
     let scene = Arc::new(adapt::open_scene(&experiment)?);
     let lab = Lab::open(home, args.device.options())?;
     let wanted = reference::Goal::Samples(args.spp);
     let reference = super::reference::with_bar(&lab, &experiment, &scene, args.bounces, wanted)?;
     let noise = reference.parts.get(&args.part).map_or(0.0, |p| p.noise.relmse);
-    if let (Goal::Error(bound), Metric::Relmse) = (goal, args.metric)
-        && bound < 4.0 * noise
+    if let Goal::Error(bound) = goal
+        && args.metric.key == RELMSE
+        && within_noise(bound, Some(noise))
     {
         eprintln!(
             "warning: an error of {bound} is below four times the reference's noise ({noise:.2e}) and cannot be told \
@@ -125,7 +127,7 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         );
     }
     let start = fit::start(&axes, &params_of(&loaded.graph, &experiment)?);
-    let sizes: Vec<usize> = axes.iter().map(|a| a.values.len()).collect();
+    let sizes: Vec<usize> = axes.iter().map(|a| a.1.len()).collect();
     let subject = Subject {
         lab: &lab,
         loaded: &loaded,
@@ -175,20 +177,9 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
     if within { Ok(()) } else { Err(LabError::Request("no setting that was tried is within the bound".into())) }
 }
 
-/// `NAME=VALUE,VALUE`; values with commas in parentheses stay whole.
-fn axis(text: &str) -> Result<Axis, LabError> {
-    let form = "NAME=VALUE,VALUE";
-    let (name, list) = named("--vary", text, form)?;
-    let values = values(list);
-    match name.is_empty() || values.iter().any(String::is_empty) {
-        true => Err(LabError::Request(format!("--vary {text}: expected {form}"))),
-        false => Ok(Axis { name: name.into(), values }),
-    }
-}
-
 fn names(axes: &[Axis], place: &[usize]) -> String {
-    let list = axes.iter().zip(place).filter(|(axis, _)| axis.values.len() > 1);
-    list.map(|(axis, i)| format!("{}={}", axis.name, axis.values[*i])).collect::<Vec<_>>().join(" ")
+    let list = axes.iter().zip(place).filter(|(axis, _)| axis.1.len() > 1);
+    list.map(|((name, values), i)| format!("{name}={}", values[*i])).collect::<Vec<_>>().join(" ")
 }
 
 fn why(stop: Stop) -> &'static str {
@@ -204,11 +195,7 @@ fn why(stop: Stop) -> &'static str {
 /// What the search has found, for people.
 fn summary(found: &Found, goal: Goal, args: &FitArgs, sizes: &[usize]) -> Vec<String> {
     let (ms, error) = goal.time_and_error(found.trial);
-    let metric = match args.metric {
-        Metric::Relmse => "relMSE",
-        Metric::HdrFlip => "HDR-FLIP",
-        Metric::Structure => "structure",
-    };
+    let metric = args.metric.axis();
     let bound = match goal {
         Goal::Error(bound) => format!("{metric} at most {bound}"),
         Goal::Time(bound) => format!("at most {bound} ms"),
@@ -245,7 +232,7 @@ fn comment(
 fn log(found: &Found, goal: Goal, subject: &Subject<'_>, summary: &[String], sizes: &[usize], noise: f64) -> Log {
     let tried = |step: &Step| {
         let both = step.trial.map(|t| goal.time_and_error(t));
-        let set = subject.axes.iter().zip(&step.place).map(|(axis, i)| axis.values[*i].clone()).collect();
+        let set = subject.axes.iter().zip(&step.place).map(|(axis, i)| axis.1[*i].clone()).collect();
         Tried { set, ms: both.map(|b| b.0), error: both.map(|b| b.1) }
     };
     Log {
@@ -259,7 +246,7 @@ fn log(found: &Found, goal: Goal, subject: &Subject<'_>, summary: &[String], siz
         grid: sizes.iter().map(|n| *n as u64).product(),
         reference_samples: subject.reference.samples,
         noise,
-        axes: subject.axes.iter().map(|a| (a.name.clone(), a.values.clone())).collect(),
+        axes: subject.axes.to_vec(),
         tried: found.tried.iter().map(tried).collect(),
         best: tried(&Step { place: found.place.clone(), trial: Some(found.trial) }),
     }

@@ -3,7 +3,7 @@
 use super::adapt::{self, ExperimentArgs, parse_resource};
 use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
-use crate::graph::load::Graph;
+use crate::graph::load::{Graph, LightPart};
 use crate::graph::param::Value;
 use crate::graph::run::{FrameTimes, Redo};
 use crate::lab::{Lab, LabError, Session, Texels, Workspace};
@@ -141,9 +141,8 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     if let Some((path, (name, ..))) = &shown {
         let what = if exr && resource.is_none() { format!(" ('{name}', linear)") } else { String::new() };
         say!("wrote {}{what}", path.display());
-        if let Some(part) = part_asked_for(&session).filter(|(_, texture)| exr && resource.is_none() && texture != name)
-        {
-            eprintln!("warning: '{name}' is the whole light; --resource {} writes '{}' alone", part.1, part.0);
+        if let Some(part) = part_asked_for(&session).filter(|p| exr && resource.is_none() && p.texture != *name) {
+            eprintln!("warning: '{name}' is the whole light; --resource {} writes '{}' alone", part.texture, part.name);
         }
     }
     if let Some(path) = &args.json {
@@ -160,9 +159,9 @@ fn not_finite(texels: &Texels, name: &str) -> Option<String> {
 }
 
 /// The part of the light that a parameter is set to show, and its texture.
-fn part_asked_for(session: &Session) -> Option<(String, String)> {
+fn part_asked_for(session: &Session) -> Option<LightPart> {
     let set = |part: &str| session.params.values.iter().any(|v| matches!(v, Value::Choice(option) if option == part));
-    session.graph.parts.iter().find(|(part, _)| set(part)).cloned()
+    session.graph.parts.iter().find(|part| set(&part.name)).cloned()
 }
 
 fn write_texture(

@@ -1,8 +1,9 @@
 //! `conelab report`.
 
-use crate::campaign::report::{METRICS, write};
+use crate::campaign::report::write;
 use crate::campaign::sweep::collect;
 use crate::lab::LabError;
+use crate::metrics::{METRICS, Metric, RELMSE};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -15,9 +16,9 @@ pub struct ReportArgs {
     /// Where the page, the charts and the table go; `report` in the first folder when absent.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
-    /// Errors that are charted: relmse, rmse, smape, flip, hdr_flip, structure, energy_ratio, leak, over_occlusion.
-    #[arg(long, value_delimiter = ',', default_values_t = METRICS.map(String::from))]
-    metric: Vec<String>,
+    /// Errors that are charted.
+    #[arg(long, value_delimiter = ',', default_values = [RELMSE, "hdr_flip"], value_parser = super::metric_of(METRICS.iter()))]
+    metric: Vec<&'static Metric>,
 }
 
 /// Writes a report.

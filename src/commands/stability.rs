@@ -7,6 +7,7 @@ use crate::campaign::record::write_file;
 use crate::campaign::stability::{Options, Suite, failure_table, failures, run as run_suite, sheet};
 use crate::campaign::table::short;
 use crate::lab::{Lab, LabError, Workspace};
+use crate::metrics::RELMSE;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -86,7 +87,7 @@ pub fn run(args: &StabilityArgs) -> Result<(), LabError> {
             number(total.e),
             number(total.jump),
             number(total.flicker.map(|f| f.mean)),
-            number(total.scores.as_ref().map(|s| s.relmse))
+            number(total.scores.as_ref().map(|s| s.get(RELMSE)))
         );
     }
     say!("wrote {}", super::shown(&options.folder.join("index.html")).display());

@@ -154,8 +154,7 @@ fn voxels_of(
     wanted: &[String],
 ) -> Result<(Grid, Vec<oracle::Voxel>, Vec<String>), LabError> {
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted.to_vec(), None)?;
-    session.frame(0.0)?;
-    session.finish()?;
+    session.run(1)?;
     let warnings = session.failed_checks()?;
     let (grid, voxels) = oracle::read(&mut session)?;
     Ok((grid, voxels, warnings))
@@ -198,8 +197,7 @@ fn draw(
         output = graph.output.clone().ok_or_else(|| LabError::Request("graph 'preview' has no `output`".into()))?;
         Ok(vec![output.clone()])
     })?;
-    session.frame(0.0)?;
-    session.finish()?;
+    session.run(1)?;
     picture::write(&png, &session.texels(&output, 0, 0)?)?;
     say!("wrote {} and {}", png.display(), glb.display());
     Ok(())

@@ -9,6 +9,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl Experiment {
+    /// All that [`Experiment::adapt_scene`] changes, as text: experiments of one text light a scene alike.
+    pub fn light(&self) -> String {
+        let lights: Vec<String> = self.lights.iter().map(|(name, l)| format!("{} {l:?}", name.value)).collect();
+        format!("{:?} {:?} {lights:?}", self.sky, self.environment.as_ref().map(|e| &e.value))
+    }
+
     /// Changes sky and lights of the scene as the experiment says. Doing it twice changes nothing more.
     ///
     /// # Errors

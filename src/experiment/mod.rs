@@ -2,12 +2,13 @@
 //! defaults.
 
 mod adapt;
+mod fields;
 mod read;
 mod spans;
 mod write;
 
-pub(crate) use read::{in_folder, scene_path};
-pub(crate) use write::{environment_text, placed_text};
+pub use fields::{FIELDS, Field};
+pub(crate) use write::placed_text;
 pub use write::{resolved_text, write};
 
 use crate::diagnostics::{At, Diagnostic, Loc, Sources};

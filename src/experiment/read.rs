@@ -95,17 +95,12 @@ fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Dia
         let at = parsed.size.as_ref().map_or(parsed.graph.at, |s| s.at);
         errors.push(sources.error(at, message));
     }
-    if let Some(time) = parsed.time.as_ref().filter(|t| !t.value.is_finite()) {
-        errors.push(sources.error(time.at, "the time must be a finite number of seconds"));
-    }
-    if let Some(sky) = parsed.sky.as_ref().filter(|s| !is_colour(s.value)) {
-        errors.push(sources.error(sky.at, "the sky's radiance must be finite and not negative"));
-    }
-    if let Some(environment) = &parsed.environment
-        && let Err(message) = environment.value.check()
-    {
-        errors.push(sources.error(environment.at, message));
-    }
+    let wrong = [
+        parsed.time.as_ref().map(|t| (t.at, check_time(t.value))),
+        parsed.sky.as_ref().map(|s| (s.at, check_sky(s.value))),
+        parsed.environment.as_ref().map(|e| (e.at, e.value.check())),
+    ];
+    errors.extend(wrong.into_iter().flatten().filter_map(|(at, check)| Some(sources.error(at, check.err()?))));
     for (name, change) in &parsed.lights.0 {
         if let Err(message) = check_light(&change.value) {
             errors.push(sources.error(change.at, format!("light '{}': {message}", name.value)));
@@ -130,6 +125,14 @@ fn parse(path: &Path, sources: Sources, file: u32) -> Result<Experiment, Vec<Dia
     })
 }
 
+pub(super) fn check_time(time: f64) -> Result<(), String> {
+    if time.is_finite() { Ok(()) } else { Err("the time must be a finite number of seconds".into()) }
+}
+
+pub(super) fn check_sky(sky: (f32, f32, f32)) -> Result<(), String> {
+    if is_colour(sky) { Ok(()) } else { Err("the sky's radiance must be finite and not negative".into()) }
+}
+
 fn is_colour(c: (f32, f32, f32)) -> bool {
     let c = Vec3::from(c);
     c.is_finite() && c.min_element() >= 0.0
@@ -152,12 +155,12 @@ fn check_light(change: &LightChange) -> Result<(), String> {
 }
 
 /// The same with its file looked up beside the experiment first.
-pub(crate) fn in_folder(folder: &Path, change: EnvironmentChange) -> EnvironmentChange {
+pub(super) fn in_folder(folder: &Path, change: EnvironmentChange) -> EnvironmentChange {
     EnvironmentChange { file: change.file.map(|file| scene_path(folder, &file)), ..change }
 }
 
 /// Names stay; files are looked up beside the experiment first.
-pub(crate) fn scene_path(folder: &Path, scene: &str) -> String {
+pub(super) fn scene_path(folder: &Path, scene: &str) -> String {
     let beside: PathBuf = folder.join(scene);
     if scene.contains('.') && beside.is_file() { beside.to_string_lossy().into_owned() } else { scene.to_string() }
 }

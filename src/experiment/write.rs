@@ -3,7 +3,7 @@
 use super::ExperimentError;
 use super::adapt::change_to;
 use super::spans::{self, Body, Edits};
-use super::{CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera};
+use super::{CameraChoice, EnvironmentChange, Experiment, FIELDS, LightChange, PlacedCamera};
 use crate::diagnostics::{At, Diagnostic, Loc};
 use crate::graph::param::Params;
 use crate::scene::Scene;
@@ -27,15 +27,10 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
     std::fs::create_dir_all(folder)
         .map_err(|e| ExperimentError::Request(format!("cannot write '{}': {e}", path.display())))?;
     let unchanged: Vec<(String, String)> = defaults.texts().collect();
-    let wanted = Wanted {
-        scene: scene_text(&experiment.scene, path),
-        environment: environment_in(experiment, path),
-        params: params.texts().filter(|text| !unchanged.contains(text)).collect(),
-        values: &params,
-        experiment,
-    };
+    let list = params.texts().filter(|text| !unchanged.contains(text)).collect();
+    let wanted = Wanted { experiment, path, params: list, values: &params };
     let right = |text: &str| read_back(experiment, &params, defaults, path, text);
-    let edited = if overwrite { edited(&wanted, defaults, path).filter(|text| right(text).is_ok()) } else { None };
+    let edited = if overwrite { edited(&wanted, defaults).filter(|text| right(text).is_ok()) } else { None };
     let text = edited.unwrap_or_else(|| fresh(&wanted));
     right(&text)?;
     let written = if overwrite {
@@ -75,13 +70,7 @@ pub fn resolved_text(
     let single = |name: &str| !name.is_empty() && scene.lights.iter().filter(|l| l.name == name).count() == 1;
     let lights = scene.lights.iter().filter(|l| single(&l.name));
     resolved.lights = lights.map(|l| (Loc { value: l.name.clone(), at: At::default() }, change_to(l))).collect();
-    let wanted = Wanted {
-        scene: scene_text(&experiment.scene, path),
-        environment: environment_in(&resolved, path),
-        params: params.texts().collect(),
-        values: &params,
-        experiment: &resolved,
-    };
+    let wanted = Wanted { experiment: &resolved, path, params: params.texts().collect(), values: &params };
     let text = fresh(&wanted);
     read_back(&resolved, &params, defaults, path, &text)?;
     Ok(text)
@@ -97,8 +86,7 @@ fn exists(path: &Path) -> ExperimentError {
 /// What the text must say.
 struct Wanted<'e> {
     experiment: &'e Experiment,
-    scene: String,
-    environment: String,
+    path: &'e Path,
     params: Vec<(String, String)>,
     values: &'e Params,
 }
@@ -124,18 +112,12 @@ fn read_back(
         Err(ExperimentError::Input(list)) => return Err(wrong(first_message(&list))),
         Err(e) => return Err(e),
     };
-    let checks = [
-        ("graph", found.graph == experiment.graph),
-        ("scene", same_scene(&found.scene, &experiment.scene)),
-        ("camera", found.camera == experiment.camera),
-        ("size", found.size == experiment.size),
-        ("time", found.time == experiment.time),
-        ("sky", found.sky == experiment.sky),
-        ("environment", same_environment(&found, experiment)),
+    let maps = [
         ("lights", changes(&found) == changes(experiment)),
         ("params", values == (params.values.clone(), params.off.clone())),
     ];
-    match checks.iter().find(|c| !c.1) {
+    let fields = FIELDS.iter().map(|f| (f.name, (f.same)(&found, experiment)));
+    match fields.chain(maps).find(|c| !c.1) {
         Some((field, _)) => Err(wrong(format!("`{field}` differs"))),
         None => Ok(()),
     }
@@ -147,7 +129,7 @@ fn changes(experiment: &Experiment) -> Vec<(&str, LightChange)> {
     list
 }
 
-fn same_environment(a: &Experiment, b: &Experiment) -> bool {
+pub(super) fn same_environment(a: &Experiment, b: &Experiment) -> bool {
     let change = |e: &Experiment| e.environment.as_ref().map(|e| e.value.clone()).unwrap_or_default();
     let (a, b) = (change(a), change(b));
     let same_file = match (&a.file, &b.file) {
@@ -157,13 +139,13 @@ fn same_environment(a: &Experiment, b: &Experiment) -> bool {
     same_file && (a.rotation, a.intensity) == (b.rotation, b.intensity)
 }
 
-fn same_scene(a: &str, b: &str) -> bool {
+pub(super) fn same_scene(a: &str, b: &str) -> bool {
     let real = |name: &str| Path::new(name).canonicalize().ok();
     a == b || real(a).is_some_and(|found| real(b) == Some(found))
 }
 
 /// How a scene is named in the file `path`: files of the project relative to its folder, everything else as it is.
-fn scene_text(scene: &str, path: &Path) -> String {
+pub(super) fn scene_text(scene: &str, path: &Path) -> String {
     let relative = || {
         let file = Path::new(scene).canonicalize().ok().filter(|p| p.is_file())?;
         let folder = std::path::absolute(path).ok()?.parent()?.canonicalize().ok()?;
@@ -175,7 +157,7 @@ fn scene_text(scene: &str, path: &Path) -> String {
 
 /// The environment as the file `path` says it: nothing where the experiment says nothing. A file outside the project has
 /// its whole path, so that it is found from everywhere.
-fn environment_in(experiment: &Experiment, path: &Path) -> String {
+pub(super) fn environment_in(experiment: &Experiment, path: &Path) -> String {
     let Some(Loc { value: change, .. }) = &experiment.environment else { return String::new() };
     let file = change.file.as_ref().map(|file| {
         let text = scene_text(file, path);
@@ -186,7 +168,7 @@ fn environment_in(experiment: &Experiment, path: &Path) -> String {
 }
 
 /// An environment as RON.
-pub(crate) fn environment_text(change: &EnvironmentChange) -> String {
+fn environment_text(change: &EnvironmentChange) -> String {
     let file = change.file.as_ref().map(|file| format!("file: {}", quoted(file)));
     let numbers = [("rotation", change.rotation), ("intensity", change.intensity)];
     let numbers = numbers.iter().filter_map(|(n, v)| v.map(|v| format!("{n}: {v:?}")));
@@ -200,11 +182,11 @@ fn between(folder: &Path, file: &Path) -> PathBuf {
     up.chain(file.components().skip(common)).collect()
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     format!("{text:?}")
 }
 
-fn vector((x, y, z): (f32, f32, f32)) -> String {
+pub(super) fn vector((x, y, z): (f32, f32, f32)) -> String {
     format!("({x:?}, {y:?}, {z:?})")
 }
 
@@ -221,7 +203,7 @@ pub(crate) fn placed_text(c: &PlacedCamera) -> String {
     out + ")"
 }
 
-fn camera_text(camera: &CameraChoice) -> String {
+pub(super) fn camera_text(camera: &CameraChoice) -> String {
     match camera {
         CameraChoice::Named(name) => quoted(name),
         CameraChoice::Placed(placed) => placed_text(placed),
@@ -240,28 +222,14 @@ impl Wanted<'_> {
     fn lights(&self) -> Vec<(String, String)> {
         self.experiment.lights.iter().map(|(name, change)| (name.value.clone(), light_text(change))).collect()
     }
-
-    /// Every field but the maps: name, text, and whether leaving it out says the same.
-    fn fields(&self) -> [(&'static str, String, bool); 7] {
-        let e = self.experiment;
-        [
-            ("graph", quoted(&e.graph), false),
-            ("scene", quoted(&self.scene), false),
-            ("camera", camera_text(&e.camera), e.camera == CameraChoice::Named(DEFAULT_CAMERA.into())),
-            ("size", format!("({}, {})", e.size.0, e.size.1), e.size == DEFAULT_SIZE),
-            ("time", format!("{:?}", e.time), e.time == 0.0),
-            ("sky", e.sky.map_or(String::new(), vector), e.sky.is_none()),
-            ("environment", self.environment.clone(), e.environment.is_none()),
-        ]
-    }
 }
 
 fn fresh(wanted: &Wanted) -> String {
     let mut out = String::from("(\n");
-    for (name, text, absent) in wanted.fields() {
+    for field in &FIELDS {
         // Camera and size are always said, so that nobody has to look up what they are.
-        if !absent || name == "camera" || name == "size" {
-            out += &format!("    {name}: {text},\n");
+        if !(field.absent)(wanted.experiment) || ["camera", "size"].contains(&field.name) {
+            out += &format!("    {}: {},\n", field.name, field.text(wanted.experiment, wanted.path));
         }
     }
     let lights = wanted.lights();
@@ -282,27 +250,23 @@ fn map_text(name: &str, entries: &[(String, String)]) -> String {
 
 /// The text of the file at `path`, with the values that differ changed where they stand. `None` when it cannot be
 /// edited: it is no experiment, or written in a way that [`spans`] does not know.
-fn edited(wanted: &Wanted, defaults: &Params, path: &Path) -> Option<String> {
-    let old = Experiment::read(path).ok()?;
-    let text = std::fs::read_to_string(path).ok()?;
+fn edited(wanted: &Wanted, defaults: &Params) -> Option<String> {
+    let old = Experiment::read(wanted.path).ok()?;
+    let text = std::fs::read_to_string(wanted.path).ok()?;
     let body = spans::body(&text, 0)?;
-    let environment = environment_in(&old, path);
-    let old_wanted =
-        Wanted { experiment: &old, scene: String::new(), environment, params: Vec::new(), values: wanted.values };
-    let same_scene = same_scene(&old.scene, &wanted.experiment.scene);
     let mut edits = Edits::new();
     let mut lines = Vec::new();
     let mut keeps_last = true;
-    for ((name, new, absent), (_, before, _)) in wanted.fields().into_iter().zip(old_wanted.fields()) {
-        let same = if name == "scene" { same_scene } else { new == before };
+    for field in &FIELDS {
+        let (name, new) = (field.name, field.text(wanted.experiment, wanted.path));
         match body.entries.iter().enumerate().find(|(_, e)| e.key == name) {
-            Some(_) if same => {}
+            Some(_) if (field.same)(&old, wanted.experiment) => {}
             Some((i, entry)) if new.is_empty() => {
                 keeps_last &= i + 1 < body.entries.len();
                 edits.push(spans::remove(&text, entry));
             }
             Some((_, entry)) => edits.push((entry.value.clone(), new)),
-            None if absent => {}
+            None if (field.absent)(wanted.experiment) => {}
             None => lines.push(format!("{name}: {new},")),
         }
     }

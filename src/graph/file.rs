@@ -4,6 +4,7 @@ use super::expr::Expr;
 use super::param::Decl;
 use super::table::TableDecl;
 use crate::diagnostics::{Entries, Items, Loc, TwoOrThree, nested, offset_in_file};
+use crate::metrics::Kind;
 use serde::Deserialize;
 
 /// A graph file.
@@ -40,8 +41,8 @@ pub struct GraphFile {
     pub hdr: Option<Loc<String>>,
     /// Further results that may be asked for.
     pub outputs: Items<String>,
-    /// Contributions to the linear picture that other graphs have too: part, texture.
-    pub parts: Entries<String>,
+    /// Contributions to the linear picture that other graphs have too.
+    pub parts: Entries<PartItem>,
     /// What the graph needs of the scene's geometry.
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words of buffers that must be zero after a frame.
@@ -65,6 +66,37 @@ pub struct GraphFile {
     pub ablation: Items<ViewDecl>,
     /// The voxels that the graph makes.
     pub voxels: Option<Loc<VoxelsDecl>>,
+}
+
+/// A part of the light, or the name of its texture alone.
+#[derive(Debug)]
+pub struct PartItem(pub PartDecl);
+
+/// A part of the light.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartDecl {
+    /// Its texture.
+    pub texture: Loc<String>,
+    /// What its numbers are.
+    #[serde(default)]
+    pub kind: Kind,
+    /// Its name within a sentence.
+    pub title: Option<String>,
+    /// Whether it is what methods are looked at for: it has charts and short tables as the total has.
+    #[serde(default)]
+    pub focus: bool,
+}
+
+impl<'de> Deserialize<'de> for PartItem {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+        if raw.trim().get_ron().starts_with('(') {
+            return nested(raw).map(PartItem);
+        }
+        let texture = nested(raw)?;
+        Ok(PartItem(PartDecl { texture, kind: Kind::default(), title: None, focus: false }))
+    }
 }
 
 /// An expression with its place.

@@ -3,14 +3,15 @@
 use super::alias::Alias;
 use super::check::Check;
 use super::file::{
-    BufferDecl, CheckDecl, CompareDecl, GraphFile, PassDecl, RawText, RefuseDecl, SceneNeeds, TextureDecl, ViewDecl,
-    VoxelsDecl, ungrouped,
+    BufferDecl, CheckDecl, CompareDecl, GraphFile, PartItem, PassDecl, RawText, RefuseDecl, SceneNeeds, TextureDecl,
+    ViewDecl, VoxelsDecl, ungrouped,
 };
 use super::param::{OFF, Param, Params};
 use super::table::TableDecl;
 use super::value::{Named, ordered};
 use crate::diagnostics::excerpt::chain;
 use crate::diagnostics::{At, Diagnostic, Loc, Place, Severity, Sources};
+use crate::metrics::Kind;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -52,8 +53,8 @@ pub struct Graph {
     pub hdr: Option<String>,
     /// Further results.
     pub outputs: Vec<String>,
-    /// Contributions to the linear picture: part, texture. Graphs are compared by the parts that both have.
-    pub parts: Vec<(String, String)>,
+    /// Contributions to the linear picture. Graphs are compared by the parts that both have.
+    pub parts: Vec<LightPart>,
     /// Needs of the geometry.
     pub scene: Option<Loc<SceneNeeds>>,
     /// Words that must be zero.
@@ -79,6 +80,21 @@ pub struct Graph {
     pub voxels: Option<Loc<VoxelsDecl>>,
     /// The files it came from.
     pub sources: Sources,
+}
+
+/// A part of the light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LightPart {
+    /// Its name, the same in all graphs that have it.
+    pub name: String,
+    /// Its texture.
+    pub texture: String,
+    /// What its numbers are.
+    pub kind: Kind,
+    /// Its name within a sentence.
+    pub title: String,
+    /// Whether it is what methods are looked at for.
+    pub focus: bool,
 }
 
 impl Graph {
@@ -221,8 +237,16 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         }
         graph.outputs.extend(file.outputs.0.iter().map(|o| o.value.clone()));
         wanted.extend(file.outputs.0);
-        graph.parts.extend(file.parts.0.iter().map(|(part, texture)| (part.value.clone(), texture.value.clone())));
-        wanted.extend(file.parts.0.into_iter().map(|p| p.1));
+        for (name, Loc { value: PartItem(part), .. }) in file.parts.0 {
+            graph.parts.push(LightPart {
+                texture: part.texture.value.clone(),
+                kind: part.kind,
+                title: part.title.unwrap_or_else(|| name.value.clone()),
+                focus: part.focus,
+                name: name.value,
+            });
+            wanted.push(part.texture);
+        }
     }
     sizes_of_others(&mut graph, whole, &broken, &mut errors);
     let mut list = check_params(&decls, &graph.sources, &mut errors, &mut broken);

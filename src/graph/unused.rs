@@ -16,7 +16,7 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
     let mut wanted: HashSet<&str> = graph.outputs.iter().map(String::as_str).collect();
     wanted.extend(graph.output.as_deref());
     wanted.extend(graph.hdr.as_deref());
-    wanted.extend(graph.parts.iter().map(|p| p.1.as_str()));
+    wanted.extend(graph.parts.iter().map(|p| p.texture.as_str()));
     wanted.extend(graph.checks.iter().map(CheckDecl::buffer));
     wanted.extend(graph.tables.iter().map(|t| t.value.buffer()));
     for voxels in graph.voxels.iter().map(|v| &v.value) {

@@ -12,7 +12,7 @@ mod variables;
 mod view;
 mod workspace;
 
-pub use parts::parts_of;
+pub use parts::{focus_of, parts_of};
 pub use scene::SceneGpu;
 pub use texels::Texels;
 pub use variables::{environment, values_of};
@@ -440,6 +440,17 @@ impl Session {
     /// Sees the next frames from another camera. The frame before stays known to what compares frames.
     pub fn place_camera(&mut self, placed: &PlacedCamera) {
         self.viewpoint.place_camera(placed, self.bounds);
+    }
+
+    /// Runs so many frames, and waits for them.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn run(&mut self, frames: usize) -> Result<(), LabError> {
+        for _ in 0..frames {
+            self.frame(0.0)?;
+        }
+        self.finish().map(drop)
     }
 
     /// Waits for all frames.

@@ -30,7 +30,7 @@ impl Texels {
     pub fn linear(&self) -> Linear {
         let grey = self.format.count == 1;
         let rgb = self.floats().iter().map(|t| if grey { [t[0]; 3] } else { [t[0], t[1], t[2]] }).collect();
-        Linear { size: self.flat_size(), rgb }
+        Linear::radiance(self.flat_size(), rgb)
     }
 
     /// Width and height of a picture of these texels: slices of a volume are put below one another.

@@ -4,12 +4,11 @@ mod table;
 mod verdict;
 
 pub use table::table;
-pub use verdict::{NOISE_FACTOR, Verdict, within_noise};
+pub use verdict::Verdict;
 
-use crate::measure::reference::Noise;
 use crate::metrics::maps::{MapFile, maps};
 use crate::metrics::region::{Region, regions};
-use crate::metrics::{Compared, Kind, Linear, MetricError, Scores};
+use crate::metrics::{Compared, Kind, Linear, MetricError, Noise, RELMSE, Scores, within_noise};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -24,12 +23,17 @@ pub const FRAME: &str = "frame";
 pub struct Side {
     /// Name of the picture.
     pub name: String,
-    /// Radiance or display values.
-    pub kind: Kind,
     /// Parts of the light; a picture that is not split has only `total`.
     pub parts: BTreeMap<String, Linear>,
     /// Noise of each part, where that is known.
     pub noise: BTreeMap<String, Noise>,
+}
+
+impl Side {
+    /// Whether it was made for a display.
+    fn displayed(&self) -> bool {
+        self.parts.values().any(|p| p.kind == Kind::Displayed)
+    }
 }
 
 /// One or two pictures against a reference; what `--json` writes.
@@ -102,8 +106,8 @@ pub struct Request<'a> {
 /// Pictures for a display beside radiance, no common part, a part that is not there, different sizes, masks of another
 /// size, or what becomes of the maps.
 pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Result<Comparison, MetricError> {
-    if let Some(other) = pictures.iter().find(|p| p.kind != reference.kind) {
-        let (shown, radiance) = if other.kind == Kind::Displayed { (other, reference) } else { (reference, other) };
+    if let Some(other) = pictures.iter().find(|p| p.displayed() != reference.displayed()) {
+        let (shown, radiance) = if other.displayed() { (other, reference) } else { (reference, other) };
         return Err(MetricError(format!(
             "'{}' was made for a display and '{}' is radiance; compare an .exr with an .exr, or a .png with a .png",
             shown.name, radiance.name
@@ -122,11 +126,10 @@ pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Res
             return Err(MetricError(format!("the mask '{}' does not have the pictures' size of {w}x{h}", area.name)));
         }
         size = expected.size;
-        let kind = if reference.kind == Kind::Displayed { Kind::Displayed } else { Kind::of_part(&part) };
         let mut compared = Vec::new();
         for (i, picture) in pictures.iter().enumerate() {
             let Some(test) = picture.parts.get(&part) else { continue };
-            let with = Compared::new(test, expected, kind)
+            let with = Compared::new(test, expected)
                 .map_err(|e| MetricError(format!("'{}' and '{}': {e}", picture.name, reference.name)))?;
             if let Some(take) = &mut request.maps {
                 take(i, &part, maps(&with)?)?;
@@ -141,19 +144,16 @@ pub fn compare(pictures: &[Side], reference: &Side, mut request: Request) -> Res
         size: size.into(),
         pictures: pictures.iter().map(|p| p.name.clone()).collect(),
         reference: reference.name.clone(),
-        displayed: reference.kind == Kind::Displayed,
+        displayed: reference.displayed(),
         parts,
     })
 }
 
-/// Known parts in the order they are shown in; others follow by name.
-const ORDER: [&str; 5] = ["total", "direct", "diffuse", "specular", "occlusion"];
-
-/// The parts to compare.
+/// The parts to compare: the total, then by kind and name.
 fn part_names(pictures: &[Side], reference: &Side, wanted: &[String]) -> Result<Vec<String>, MetricError> {
     let everywhere = |part: &&String| pictures.iter().all(|p| p.parts.contains_key(*part));
     let mut common: Vec<String> = reference.parts.keys().filter(everywhere).cloned().collect();
-    common.sort_by_key(|part| ORDER.iter().position(|o| o == part).unwrap_or(ORDER.len()));
+    common.sort_by_key(|part| (part != "total", reference.parts.get(part).map(|p| p.kind)));
     if let Some(missing) = wanted.iter().find(|w| !common.contains(w)) {
         return Err(MetricError(format!(
             "there is no part '{missing}' in all pictures; they have: {}",
@@ -175,13 +175,13 @@ fn compare_part(part: &str, compared: &[Compared], noise: Option<Noise>, areas: 
             _ => BTreeMap::new(),
         };
         let within =
-            |s: &Option<Scores>| s.as_ref().is_some_and(|s| verdict::within_noise(s.relmse, noise.map(|n| n.relmse)));
+            |s: &Option<Scores>| s.as_ref().is_some_and(|s| within_noise(s.get(RELMSE), noise.map(|n| n.relmse)));
         let within_noise = scores.iter().map(within).collect();
         RegionComparison { region: name.into(), share, scores, within_noise, better }
     };
     let mut list = vec![region(FRAME, 1.0, None)];
     list.extend(areas.iter().map(|a| region(&a.name, a.share(), Some(&a.mask))));
-    let exposures = compared.first().map(|c| c.exposures);
+    let exposures = compared.first().map(Compared::exposures);
     PartComparison {
         part: part.into(),
         noise: noise.map(|n| n.relmse),

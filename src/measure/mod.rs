@@ -14,7 +14,7 @@ use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::measure::reference::Reference;
-use crate::metrics::{Compared, Kind, Linear, Scores};
+use crate::metrics::{Compared, Linear, Noise, Scores};
 use crate::results::stats::{self, Stats};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,14 @@ pub struct Point {
     pub structure_noise: BTreeMap<String, f64>,
     /// Samples a pixel of each reference, by its number of bounces.
     pub references: BTreeMap<u32, u64>,
+}
+
+impl Point {
+    /// Noise of a part's reference; 0 where it is not known.
+    pub fn noise_of(&self, part: &str) -> Noise {
+        let of = |list: &BTreeMap<String, f64>| list.get(part).copied().unwrap_or(0.0);
+        Noise { relmse: of(&self.noise), structure: of(&self.structure_noise) }
+    }
 }
 
 /// A point with small pictures, JPEG.
@@ -98,7 +106,7 @@ pub fn measure(
                     continue;
                 };
                 let wrong = |why: &str| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
-                let compared = Compared::new(light, &expected.mean, Kind::of_part(part)).map_err(|e| wrong(&e.0))?;
+                let compared = Compared::new(light, &expected.mean).map_err(|e| wrong(&e.0))?;
                 let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
                 let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
                 point.scores.insert(name.clone(), scores);
@@ -167,14 +175,11 @@ fn parts_of(
     scene: &Arc<Scene>,
     frames: Frames,
 ) -> Result<BTreeMap<String, Linear>, LabError> {
-    let wanted = loaded.graph.parts.iter().map(|p| p.1.clone()).collect();
+    let wanted = loaded.graph.parts.iter().map(|p| p.texture.clone()).collect();
     // The timed session's scene is on the device already: another upload of it would cost memory.
     let reuse = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;
-    for _ in 0..frames.warmup + frames.count {
-        session.frame(0.0)?;
-    }
-    session.finish()?;
+    session.run(frames.warmup + frames.count)?;
     let out = session.parts()?;
     warm.scored = Some((scene.clone(), session.share()));
     Ok(out)

@@ -49,6 +49,11 @@ impl Warm {
         self.loaded.get(name).ok_or_else(|| LabError::Request(format!("graph '{name}' is gone")))
     }
 
+    /// Takes a graph that was compiled elsewhere.
+    pub fn keep(&mut self, name: &str, graph: &Loaded) {
+        self.loaded.insert(name.to_string(), graph.clone());
+    }
+
     /// Checks an experiment's graph and parameters; its scene is not opened.
     ///
     /// # Errors

@@ -16,7 +16,7 @@ pub fn srgb_to_linear(v: f32) -> f32 {
 /// as sRGB (IEC 61966-2-1). Not rounded.
 pub fn display(kind: Kind, c: f32) -> f64 {
     let c = f64::from(c.max(0.0));
-    let shown = if kind == Kind::Radiance { c / (1.0 + c) } else { c.min(1.0) };
+    let shown = if matches!(kind, Kind::Direct | Kind::Radiance) { c / (1.0 + c) } else { c.min(1.0) };
     if shown <= 0.003_130_8 { 12.92 * shown } else { 1.055 * shown.powf(1.0 / 2.4) - 0.055 }
 }
 

@@ -1,7 +1,7 @@
 //! Maps of the error, as pictures for the eye and as numbers.
 
 use super::colour::luminance;
-use super::sums::relative_square;
+use super::means::relative_square;
 use super::{Compared, MetricError};
 use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use std::io::Cursor;
@@ -33,22 +33,21 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         .map(|(x, r)| (x.iter().zip(r).map(|(x, r)| relative_square(*x, *r, *r)).sum::<f64>() / 3.0) as f32)
         .collect();
     let difference: Vec<f32> = pairs().map(|(x, r)| (luminance(*x) - luminance(*r)) as f32).collect();
-    let structure = compared.structure.map();
+    let structure = compared.structure().map();
     // What is dark is a known part of the mean.
     let full = (compared.dark / super::DARK).max(f64::MIN_POSITIVE);
     let size = compared.test.size;
-    let magma = Magma::new();
     let logarithmic = |v: &f32| (f64::from(*v).log10() - DECADES.0) / (DECADES.1 - DECADES.0);
     let flip_scale = "magma, 0 to 1";
     let png = |name, rgb: Vec<[u8; 3]>, scale: String| {
         Ok::<_, MetricError>(MapFile { name, bytes: encode_png(size, &rgb)?, scale })
     };
     Ok(vec![
-        png("flip.png", compared.flip.iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
-        png("hdr-flip.png", compared.hdr_flip.iter().map(|v| magma.at(f64::from(*v))).collect(), flip_scale.into())?,
+        png("flip.png", compared.flip().iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
+        png("hdr-flip.png", compared.hdr_flip().iter().map(|v| magma(f64::from(*v))).collect(), flip_scale.into())?,
         png(
             "relative-error.png",
-            relative.iter().map(|v| magma.at(logarithmic(v))).collect(),
+            relative.iter().map(|v| magma(logarithmic(v))).collect(),
             format!("(x - r)^2 / (r^2 + 0.01), magma, logarithmic from 1e{} to 1e{}", DECADES.0, DECADES.1),
         )?,
         png(
@@ -58,7 +57,7 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
         )?,
         png(
             "structure.png",
-            structure.iter().map(|v| magma.at(f64::from(*v) / STRUCTURE)).collect(),
+            structure.iter().map(|v| magma(f64::from(*v) / STRUCTURE)).collect(),
             format!("structure error, magma, 0 to {STRUCTURE}"),
         )?,
         MapFile {
@@ -66,8 +65,8 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
             bytes: encode_exr(
                 size,
                 [
-                    ("flip", &compared.flip),
-                    ("hdrFlip", &compared.hdr_flip),
+                    ("flip", compared.flip()),
+                    ("hdrFlip", compared.hdr_flip()),
                     ("luminanceDifference", &difference),
                     ("relativeSquaredError", &relative),
                     ("structure", &structure),
@@ -78,20 +77,14 @@ pub fn maps(compared: &Compared) -> Result<Vec<MapFile>, MetricError> {
     ])
 }
 
-/// The colours of NVIDIA's maps.
-struct Magma(Vec<u8>);
+/// The colours of NVIDIA's maps (matplotlib's magma), sRGB, from 0 to 1 in 256 steps.
+const MAGMA: &[u8; 768] = include_bytes!("magma.rgb");
 
-impl Magma {
-    fn new() -> Magma {
-        Magma(nv_flip::magma_lut().to_vec())
-    }
-
-    /// The colour of a value, 0 to 1; numbers that are none are as bright as can be.
-    fn at(&self, value: f64) -> [u8; 3] {
-        let value = if value.is_nan() { 1.0 } else { value.clamp(0.0, 1.0) };
-        let i = 3 * (value * 255.0 + 0.5) as usize;
-        self.0.get(i..i + 3).map_or([0; 3], |c| [c[0], c[1], c[2]])
-    }
+/// The colour of a value, 0 to 1; numbers that are none are as bright as can be.
+pub fn magma(value: f64) -> [u8; 3] {
+    let value = if value.is_nan() { 1.0 } else { value.clamp(0.0, 1.0) };
+    let i = 3 * (value * 255.0 + 0.5) as usize;
+    [MAGMA[i], MAGMA[i + 1], MAGMA[i + 2]]
 }
 
 /// Blue at -1 over white at 0 to red at 1; black where there is no number.
@@ -111,8 +104,8 @@ fn encode_png((width, height): (u32, u32), rgb: &[[u8; 3]]) -> Result<Vec<u8>, M
     Ok(out.into_inner())
 }
 
-fn encode_exr((width, height): (u32, u32), channels: [(&str, &Vec<f32>); 5]) -> Result<Vec<u8>, MetricError> {
-    let channel = |(name, values): (&str, &Vec<f32>)| AnyChannel::new(name, FlatSamples::F32(values.clone()));
+fn encode_exr((width, height): (u32, u32), channels: [(&str, &[f32]); 5]) -> Result<Vec<u8>, MetricError> {
+    let channel = |(name, values): (&str, &[f32])| AnyChannel::new(name, FlatSamples::F32(values.to_vec()));
     let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
     let size = (width as usize, height as usize);
     let layer = Layer::new(size, LayerAttributes::default(), Encoding::SMALL_LOSSLESS, channels);

@@ -4,14 +4,17 @@ pub mod colour;
 pub mod flip;
 pub mod hdr_flip;
 pub mod maps;
+mod means;
 pub mod region;
 mod structure;
-mod sums;
+mod table;
 
 pub use structure::{structure, structure_noise};
+pub use table::{Best, METRICS, Metric, Noise, OfNoise, RELMSE, Scores};
 
-use hdr_flip::{Exposures, exposures, hdr_flip};
-use serde::{Deserialize, Deserializer, Serialize};
+use hdr_flip::Exposures;
+use serde::Deserialize;
+use std::sync::OnceLock;
 use structure::Structure;
 
 /// Most pixels of a picture that is compared (8192 x 8192); FLIP takes about 120 bytes for each.
@@ -32,9 +35,16 @@ pub struct Linear {
     pub size: (u32, u32),
     /// Radiance, or whatever a part holds; rows from the top, `width * height` texels.
     pub rgb: Vec<[f32; 3]>,
+    /// What its numbers are.
+    pub kind: Kind,
 }
 
 impl Linear {
+    /// A picture of radiance.
+    pub fn radiance(size: (u32, u32), rgb: Vec<[f32; 3]>) -> Linear {
+        Linear { size, rgb, kind: Kind::Radiance }
+    }
+
     /// Mean over pixels and channels.
     pub fn mean(&self) -> f64 {
         self.rgb.iter().flatten().map(|v| f64::from(*v)).sum::<f64>() / (3 * self.rgb.len().max(1)) as f64
@@ -57,68 +67,34 @@ pub fn relative_distance(x: &Linear, y: &Linear, reference: &Linear) -> Result<f
     check(x, reference)?;
     check(y, reference)?;
     let texels = x.rgb.iter().flatten().zip(y.rgb.iter().flatten()).zip(reference.rgb.iter().flatten());
-    let sum: f64 = texels.map(|((x, y), r)| sums::relative_square(*x, *y, *r)).sum();
+    let sum: f64 = texels.map(|((x, y), r)| means::relative_square(*x, *y, *r)).sum();
     Ok(sum / (3 * x.rgb.len()) as f64)
 }
 
-/// What a picture's numbers are, which says how FLIP shows it to its observer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What a picture's numbers are, in the order in which parts of the light are listed. It says how FLIP shows them to its
+/// observer, and which regions follow from them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Kind {
+    /// Radiance that comes straight from lights.
+    Direct,
     /// Radiance of any range: shown by c / (1 + c), which is how the program shows pictures by default.
     #[default]
     Radiance,
-    /// 0 to 1, shown as it is: pictures that were made for a display, and openness.
+    /// The part of what is above a surface that is open, 0 to 1, shown as it is.
+    Openness,
+    /// 0 to 1, shown as it is: pictures that were made for a display.
     Displayed,
 }
 
 impl Kind {
-    /// The kind of a lighting part that a graph declares.
-    pub fn of_part(part: &str) -> Kind {
-        if part == "occlusion" { Kind::Displayed } else { Kind::Radiance }
+    /// How a value of 0 or more is shown, 0 to 1.
+    pub fn shown(self, v: f32) -> f32 {
+        match self {
+            Kind::Direct | Kind::Radiance => v / (1.0 + v),
+            Kind::Openness | Kind::Displayed => v.min(1.0),
+        }
     }
-}
-
-/// How far a picture is from a reference. Means are over pixels and channels, except where luminance is named. Pixels
-/// that are infinite or no number in either picture are left out of all means but those of FLIP, where they count as 1.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Scores {
-    /// mean (x - r)^2 / (r^2 + 0.01), of squared radiance over squared radiance.
-    pub relmse: f64,
-    /// Root of mean (x - r)^2, radiance.
-    pub rmse: f64,
-    /// mean x / mean r; no number (null in JSON) where the reference's mean is 0.
-    #[serde(deserialize_with = "null_is_no_number")]
-    pub energy_ratio: f64,
-    /// mean |x - r| / (|x| + |r| + 0.01), 0 to 1.
-    pub smape: f64,
-    /// Mean FLIP of the displayed picture, 0 to 1.
-    pub flip: f64,
-    /// Mean HDR-FLIP, 0 to 1.
-    pub hdr_flip: f64,
-    /// Mean radiance of the picture where the reference is dark ([`DARK`]); 0 where it is dark nowhere.
-    pub leak: f64,
-    /// Part of the pixels where the reference is dark, 0 to 1.
-    pub dark: f64,
-    /// Mean radiance of the reference where the picture is dark and the reference is not; 0 where that is nowhere.
-    pub over_occlusion: f64,
-    /// Part of the pixels where the picture is dark and the reference is not, 0 to 1.
-    pub over_occluded: f64,
-    /// Mean over pairs of neighbouring blocks of how far the pictures' steps of log luminance differ, natural log units;
-    /// no number (null in JSON) where the reference is black, or no block has a neighbour.
-    #[serde(default = "no_number", deserialize_with = "null_is_no_number")]
-    pub structure: f64,
-    /// Pixels.
-    pub pixels: u64,
-    /// Pixels that are infinite or no number in either picture.
-    pub not_finite: u64,
-}
-
-fn no_number() -> f64 {
-    f64::NAN
-}
-
-fn null_is_no_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::deserialize(deserializer)?.unwrap_or_else(no_number))
 }
 
 /// How far a picture of radiance is from a reference, over the whole frame.
@@ -127,60 +103,110 @@ fn null_is_no_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, 
 /// Pictures of different sizes, without pixels, of more than [`MAX_PIXELS`], or without one pixel that is a number in
 /// both.
 pub fn scores(test: &Linear, reference: &Linear) -> Result<Scores, MetricError> {
-    let compared = Compared::new(test, reference, Kind::Radiance)?;
-    compared.scores(None).ok_or_else(|| MetricError("no pixel is a finite number in both pictures".into()))
+    let compared = Compared::new(test, reference)?;
+    compared.scores(None).ok_or_else(no_number)
 }
 
-/// A picture against a reference, with the maps that cost time.
+/// What is no difference, in multiples of the reference's noise.
+pub const NOISE_FACTOR: f64 = 4.0;
+
+/// Whether a relMSE, or a difference of two, is below four times the noise.
+pub fn within_noise(relmse: f64, noise: Option<f64>) -> bool {
+    noise.is_some_and(|n| relmse.abs() < NOISE_FACTOR * n)
+}
+
+/// A picture against a reference. Maps that cost time are made when they are first asked for, and kept.
 pub struct Compared<'a> {
     test: &'a Linear,
     reference: &'a Linear,
     /// Luminance up to which a pixel is dark ([`DARK`]).
     pub dark: f64,
-    /// FLIP of every pixel, 0 to 1.
-    pub flip: Vec<f32>,
-    /// HDR-FLIP of every pixel, 0 to 1.
-    pub hdr_flip: Vec<f32>,
-    /// What HDR-FLIP looked at.
-    pub exposures: Exposures,
-    structure: Structure,
+    flip: OnceLock<Vec<f32>>,
+    hdr_flip: OnceLock<(Exposures, Vec<f32>)>,
+    structure: OnceLock<Structure>,
 }
 
 impl<'a> Compared<'a> {
-    /// Compares. A map of FLIP takes most of a second for a megapixel on one core, and one is needed for each exposure.
+    /// Compares; both are what the reference's kind says.
     ///
     /// # Errors
     /// Pictures of different sizes, without pixels, or of more than [`MAX_PIXELS`].
-    pub fn new(test: &'a Linear, reference: &'a Linear, kind: Kind) -> Result<Compared<'a>, MetricError> {
+    pub fn new(test: &'a Linear, reference: &'a Linear) -> Result<Compared<'a>, MetricError> {
         check(test, reference)?;
-        let finite: Vec<bool> = test.rgb.iter().zip(&reference.rgb).map(|(x, r)| is_finite(*x, *r)).collect();
-        // One wrong pixel would reach all that the filters of FLIP see around it; light is never negative to an eye.
-        let visible = |picture: &Linear| -> Vec<[f32; 3]> {
-            let pixels = picture.rgb.iter().zip(&finite);
-            pixels.map(|(c, finite)| if *finite { c.map(|v| v.max(0.0)) } else { [0.0; 3] }).collect()
-        };
-        let (x, r) = (visible(test), visible(reference));
-        let show = |picture: &[[f32; 3]]| -> Vec<[f32; 3]> {
-            let display = |v: f32| if kind == Kind::Radiance { v / (1.0 + v) } else { v.min(1.0) };
-            picture.iter().map(|c| c.map(display)).collect()
-        };
-        let width = test.size.0 as usize;
-        let exposures = exposures(&r);
-        let mut flip = flip::flip(&show(&x), &show(&r), width);
-        let mut hdr_flip = hdr_flip(&x, &r, width, exposures);
-        for (i, _) in finite.iter().enumerate().filter(|f| !f.1) {
-            (flip[i], hdr_flip[i]) = (1.0, 1.0);
-        }
         let dark = dark(test, reference);
-        let structure = Structure::new(test, reference, dark, 1.0);
-        Ok(Compared { test, reference, dark, flip, hdr_flip, exposures, structure })
+        let (flip, hdr_flip, structure) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
+        Ok(Compared { test, reference, dark, flip, hdr_flip, structure })
     }
 
     /// The scores over the pixels of a mask, or over all of them; nothing where none of them is a number in both.
     /// What is dark does not depend on the mask.
     pub fn scores(&self, mask: Option<&[bool]>) -> Option<Scores> {
-        sums::sum(self, mask).scores(self.structure.mean(mask))
+        Scores::new(self, mask)
     }
+
+    /// One metric over all pixels, without the time that others take.
+    ///
+    /// # Errors
+    /// No pixel is a number in both pictures.
+    pub fn score(&self, metric: &Metric) -> Result<f64, MetricError> {
+        if (0..self.test.rgb.len()).any(|i| self.is_finite(i)) { Ok((metric.of)(self, None)) } else { Err(no_number()) }
+    }
+
+    /// FLIP of every pixel, 0 to 1. Takes most of a second for a megapixel on one core.
+    pub fn flip(&self) -> &[f32] {
+        self.flip.get_or_init(|| {
+            let show = |picture: &Linear| -> Vec<[f32; 3]> {
+                self.visible(picture).iter().map(|c| c.map(|v| self.reference.kind.shown(v))).collect()
+            };
+            self.marked(flip::flip(&show(self.test), &show(self.reference), self.width()))
+        })
+    }
+
+    /// HDR-FLIP of every pixel, 0 to 1. Takes as long as FLIP for each exposure.
+    pub fn hdr_flip(&self) -> &[f32] {
+        &self.exposed().1
+    }
+
+    /// What HDR-FLIP looks at.
+    pub fn exposures(&self) -> Exposures {
+        self.exposed().0
+    }
+
+    fn exposed(&self) -> &(Exposures, Vec<f32>) {
+        self.hdr_flip.get_or_init(|| {
+            let (x, r) = (self.visible(self.test), self.visible(self.reference));
+            let exposures = hdr_flip::exposures(&r);
+            (exposures, self.marked(hdr_flip::hdr_flip(&x, &r, self.width(), exposures)))
+        })
+    }
+
+    fn structure(&self) -> &Structure {
+        self.structure.get_or_init(|| Structure::new(self.test, self.reference, self.dark, 1.0))
+    }
+
+    fn width(&self) -> usize {
+        self.test.size.0 as usize
+    }
+
+    fn is_finite(&self, i: usize) -> bool {
+        is_finite(self.test.rgb[i], self.reference.rgb[i])
+    }
+
+    /// As FLIP sees it: one wrong pixel would reach all that its filters see around it; light is never negative to an eye.
+    fn visible(&self, picture: &Linear) -> Vec<[f32; 3]> {
+        let pixels = picture.rgb.iter().enumerate();
+        pixels.map(|(i, c)| if self.is_finite(i) { c.map(|v| v.max(0.0)) } else { [0.0; 3] }).collect()
+    }
+
+    /// A map in which wrong pixels count as 1.
+    fn marked(&self, mut map: Vec<f32>) -> Vec<f32> {
+        map.iter_mut().enumerate().filter(|(i, _)| !self.is_finite(*i)).for_each(|(_, v)| *v = 1.0);
+        map
+    }
+}
+
+fn no_number() -> MetricError {
+    MetricError("no pixel is a finite number in both pictures".into())
 }
 
 /// Luminance up to which a pixel is dark: [`DARK`] of the mean over the reference's pixels that are finite in both.

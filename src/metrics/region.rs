@@ -1,7 +1,7 @@
 //! Regions of a picture: a mean over the whole frame hides where a method fails.
 
 use super::colour::luminance;
-use super::{DARK, Linear};
+use super::{DARK, Kind, Linear};
 use std::collections::BTreeMap;
 
 /// Some pixels of a picture.
@@ -38,12 +38,13 @@ impl Region {
 /// |---|---|
 /// | `dark` | luminance of `total` at most 0.01 of its mean: behind walls, in deep shadow |
 /// | `bright` | luminance of `total` at least 4 times its mean |
-/// | `indirect only` | luminance of `direct` at most 0.01 of its mean, but `total` not dark: shadow lit by bounced light |
-/// | `concave corners` | openness (`occlusion`) below 0.5 |
+/// | `indirect only` | luminance of direct light at most 0.01 of its mean, but `total` not dark: shadow lit by bounced light |
+/// | `concave corners` | openness below 0.5 |
 /// | `open` | openness at least 0.9 |
 pub fn regions(reference: &BTreeMap<String, Linear>) -> Vec<Region> {
-    let luminances = |part: &str| -> Option<(Vec<f64>, f64)> {
-        let values: Vec<f64> = reference.get(part)?.rgb.iter().map(|c| luminance(*c)).collect();
+    let of_kind = |kind: Kind| reference.values().find(|p| p.kind == kind);
+    let luminances = |part: Option<&Linear>| -> Option<(Vec<f64>, f64)> {
+        let values: Vec<f64> = part?.rgb.iter().map(|c| luminance(*c)).collect();
         let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         let mean = finite.iter().sum::<f64>() / finite.len().max(1) as f64;
         Some((values, mean))
@@ -54,15 +55,15 @@ pub fn regions(reference: &BTreeMap<String, Linear>) -> Vec<Region> {
             list.push(Region { name: name.into(), mask });
         }
     };
-    if let Some((total, mean)) = luminances("total") {
+    if let Some((total, mean)) = luminances(reference.get("total")) {
         add("dark", total.iter().map(|v| *v <= DARK * mean).collect());
         add("bright", total.iter().map(|v| *v >= BRIGHT * mean && *v > 0.0).collect());
-        if let Some((direct, direct_mean)) = luminances("direct").filter(|d| d.0.len() == total.len()) {
+        if let Some((direct, direct_mean)) = luminances(of_kind(Kind::Direct)).filter(|d| d.0.len() == total.len()) {
             let pairs = direct.iter().zip(&total);
             add("indirect only", pairs.map(|(d, t)| *d <= DARK * direct_mean && *t > DARK * mean).collect());
         }
     }
-    if let Some((openness, _)) = luminances("occlusion") {
+    if let Some((openness, _)) = luminances(of_kind(Kind::Openness)) {
         add("concave corners", openness.iter().map(|v| *v < CONCAVE).collect());
         add("open", openness.iter().map(|v| *v >= OPEN).collect());
     }

@@ -147,13 +147,13 @@ fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {
 ///
 /// # Errors
 /// Another ending, no such file, too large, damaged.
-pub fn read_linear(path: &Path) -> Result<(Linear, Kind), LabError> {
+pub fn read_linear(path: &Path) -> Result<Linear, LabError> {
     let failed = |why: String| LabError::Request(format!("cannot read '{}': {why}", path.display()));
     check_input(path, MAX_BYTES).map_err(|e| failed(e.to_string()))?;
     caught(|| decode_linear(path)).map_err(failed).flatten()
 }
 
-fn decode_linear(path: &Path) -> Result<(Linear, Kind), LabError> {
+fn decode_linear(path: &Path) -> Result<Linear, LabError> {
     let failed = |why: String| LabError::Request(format!("cannot read '{}': {why}", path.display()));
     let fits = |w: usize, h: usize| match w.saturating_mul(h) as u64 {
         1..=MAX_PIXELS if w <= MAX_SIZE as usize && h <= MAX_SIZE as usize => Ok((w as u32, h as u32)),
@@ -164,7 +164,7 @@ fn decode_linear(path: &Path) -> Result<(Linear, Kind), LabError> {
         let (w, h) = exr_size(path).map_err(failed)?;
         let size = fits(w, h)?;
         let rgb = read_exr(path).map_err(failed)?.iter().map(|t| [t[0], t[1], t[2]]).collect();
-        return Ok((Linear { size, rgb }, Kind::Radiance));
+        return Ok(Linear::radiance(size, rgb));
     }
     if ending != "png" && ending != "hdr" {
         return Err(failed("a picture ends in .exr, .hdr or .png".into()));
@@ -178,8 +178,8 @@ fn decode_linear(path: &Path) -> Result<(Linear, Kind), LabError> {
     let mut rgb: Vec<[f32; 3]> =
         reader.decode().map_err(|e| failed(e.to_string()))?.to_rgb32f().pixels().map(|p| p.0).collect();
     if ending == "hdr" {
-        return Ok((Linear { size, rgb }, Kind::Radiance));
+        return Ok(Linear::radiance(size, rgb));
     }
     rgb.iter_mut().for_each(|c| *c = c.map(srgb_to_linear));
-    Ok((Linear { size, rgb }, Kind::Displayed))
+    Ok(Linear { size, rgb, kind: Kind::Displayed })
 }

@@ -1,5 +1,7 @@
 //! A and B side by side: how the two are shown, and how far they are apart.
 
+use crate::metrics::colour::srgb_to_linear;
+use crate::metrics::maps::magma;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -114,19 +116,21 @@ pub fn flip(a: &Shown, b: &Shown) -> Option<Map> {
     if a.size != b.size || a.bytes.len() != b.bytes.len() || a.size.contains(&0) {
         return None;
     }
-    let rgb = |s: &Shown| -> Vec<u8> { s.bytes.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect() };
-    let [width, height] = a.size;
-    let reference = nv_flip::FlipImageRgb8::with_data(width, height, &rgb(a));
-    let test = nv_flip::FlipImageRgb8::with_data(width, height, &rgb(b));
-    let error = nv_flip::flip(reference, test, nv_flip::DEFAULT_PIXELS_PER_DEGREE);
-    let values = error.to_vec();
-    let colours = error.apply_color_lut(&nv_flip::magma_lut()).to_vec();
+    let linear = |s: &Shown| -> Vec<[f32; 3]> {
+        let pixels = s.bytes.par_chunks_exact(4);
+        pixels.map(|p| [p[0], p[1], p[2]].map(|v| srgb_to_linear(f32::from(v) / 255.0))).collect()
+    };
+    let values = crate::metrics::flip::flip(&linear(b), &linear(a), a.size[0] as usize);
+    let colour = |v: &f32| {
+        let [r, g, b] = magma(f64::from(*v));
+        [r, g, b, 255]
+    };
     Some(Map {
         size: a.size,
         mean: values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len().max(1) as f64,
         max: values.iter().copied().map(f64::from).fold(0.0, f64::max),
         differing: values.iter().filter(|v| **v > 0.0).count(),
-        bytes: Arc::new(colours.chunks_exact(3).flat_map(|p| [p[0], p[1], p[2], 255]).collect()),
+        bytes: Arc::new(values.par_iter().flat_map_iter(colour).collect()),
     })
 }
 

@@ -4,24 +4,24 @@
 use super::guard::guarded;
 use super::report::Report;
 use super::request::LightState;
-use crate::campaign::report::error_of;
-use crate::campaign::sweep::{Subject, numbers};
+use crate::campaign::sweep::Subject;
 use crate::experiment::{Experiment, placed_text};
-use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of, params_of};
-use crate::measure::reference::{GRAPH, Reference, find};
-use crate::metrics::{Compared, Kind, Linear, relmse, structure};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of};
+use crate::measure::reference::Reference;
+use crate::measure::{Wanted, Warm};
+use crate::metrics::{Compared, Linear, Metric, Noise};
 use crate::results::capture::scene_hash;
 use crate::scene::Scene;
 use crossbeam_channel::Receiver;
 use std::sync::Arc;
 
 /// The error that is asked for.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ErrorQuery {
     /// Part of the light, as the graph names it.
     pub part: String,
-    /// Field of [`crate::metrics::Scores`].
-    pub metric: String,
+    /// Metric.
+    pub metric: &'static Metric,
     /// Bounces of the reference.
     pub bounces: u32,
     /// References gathered so far: the cached one may be another after each.
@@ -81,8 +81,8 @@ pub struct PictureError {
 pub struct ReferenceError {
     /// 0 is perfect; no number where the metric is not defined.
     pub error: f64,
-    /// relMSE between the halves of the reference's samples.
-    pub noise: f64,
+    /// Noise of the reference.
+    pub noise: Noise,
     /// Samples a pixel of the reference.
     pub samples: u64,
 }
@@ -90,12 +90,11 @@ pub struct ReferenceError {
 /// Loaded things that the next request may need again.
 #[derive(Default)]
 struct Cache {
-    /// The graph of references, as of a revision of the files.
-    traced: Option<(u64, Loaded)>,
+    /// References and graphs, as of a revision of the files and a number of gathered references.
+    warm: Warm,
+    as_of: (u64, u64),
     /// The scene's content, by the scene and its light.
     hash: Option<(Arc<Scene>, String, String)>,
-    /// The reference, by everything that it depends on.
-    reference: Option<(Arc<Scene>, String, Option<Arc<Reference>>)>,
 }
 
 /// Measures errors until the requests' sender is gone; of several requests for a side only the newest counts.
@@ -118,23 +117,16 @@ pub(super) fn run(requests: &Receiver<ErrorRequest>, send: &dyn Fn(Report)) {
 impl Cache {
     fn evaluate(&mut self, request: ErrorRequest) -> Result<PictureError, LabError> {
         let subject = self.subject(&request)?;
-        let Some(reference) = self.reference(&request)? else { return Ok(PictureError { subject, error: None }) };
+        let Some(reference) = self.reference(&request, &subject)? else {
+            return Ok(PictureError { subject, error: None });
+        };
         let ErrorQuery { part, metric, .. } = request.query.clone();
         let wrong = |why: String| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
         let expected = reference.parts.get(&part).ok_or_else(|| wrong("the reference does not have it".into()))?;
         let light = light_of(request, &part)?;
-        let error = match metric.as_str() {
-            "relmse" => relmse(&light, &expected.mean).map_err(|e| wrong(e.0))?,
-            "structure" => structure(&light, &expected.mean).map_err(|e| wrong(e.0))?,
-            _ => {
-                let compared = Compared::new(&light, &expected.mean, Kind::of_part(&part)).map_err(|e| wrong(e.0))?;
-                let scores = compared.scores(None);
-                let scores = scores.ok_or_else(|| wrong("no pixel is a number in both pictures".into()))?;
-                numbers(&scores).get(&metric).copied().unwrap_or(f64::NAN)
-            }
-        };
-        let (noise, samples) = (expected.noise.relmse, reference.samples);
-        let error = ReferenceError { error: error_of(&metric, error), noise, samples };
+        let compared = Compared::new(&light, &expected.mean).map_err(|e| wrong(e.0))?;
+        let error = metric.distance(compared.score(metric).map_err(|e| wrong(e.0))?);
+        let error = ReferenceError { error, noise: expected.noise, samples: reference.samples };
         Ok(PictureError { subject, error: Some(error) })
     }
 
@@ -161,35 +153,15 @@ impl Cache {
     }
 
     /// The cached reference, read once for everything that it does not depend on.
-    fn reference(&mut self, request: &ErrorRequest) -> Result<Option<Arc<Reference>>, LabError> {
-        let ErrorRequest { experiment, scene, query, .. } = request;
-        let home = &request.lab.home;
-        if self.traced.as_ref().is_none_or(|t| t.0 != request.revision) {
-            self.traced = Some((request.revision, home.load(GRAPH).map_err(LabError::Input)?));
+    fn reference(&mut self, request: &ErrorRequest, subject: &Subject) -> Result<Option<Arc<Reference>>, LabError> {
+        let ErrorRequest { lab, loaded, experiment, scene, query, .. } = request;
+        if self.as_of != (request.revision, query.gathered) {
+            (self.warm, self.as_of) = (Warm::default(), (request.revision, query.gathered));
         }
-        let shared = self.traced.iter().flat_map(|t| &t.1.graph.params.list);
-        let params = params_of(&request.loaded.graph, experiment)?;
-        let shared: Vec<String> = shared
-            .filter_map(|p| Some(format!("{} {:?}", p.name, params.values.get(params.index(&p.name)?)?)))
-            .collect();
-        let key = format!(
-            "{:?} {:?} {:?} {:?} {} {} {} {}",
-            request.lights,
-            experiment.camera,
-            experiment.size,
-            experiment.time,
-            query.bounces,
-            query.gathered,
-            request.revision,
-            shared.join(" ")
-        );
-        if let Some(known) = self.reference.as_ref().filter(|r| Arc::ptr_eq(&r.0, scene) && r.1 == key) {
-            return Ok(known.2.clone());
-        }
+        self.warm.keep(&experiment.graph, loaded);
         let lit = experiment.adapted(scene.clone())?;
-        let found = find(home, experiment, &lit, query.bounces)?.map(Arc::new);
-        self.reference = Some((scene.clone(), key, found.clone()));
-        Ok(found)
+        let wanted = Wanted { bounces: query.bounces, samples: None, seed: None };
+        self.warm.reference(lab, (experiment, &lit), &format!("{subject:?}"), wanted, &mut |_| {})
     }
 }
 
@@ -197,15 +169,12 @@ impl Cache {
 fn light_of(request: ErrorRequest, part: &str) -> Result<Linear, LabError> {
     let ErrorRequest { lab, loaded, reuse, experiment, scene, lights, frames, .. } = request;
     let missing = || LabError::Request(format!("the graph '{}' does not make the part '{part}'", loaded.graph.name));
-    let named = crate::lab::parts_of(&loaded.graph).into_iter().find(|p| p.0 == part);
-    let (_, texture) = named.ok_or_else(missing)?;
+    let named = crate::lab::parts_of(&loaded.graph).into_iter().find(|p| p.name == part);
+    let texture = named.ok_or_else(missing)?.texture;
     let mut session: Session = lab.build(&experiment, &loaded, scene, vec![texture], Some(&reuse))?;
     if lights.is_some_and(|lights| !lights.light(&mut session)) {
         return Err(LabError::Request("the light changed more than a session can follow".into()));
     }
-    for _ in 0..frames {
-        session.frame(0.0)?;
-    }
-    session.finish()?;
+    session.run(frames)?;
     session.parts()?.remove(part).ok_or_else(missing)
 }

@@ -101,7 +101,7 @@ pub fn write(folder: &Path) {
     put("plain.dds", &dds(DxgiFormat::R8G8B8A8_UNorm));
     let sky = Rgb32FImage::from_fn(16, 8, |x, y| image::Rgb([x as f32, y as f32 * 0.5, 1.0]));
     put("sky.hdr", &encoded(&DynamicImage::ImageRgb32F(sky.clone()), ImageFormat::Hdr));
-    let linear = Linear { size: (16, 8), rgb: sky.pixels().map(|p| p.0).collect() };
+    let linear = Linear::radiance((16, 8), sky.pixels().map(|p| p.0).collect());
     conelab::results::picture::write_linear(&folder.join("sky.exr"), &linear).unwrap();
     put("scene.ron", SCENE.as_bytes());
     put("sky.ron", b"(models: [(builtin: \"cornell\")], environment: (file: \"sky.hdr\", rotation: 30, intensity: 2))");

@@ -2,19 +2,14 @@
 
 use super::Change;
 use crate::campaign::record::{Outcome, first_line};
-use crate::campaign::report::error_of;
-use crate::campaign::sweep::{NOTHING, SCENE, SET, collect, numbers};
+use crate::campaign::sweep::{NOTHING, SCENE, SET, collect};
 use crate::lab::LabError;
 use crate::measure::Point;
+use crate::metrics::{Best, Metric};
 use std::collections::HashMap;
 use std::fmt;
 use std::path::PathBuf;
 
-/// Parts of the light that are looked at.
-pub(super) const PARTS: [&str; 2] = ["total", "diffuse"];
-/// Fields of [`crate::metrics::Scores`] and their titles. Of the energy ratio the error is its absolute logarithm.
-pub(super) const METRICS: [(&str, &str); 4] =
-    [("relmse", "relMSE"), ("flip", "FLIP"), ("structure", "structure"), ("energy_ratio", "energy")];
 /// Changes by a smaller part are none, however little noise there is.
 const LEAST: f64 = 0.01;
 
@@ -40,9 +35,9 @@ pub struct Delta {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorChange {
     /// Part of the light.
-    pub part: &'static str,
-    /// Field of [`crate::metrics::Scores`].
-    pub metric: &'static str,
+    pub part: String,
+    /// Metric; of the energy ratio the error is its absolute logarithm.
+    pub metric: &'static Metric,
     /// By how much.
     pub delta: Delta,
 }
@@ -142,11 +137,17 @@ impl Delta {
 /// Points by scene and by what was set.
 type Points = HashMap<(String, String), Result<Point, String>>;
 
-/// A row for each change. `folders`: the sweep of all changes, then those that repeat the unchanged experiment.
+/// A row for each change, with errors of these parts of the light. `folders`: the sweep of all changes, then those that
+/// repeat the unchanged experiment.
 ///
 /// # Errors
 /// Folders that are none of sweeps.
-pub fn rows(folders: &[PathBuf], scenes: &[String], changes: &[Change]) -> Result<Vec<Row>, LabError> {
+pub fn rows(
+    folders: &[PathBuf],
+    scenes: &[String],
+    changes: &[Change],
+    parts: &[String],
+) -> Result<Vec<Row>, LabError> {
     let runs: Vec<Points> = folders.iter().map(read).collect::<Result<_, LabError>>()?;
     let unchanged: Vec<(&String, Vec<&Point>)> = scenes
         .iter()
@@ -156,7 +157,7 @@ pub fn rows(folders: &[PathBuf], scenes: &[String], changes: &[Change]) -> Resul
         })
         .collect();
     let first = runs.first();
-    Ok(changes.iter().map(|change| row(change, &unchanged, first)).collect())
+    Ok(changes.iter().map(|change| row(change, &unchanged, first, parts)).collect())
 }
 
 fn read(folder: &PathBuf) -> Result<Points, LabError> {
@@ -173,7 +174,7 @@ fn read(folder: &PathBuf) -> Result<Points, LabError> {
     Ok(points)
 }
 
-fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Points>) -> Row {
+fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Points>, parts: &[String]) -> Row {
     let (mut measured, mut failed) = (Vec::new(), Vec::new());
     for (scene, before) in unchanged {
         let key = ((*scene).clone(), change.setting());
@@ -194,10 +195,10 @@ fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Point
         Delta::over(&samples)
     };
     let mut errors = Vec::new();
-    for part in PARTS {
-        for (metric, _) in METRICS {
+    for part in parts {
+        for metric in Metric::few() {
             let delta = over(&|before, after| error(before.first()?, after, part, metric));
-            errors.extend(delta.map(|delta| ErrorChange { part, metric, delta }));
+            errors.extend(delta.map(|delta| ErrorChange { part: part.clone(), metric, delta }));
         }
     }
     let ms = over(&|before, after| Some(time(before, after)));
@@ -208,18 +209,13 @@ fn row(change: &Change, unchanged: &[(&String, Vec<&Point>)], run: Option<&Point
     Row { change: change.clone(), ms, bytes, errors, verdict, failed }
 }
 
-fn error(before: &Point, after: &Point, part: &str, metric: &str) -> Option<Sample> {
-    let value = |p: &Point| Some(error_of(metric, *numbers(p.scores.get(part)?).get(metric)?));
-    let unchanged = value(before)?;
+fn error(before: &Point, after: &Point, part: &str, metric: &Metric) -> Option<Sample> {
+    let value = |p: &Point| Some(metric.distance(p.scores.get(part)?.get(metric.key))).filter(|v| !v.is_nan());
+    let (unchanged, changed) = (value(before)?, value(after)?);
     // What the reference's noise gives a picture without error. It is in both numbers: a change is known far better.
-    let known = match metric {
-        "relmse" => before.noise.get(part).map_or(0.0, |halves| halves / 4.0),
-        "structure" => before.structure_noise.get(part).copied().unwrap_or(0.0),
-        _ => 0.0,
-    };
-    let changed = value(after)?;
-    Some(match metric {
-        "energy_ratio" => Sample { unchanged, growth: changed - unchanged, noise: LEAST },
+    let known = metric.noise.as_ref().map_or(0.0, |of| of.perfect * (of.of)(before.noise_of(part)));
+    Some(match metric.best {
+        Best::One => Sample { unchanged, growth: changed - unchanged, noise: LEAST },
         _ => Sample::relative(unchanged, changed, known),
     })
 }

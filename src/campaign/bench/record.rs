@@ -7,7 +7,7 @@ use crate::campaign::record::read_json;
 use crate::campaign::runner::Mistakes;
 use crate::campaign::settings::{apply, lines};
 use crate::diagnostics::Diagnostic;
-use crate::experiment::{Experiment, environment_text};
+use crate::experiment::{Experiment, FIELDS};
 use crate::lab::{LabError, Workspace};
 use crate::measure::{Frames, Warm};
 use crate::results::stats::DeviceStats;
@@ -169,19 +169,17 @@ impl Recorded {
             true => from_root(home, Path::new(&experiment.scene)),
             false => experiment.scene.clone(),
         };
-        let mut settings = IndexMap::from([
-            ("scene".to_string(), format!("{scene:?}")),
-            ("camera".to_string(), subject.camera.clone()),
-            ("size".to_string(), format!("({}, {})", subject.size.0, subject.size.1)),
-            ("time".to_string(), subject.time.clone()),
-        ]);
-        if let Some(sky) = experiment.sky {
-            settings.insert("sky".into(), format!("{sky:?}"));
-        }
-        if let Some(environment) = &experiment.environment {
-            let mut change = environment.value.clone();
-            change.file = change.file.map(|file| from_root(home, Path::new(&file)));
-            settings.insert("environment".into(), environment_text(&change));
+        // As a file in the program's folder would say it; camera and scene whole, and the graph if it was set.
+        let (path, mut settings) = (home.root.join("record"), IndexMap::new());
+        for field in FIELDS.iter().filter(|f| f.name != "graph") {
+            let text = match field.name {
+                "scene" => format!("{scene:?}"),
+                "camera" => subject.camera.clone(),
+                _ => field.text(experiment, &path),
+            };
+            if !text.is_empty() {
+                settings.insert(field.name.to_string(), text);
+            }
         }
         if point.labels.iter().any(|(name, _)| name == "graph") {
             settings.insert("graph".into(), format!("{:?}", experiment.graph));

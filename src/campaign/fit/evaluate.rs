@@ -1,29 +1,17 @@
 //! Runs settings and measures both of their quantities.
 
+use super::at;
 use super::search::Trial;
-use super::{Axis, at};
+use crate::campaign::settings::Axis;
 use crate::experiment::Experiment;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts};
 use crate::measure::reference::Reference;
 use crate::measure::{Frames, Timed, timed};
-use crate::metrics::{Compared, Kind, Linear, relmse, structure};
+use crate::metrics::{Compared, Linear, Metric};
 use crate::results::stats::spread;
 use crate::scene::Scene;
 use crate::vulkan::VulkanError;
-use clap::ValueEnum;
 use std::sync::Arc;
-
-/// Which error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-#[value(rename_all = "snake_case")]
-pub enum Metric {
-    /// mean (x - r)^2 / (r^2 + 0.01).
-    Relmse,
-    /// Mean HDR-FLIP.
-    HdrFlip,
-    /// Edges that the reference does not have.
-    Structure,
-}
 
 /// What is made small and what is bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +56,7 @@ pub struct Subject<'a> {
     /// Part of the light that is compared.
     pub part: &'a str,
     /// How it is compared.
-    pub metric: Metric,
+    pub metric: &'static Metric,
     /// How long a setting is timed.
     pub frames: Frames,
     /// The quantity that is minimised, and the bound of the other.
@@ -92,13 +80,13 @@ impl<'a> Evaluator<'a> {
     /// No such part in the graph or in the reference.
     pub fn new(subject: &'a Subject<'a>) -> Result<Evaluator<'a>, LabError> {
         let parts = crate::lab::parts_of(&subject.loaded.graph);
-        let texture = parts.iter().find(|p| p.0 == subject.part).map(|p| p.1.clone());
+        let texture = parts.iter().find(|p| p.name == subject.part).map(|p| p.texture.clone());
         match (texture, subject.reference.parts.get(subject.part)) {
             (Some(texture), Some(part)) => {
                 Ok(Evaluator { subject, texture, expected: &part.mean, reuse: None, refused: None })
             }
             _ => {
-                let all: Vec<&str> = parts.iter().map(|p| p.0.as_str()).collect();
+                let all: Vec<&str> = parts.iter().map(|p| p.name.as_str()).collect();
                 Err(LabError::Request(format!("no part '{}'; there are {}", subject.part, all.join(", "))))
             }
         }
@@ -137,20 +125,11 @@ impl<'a> Evaluator<'a> {
         if !together {
             let reuse = self.reuse.as_ref();
             session = s.lab.build(experiment, s.loaded, s.scene.clone(), vec![self.texture.clone()], reuse)?;
-            for _ in 0..s.frames.warmup + s.frames.count {
-                session.frame(0.0)?;
-            }
-            session.finish()?;
+            session.run(s.frames.warmup + s.frames.count)?;
         }
         let light = session.texels(&self.texture, 0, 0)?.linear();
-        let error = match s.metric {
-            Metric::Relmse => relmse(&light, self.expected)?,
-            Metric::Structure => structure(&light, self.expected)?,
-            Metric::HdrFlip => {
-                let compared = Compared::new(&light, self.expected, Kind::of_part(s.part))?;
-                compared.scores(None).map_or(f64::NAN, |scores| scores.hdr_flip)
-            }
-        };
+        let compared = Compared::new(&light, self.expected)?;
+        let error = compared.score(s.metric).map_or(f64::NAN, |value| s.metric.distance(value));
         Ok(Some(match s.goal {
             Goal::Error(_) => Trial { cost: ms, bounded: error },
             Goal::Time(_) => Trial { cost: error, bounded: ms },

@@ -4,7 +4,7 @@ use crate::campaign::charts::file_name;
 use crate::campaign::points::{labelled, total_first};
 use crate::campaign::record::Outcome;
 use crate::campaign::sweep::{Collected, Subject, parts_of};
-use crate::measure::comparison::within_noise;
+use crate::metrics::{Metric, RELMSE, within_noise};
 use indexmap::IndexMap;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -54,7 +54,7 @@ pub struct Chart {
     pub name: String,
     pub subject: usize,
     pub part: String,
-    pub metric: String,
+    pub metric: &'static Metric,
     /// Numbers of dots.
     pub points: Vec<usize>,
     pub svg: String,
@@ -102,11 +102,6 @@ impl Dot {
         let text = labelled(names.iter().filter_map(|n| Some((*n, self.labels.get(*n)?))));
         if text.is_empty() { self.id.chars().take(8).collect() } else { text }
     }
-}
-
-/// The distance from perfection: a ratio is as far from 1 as its inverse, everything else is perfect at 0.
-pub fn error_of(metric: &str, value: f64) -> f64 {
-    if metric == "energy_ratio" { value.ln().abs() } else { value }
 }
 
 impl Data {
@@ -202,12 +197,12 @@ impl Data {
     }
 
     /// The points of a subject that have a score, in order.
-    pub fn scored(&self, subject: usize, part: &str, metric: &str) -> Vec<Scored> {
+    pub fn scored(&self, subject: usize, part: &str, metric: &Metric) -> Vec<Scored> {
         let dots = self.dots.iter().enumerate().filter(|d| d.1.subject == subject);
         dots.filter_map(|(index, dot)| {
             let scores = dot.scores.get(part)?;
-            let error = error_of(metric, *scores.get(metric)?);
-            let noisy = within_noise(*scores.get("relmse").unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
+            let error = metric.distance(*scores.get(metric.key)?);
+            let noisy = within_noise(*scores.get(RELMSE).unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
             let experiment = dot.labels.get("experiment").cloned().unwrap_or_default();
             (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy, experiment })
         })

@@ -6,19 +6,17 @@ mod pareto;
 mod scatter;
 mod scenes;
 
-pub(crate) use data::{Data, Dot, Scored, error_of};
+pub(crate) use data::{Data, Dot, Scored};
 pub use pareto::pareto;
-pub(crate) use scatter::axis_title;
 
 use super::charts::{Bar, bars};
 use super::record::{File, write_files};
 use super::sweep::{Collected, csv};
 use crate::lab::LabError;
+use crate::metrics::{METRICS, Metric};
 use data::Chart;
 use std::path::{Path, PathBuf};
 
-/// Metrics that are charted when nothing else is asked for.
-pub const METRICS: [&str; 2] = ["relmse", "hdr_flip"];
 /// Most bars of the chart of passes.
 const MAX_BARS: usize = 40;
 
@@ -28,7 +26,7 @@ const MAX_BARS: usize = 40;
 ///
 /// # Errors
 /// No finished point; a folder that cannot be written to.
-pub fn write(collected: &Collected, metrics: &[String], folder: &Path) -> Result<Vec<PathBuf>, LabError> {
+pub fn write(collected: &Collected, metrics: &[&'static Metric], folder: &Path) -> Result<Vec<PathBuf>, LabError> {
     let data = Data::new(collected);
     if data.dots.is_empty() {
         let n = collected.points.len();
@@ -53,19 +51,19 @@ pub fn write(collected: &Collected, metrics: &[String], folder: &Path) -> Result
 }
 
 /// One chart for each subject, part and metric that points have.
-fn charts(data: &Data, metrics: &[String]) -> Result<Vec<Chart>, LabError> {
+fn charts(data: &Data, metrics: &[&'static Metric]) -> Result<Vec<Chart>, LabError> {
     let mut out = Vec::new();
     for (subject, title) in data.subjects.iter().enumerate() {
         for part in &data.parts {
-            for metric in metrics {
+            for &metric in metrics {
                 let dots = data.scored(subject, part, metric);
                 if dots.is_empty() {
                     continue;
                 }
-                let name = data.name(&format!("{part}-{metric}"), subject);
-                let svg = scatter::scatter(&format!("{title}: {part}"), &scatter::axis_title(metric), &dots)?;
+                let name = data.name(&format!("{part}-{}", metric.key), subject);
+                let svg = scatter::scatter(&format!("{title}: {part}"), &metric.axis(), &dots)?;
                 let points = dots.iter().map(|d| d.index).collect();
-                out.push(Chart { name, subject, part: part.clone(), metric: metric.clone(), points, svg });
+                out.push(Chart { name, subject, part: part.clone(), metric, points, svg });
             }
         }
     }
@@ -74,7 +72,7 @@ fn charts(data: &Data, metrics: &[String]) -> Result<Vec<Chart>, LabError> {
 
 /// Stacked bars of the points on the Pareto front of the total's relMSE; of all points where nothing is scored.
 fn passes(data: &Data, subject: usize) -> Result<String, LabError> {
-    let scored = data.scored(subject, "total", "relmse");
+    let scored = data.scored(subject, "total", &METRICS[0]);
     let pairs: Vec<(f64, f64)> = scored.iter().map(|d| (d.ms, d.error)).collect();
     let mut chosen: Vec<usize> = pareto(&pairs).into_iter().map(|i| scored[i].index).collect();
     let what = if chosen.is_empty() { "fastest points" } else { "points on the Pareto front of the total" };

@@ -8,6 +8,7 @@ const make = (tag, text, parent) => {
   return element;
 };
 const number = (v) => (v === undefined || v === null ? "" : v === 0 ? "0" : Number(v.toPrecision(4)).toString());
+const title = (metric) => (data.metrics.find((m) => m[0] === metric) || ["", metric])[1];
 const tip = document.getElementById("tip");
 const state = { subject: 0, part: data.parts[0] || "", metric: data.charts.length ? data.charts[0].metric : "", sort: "ms", down: false, held: -1 };
 const stages = [...new Set(data.dots.flatMap((d) => d.stages.map((s) => s[0])))];
@@ -71,11 +72,11 @@ function choice(title, field, options) {
 }
 choice("View", "subject", data.subjects.map((s, i) => [i, s]));
 choice("Light", "part", data.parts.map((p) => [p, p]));
-choice("Error", "metric", [...new Set(data.charts.map((c) => c.metric))].map((m) => [m, m.replace("_", "-")]));
+choice("Error", "metric", [...new Set(data.charts.map((c) => c.metric))].map((m) => [m, title(m)]));
 
 const errorOf = (d) => {
   const v = ((d.scores[state.part] || {})[state.metric]);
-  return v === undefined || v === null ? undefined : state.metric === "energy_ratio" ? Math.abs(Math.log(v)) : v;
+  return v === undefined || v === null ? undefined : data.metrics.some((m) => m[0] === state.metric && m[2]) ? Math.abs(Math.log(v)) : v;
 };
 // The points that none of those shown beats in both time and error.
 function pareto(indices) {
@@ -93,8 +94,8 @@ function describe(index, event, pinned) {
   make("div", `${number(d.ms)} ms (95 %: ${number(d.p95)}), ${number(d.bytes / 1048576)} MiB`, tip);
   for (const part of data.parts.filter((p) => d.scores[p])) {
     const s = d.scores[part];
-    make("div", `${part}: ` + ["relmse", "hdr_flip", "flip", "structure", "energy_ratio", "leak", "over_occlusion"].filter((m) => s[m] !== undefined)
-      .map((m) => `${m.replace("_", "-")} ${number(s[m])}`).join(", "), tip);
+    make("div", `${part}: ` + data.metrics.filter((m) => s[m[0]] !== undefined)
+      .map((m) => `${m[1]} ${number(s[m[0]])}`).join(", "), tip);
   }
   for (const warning of d.warnings) make("div", "warning: " + warning, tip).className = "warning";
   const bar = make("div", undefined, tip);
@@ -143,7 +144,7 @@ document.querySelectorAll("figure[data-chart]").forEach((figure) => {
 const columns = [
   ...data.names.map((n) => [n, (d) => d.labels[n] ?? ""]),
   ["ms", (d) => d.ms], ["95 % ms", (d) => d.p95], ["MiB", (d) => d.bytes / 1048576],
-  ...data.parts.flatMap((p) => [...new Set(data.charts.map((c) => c.metric))].map((m) => [`${p} ${m.replace("_", "-")}`, (d) => (d.scores[p] || {})[m]])),
+  ...data.parts.flatMap((p) => [...new Set(data.charts.map((c) => c.metric))].map((m) => [`${p} ${title(m)}`, (d) => (d.scores[p] || {})[m]])),
 ];
 function table(best) {
   const element = document.getElementById("points");
@@ -190,7 +191,7 @@ function update() {
       const index = chart.points[i];
       const hollow = circle.dataset.hollow ?? (circle.dataset.hollow = circle.getAttribute("fill") === "none" ? "yes" : "no");
       const red = best.includes(index);
-      const ink = red ? "#C83C28" : "#466EA0";
+      const ink = red ? "#C83C28" : data.colors[0];
       circle.classList.toggle("off", !kept(data.dots[index]));
       circle.classList.toggle("held", index === state.held);
       circle.setAttribute("r", red ? 5 : 4);

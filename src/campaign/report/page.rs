@@ -7,6 +7,7 @@ use crate::campaign::page::{page as whole_page, url};
 use crate::campaign::points::labelled;
 use crate::campaign::record::first_line;
 use crate::lab::LabError;
+use crate::metrics::{Best, METRICS};
 use maud::{PreEscaped, html};
 use serde::Serialize;
 
@@ -29,6 +30,9 @@ struct PageChart<'a> {
     points: &'a [usize],
 }
 
+/// A metric: key, title, and whether it is a ratio.
+type PageMetric = (&'static str, &'static str, bool);
+
 #[derive(Serialize)]
 struct PageData<'a> {
     names: &'a [String],
@@ -36,6 +40,7 @@ struct PageData<'a> {
     settings: &'a [String],
     parts: &'a [String],
     colors: Vec<String>,
+    metrics: Vec<PageMetric>,
     charts: Vec<PageChart<'a>>,
     dots: Vec<PageDot<'a>>,
 }
@@ -55,13 +60,14 @@ pub fn page(
     let dots =
         data.dots.iter().map(|dot| PageDot { dot, picture: jpeg(&dot.picture), error_map: jpeg(&dot.error_map) });
     let charted =
-        charts.iter().map(|c| PageChart { subject: c.subject, part: &c.part, metric: &c.metric, points: &c.points });
+        charts.iter().map(|c| PageChart { subject: c.subject, part: &c.part, metric: c.metric.key, points: &c.points });
     let shown = PageData {
         names: &data.names,
         subjects: &data.subjects,
         settings: &data.settings,
         parts: &data.parts,
         colors: COLORS.iter().map(|c| format!("rgb({},{},{})", c.0, c.1, c.2)).collect(),
+        metrics: METRICS.iter().map(|m| (m.key, m.title, m.best == Best::One)).collect(),
         charts: charted.collect(),
         dots: dots.collect(),
     };

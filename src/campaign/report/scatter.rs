@@ -2,33 +2,13 @@
 
 use super::data::Scored;
 use super::pareto::pareto;
-use crate::campaign::charts::{Area, Axis, FONT, Failure, drawn, plane};
+use crate::campaign::charts::{Area, Axis, FONT, Failure, color, drawn, plane};
 use crate::lab::LabError;
 use plotters::prelude::*;
 
 const SIZE: (u32, u32) = (900, 560);
-/// Of the dots of each experiment, in turns.
-const DOTS: [RGBColor; 5] = [
-    RGBColor(70, 110, 160),
-    RGBColor(220, 150, 40),
-    RGBColor(90, 150, 80),
-    RGBColor(140, 90, 160),
-    RGBColor(110, 110, 110),
-];
+/// Of the front; no other colour is red.
 const FRONT: RGBColor = RGBColor(200, 60, 40);
-
-/// A metric by its usual name.
-pub fn axis_title(metric: &str) -> String {
-    match metric {
-        "relmse" => "relMSE".into(),
-        "rmse" => "RMSE".into(),
-        "flip" => "FLIP".into(),
-        "hdr_flip" => "HDR-FLIP".into(),
-        "smape" => "SMAPE".into(),
-        "energy_ratio" => "|ln energy ratio|".into(),
-        other => other.replace('_', " "),
-    }
-}
 
 /// The chart as SVG: its circles are the dots in their order, of a colour for each experiment; those on the front are larger and
 /// joined by a red line, and red where there is one experiment; those that are not told apart from the reference's noise are
@@ -57,7 +37,7 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
     let mut experiments: Vec<&str> = dots.iter().map(|d| d.experiment.as_str()).collect();
     experiments.sort_unstable();
     experiments.dedup();
-    let color_of = |name: &str| DOTS[experiments.iter().position(|e| *e == name).unwrap_or(0) % DOTS.len()];
+    let color_of = |name: &str| color(experiments.iter().position(|e| *e == name).unwrap_or(0));
     chart.draw_series(dots.iter().enumerate().map(|(i, d)| {
         let on_front = front.contains(&i);
         let color = if on_front && experiments.len() < 2 { FRONT } else { color_of(&d.experiment) };

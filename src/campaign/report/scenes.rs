@@ -8,15 +8,19 @@ use crate::campaign::record::first_line;
 use crate::campaign::sweep::Subject;
 use crate::campaign::table::{Table, cell, short};
 use crate::lab::LabError;
+use crate::metrics::Metric;
 use indexmap::{IndexMap, IndexSet};
 use maud::{Markup, html};
+use std::collections::BTreeMap;
 
 /// What tells rows apart; everything else that is varied tells methods apart.
 const OF_A_ROW: [&str; 4] = ["scene", "camera", "size", "time"];
 /// Most methods beside each other.
 const MAX_METHODS: usize = 12;
-/// Scores in the table: title and metric.
-const SCORES: [(&str, &str); 3] = [("energy", "energy_ratio"), ("relMSE", "relmse"), ("FLIP", "flip")];
+/// Numbers of a part, by metric.
+type Scores = BTreeMap<String, f64>;
+/// What rows are sorted by.
+const WORST: &str = "flip";
 
 /// The table.
 pub struct Scenes {
@@ -105,7 +109,7 @@ impl Scenes {
                 let line = |(bounces, scores)| Line { row, method, cell, bounces, scores };
                 match cell {
                     Cell::Measured(i) => lines.extend(scores(data, &data.dots[*i]).into_iter().map(line)),
-                    Cell::Failed(_) => lines.push(line((String::new(), [None; 3]))),
+                    Cell::Failed(_) => lines.push(line((String::new(), None))),
                     Cell::Left => {}
                 }
             }
@@ -117,8 +121,8 @@ impl Scenes {
         table.column("height", |l| l.row.key.0.size.1.to_string());
         table.column("method", |l| l.method.to_string());
         table.column("bounces", |l| l.bounces.clone());
-        for (i, (_, metric)) in SCORES.into_iter().enumerate() {
-            table.column(metric, |l| cell(l.scores[i]));
+        for metric in Metric::few() {
+            table.column(metric.key, |l| cell(l.scores.and_then(|s| s.get(metric.key))));
         }
         table.column("median ms", |l| match l.cell {
             Cell::Measured(i) => data.dots[*i].ms.to_string(),
@@ -138,7 +142,7 @@ struct Line<'s> {
     method: &'s str,
     cell: &'s Cell,
     bounces: String,
-    scores: [Option<f64>; 3],
+    scores: Option<&'s Scores>,
 }
 
 impl Row {
@@ -158,7 +162,7 @@ impl Row {
     /// What rows are sorted by: FLIP of the total of the first method, against the reference of most bounces.
     fn worst(&self, data: &Data) -> Option<f64> {
         match self.cells.first()? {
-            Cell::Measured(i) => scores(data, &data.dots[*i]).first()?.1[2],
+            Cell::Measured(i) => scores(data, &data.dots[*i]).first()?.1?.get(WORST).copied(),
             _ => None,
         }
     }
@@ -171,14 +175,17 @@ impl Cell {
             Cell::Failed(error) => return html! { p { "failed: " (first_line(error)) } },
             Cell::Left => return html! { "not measured yet" },
         };
-        let number = |v: Option<f64>| v.map_or("no number".into(), short);
+        let number = |v: Option<&f64>| v.map_or("no number".into(), |v| short(*v));
         html! {
             img alt="picture" data-dot=(i) data-kind="picture";
             img alt="error" data-dot=(i) data-kind="error_map";
             table {
-                tr { th { "bounces" } @for (title, _) in SCORES { th { (title) } } }
+                tr { th { "bounces" } @for metric in Metric::few() { th { (metric.short()) } } }
                 @for (bounces, values) in scores(data, &data.dots[i]) {
-                    tr { td { (bounces) } @for value in values { td { (number(value)) } } }
+                    tr {
+                        td { (bounces) }
+                        @for metric in Metric::few() { td { (number(values.and_then(|v| v.get(metric.key)))) } }
+                    }
                 }
             }
             (short(data.dots[i].ms)) " ms"
@@ -187,16 +194,16 @@ impl Cell {
 }
 
 /// Scores of a point's total by the bounces of the reference, most first.
-fn scores(data: &Data, dot: &Dot) -> Vec<(String, [Option<f64>; 3])> {
-    let mut list: Vec<(u32, [Option<f64>; 3])> = Vec::new();
-    for (part, metrics) in &dot.scores {
+fn scores<'d>(data: &Data, dot: &'d Dot) -> Vec<(String, Option<&'d Scores>)> {
+    let mut list: Vec<(u32, &Scores)> = Vec::new();
+    for (part, scores) in &dot.scores {
         // All parts are scored against the first reference; the total's other scores say against which.
         let bounces = match part.as_str() {
             "total" => data.bounces[dot.subject],
             _ => part.strip_prefix("total, ").and_then(|rest| rest.strip_suffix(" bounces")?.parse().ok()),
         };
-        list.extend(bounces.map(|b| (b, SCORES.map(|(_, metric)| metrics.get(metric).copied()))));
+        list.extend(bounces.map(|b| (b, scores)));
     }
     list.sort_by_key(|s| std::cmp::Reverse(s.0));
-    list.into_iter().map(|(bounces, values)| (bounces.to_string(), values)).collect()
+    list.into_iter().map(|(bounces, scores)| (bounces.to_string(), Some(scores))).collect()
 }

@@ -4,6 +4,7 @@ use super::record::{CaseRecord, FrameScore, PartResult, Report};
 use crate::campaign::charts::{Axis, Bar, Line, bars, file_name, lines};
 use crate::campaign::table::short;
 use crate::lab::LabError;
+use crate::metrics::RELMSE;
 
 /// A chart.
 pub(super) struct Chart {
@@ -16,21 +17,26 @@ pub(super) struct Chart {
 }
 
 /// Bars over everything: part, name, title, value.
-type Bars = (&'static str, &'static str, &'static str, fn(&PartResult) -> Option<f64>);
-const BARS: [Bars; 4] = [
-    ("total", "all E_t", "E_t of the total, radiance", |p| p.e),
-    ("diffuse", "all E_t of diffuse", "E_t of diffuse light, radiance", |p| p.e),
-    ("diffuse", "all flicker of diffuse", "Flicker index of diffuse light, mean over pixels", |p| {
-        p.flicker.map(|f| f.mean)
-    }),
-    ("total", "all relMSE", "relMSE of the total, last frame", |p| p.scores.as_ref().map(|s| s.relmse)),
-];
+type Bars<'r> = (&'r str, String, String, fn(&PartResult) -> Option<f64>);
+
+fn all_bars<'r>(focus: Option<(&'r str, &'r str)>) -> Vec<Bars<'r>> {
+    let mut list: Vec<Bars> = vec![("total", "all E_t".into(), "E_t of the total, radiance".into(), |p| p.e)];
+    if let Some((part, title)) = focus {
+        let flicker = format!("Flicker index of {title}, mean over pixels");
+        list.push((part, format!("all E_t of {part}"), format!("E_t of {title}, radiance"), |p| p.e));
+        list.push((part, format!("all flicker of {part}"), flicker, |p| p.flicker.map(|f| f.mean)));
+    }
+    let error = "relMSE of the total, last frame".into();
+    list.push(("total", "all relMSE".into(), error, |p| p.scores.as_ref().map(|s| s.get(RELMSE))));
+    list
+}
 
 /// Over the frames of each case E_t, after a switch or a cut the error, for a switched light its response; bars over
 /// everything.
 pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
     let mut out = Vec::new();
-    for (part, name, title, value) in BARS {
+    let focus = report.focus.as_ref().map(|f| (f.0.as_str(), f.1.as_str()));
+    for (part, name, title, value) in all_bars(focus) {
         let bar = |r: &CaseRecord| {
             let part = r.part(part)?;
             let hollow = title.starts_with("E_t") && part.told_apart == Some(false);
@@ -39,7 +45,7 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
         };
         let list: Vec<Bar> = report.results.iter().filter_map(bar).collect();
         if list.iter().any(|b| b.parts[0].1 > 0.0) {
-            out.push(Chart { name: file_name(name), case: None, svg: bars(title, "", short, &list)? });
+            out.push(Chart { name: file_name(&name), case: None, svg: bars(&title, "", short, &list)? });
         }
     }
     for (case, of) in report.cases() {
@@ -62,20 +68,21 @@ pub(super) fn charts(report: &Report) -> Result<Vec<Chart>, LabError> {
             out.extend(svg.map(chart));
             Ok::<(), LabError>(())
         };
-        for part in ["total", "diffuse"] {
+        for part in std::iter::once("total").chain(focus.map(|f| f.0)) {
             let mut lines = over_frames(&|f| f.change.map(|c| c.rms), part);
             lines.extend(grey(over_frames(&|f| f.noise, part), "noise of the reference"));
             let what = format!("E_t of {part}");
             add(&what, &what, "radiance", lines)?;
         }
+        let Some((part, title)) = focus else { continue };
         let measured = || of.iter().filter_map(|r| r.done());
         if measured().any(|m| m.event.is_some()) {
-            add("error", "relMSE of diffuse light", "relMSE", over_frames(&|f| f.relmse, "diffuse"))?;
+            add("error", &format!("relMSE of {title}"), "relMSE", over_frames(&|f| f.relmse, part))?;
         }
         if measured().any(|m| m.parts.values().any(|p| p.step.is_some())) {
-            let mut lines = over_frames(&|f| f.mean, "diffuse");
-            lines.extend(grey(over_frames(&|f| f.reference_mean, "diffuse"), "reference"));
-            add("response", "mean luminance of diffuse light", "radiance", lines)?;
+            let mut lines = over_frames(&|f| f.mean, part);
+            lines.extend(grey(over_frames(&|f| f.reference_mean, part), "reference"));
+            add("response", &format!("mean luminance of {title}"), "radiance", lines)?;
         }
     }
     Ok(out)

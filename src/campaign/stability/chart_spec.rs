@@ -17,9 +17,9 @@ pub struct CostChart {
     pub error: Vec<String>,
     /// Cases whose root mean square of E_t goes up. Methods are timed in the first of them.
     pub motions: Vec<String>,
-    /// The part of the light.
-    #[serde(default = "diffuse")]
-    pub part: String,
+    /// The part of the light; that which methods are looked at for when absent.
+    #[serde(default)]
+    pub part: Option<String>,
     /// Panels: titles and methods.
     #[serde(default)]
     pub groups: Entries<Vec<String>>,
@@ -43,15 +43,16 @@ pub struct EqualTime {
     pub tolerance: f64,
 }
 
-fn diffuse() -> String {
-    "diffuse".into()
-}
-
 fn near() -> f64 {
     0.05
 }
 
 impl CostChart {
+    /// The part of the light.
+    pub fn part(&self) -> &str {
+        self.part.as_deref().unwrap_or("total")
+    }
+
     /// Checks names and numbers. Without groups all methods are one.
     ///
     /// # Errors

@@ -4,10 +4,10 @@ use super::chart_spec::CostChart;
 use super::motion::Motion;
 use crate::camera_path::CameraPath;
 use crate::campaign::runner::Mistakes;
-use crate::campaign::settings::{FIELDS, Setting, apply, settings};
+use crate::campaign::settings::{Setting, apply, settings};
 use crate::campaign::source::Source;
 use crate::diagnostics::{Diagnostic, Entries, Loc};
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, Field};
 use crate::graph::file::RawText;
 use crate::graph::param::Params;
 use crate::lab::{LabError, Workspace};
@@ -256,7 +256,7 @@ impl Suite {
             experiment.params.retain(|(name, _)| has(&name.value));
         }
         let own = |s: &Setting| method.set.iter().any(|m| std::ptr::eq(m, s));
-        let fits = |s: &&Setting| FIELDS.contains(&s.name.value.as_str()) || own(s) || has(&s.name.value);
+        let fits = |s: &&Setting| Field::of(&s.name.value).is_some() || own(s) || has(&s.name.value);
         let others = all().filter(|s| s.name.value != "graph").filter(fits);
         errors.extend(apply(&mut experiment, others, &self.folder));
         if errors.is_empty() { Ok(experiment) } else { Err(errors) }

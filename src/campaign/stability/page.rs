@@ -3,7 +3,7 @@
 use super::chart::Chart;
 use super::plot::Plot;
 use super::record::{CaseRecord, Report, picture};
-use super::table::{COLUMNS, parts};
+use super::table::{columns, parts};
 use crate::campaign::page::{figure, page as whole_page};
 use crate::campaign::table::{Table, cell, short, shortly};
 use maud::{Markup, html};
@@ -15,9 +15,6 @@ th:first-child,td:first-child{text-align:left}.noise{color:#888;font-style:itali
 figure{margin:1em 0}figcaption{color:#555;font-size:13px}img{max-width:100%;image-rendering:pixelated}svg{max-width:100%;height:auto}\
 .wide{overflow-x:auto}h2{margin-top:2em;border-top:2px solid #ccc;padding-top:.6em}";
 
-/// Parts of the light that have tables on the page; the others are in the files.
-const SHOWN: [&str; 3] = ["total", "diffuse", "specular"];
-
 /// The page as HTML.
 pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> String {
     let title = format!("{}: stability", report.suite);
@@ -27,7 +24,7 @@ pub(super) fn page(report: &Report, charts: &[Chart], plot: Option<&Plot>) -> St
     };
     let devices: BTreeSet<&str> = report.results.iter().map(|r| r.device.name.as_str()).collect();
     let devices = devices.into_iter().collect::<Vec<_>>().join(", ");
-    let parts: Vec<String> = parts(report).into_iter().filter(|p| SHOWN.contains(&p.as_str())).collect();
+    let parts: Vec<String> = parts(report).into_iter().filter(|p| report.tables.contains(p)).collect();
     let body = html! {
         h1 { (title) }
         p {
@@ -77,10 +74,10 @@ fn worst(record: &CaseRecord) -> Markup {
 fn table(part: &str, records: &[&CaseRecord]) -> Markup {
     let mut table = Table::new(records);
     table.column(part, |r| r.about.method.clone());
-    for (_, title, value) in COLUMNS {
+    for (_, title, value) in columns() {
         let Some(title) = title else { continue };
         let noisy = |r: &CaseRecord| title == "E_t" && r.part(part).is_some_and(|p| p.told_apart == Some(false));
-        table.marked(title, |r| (shortly(r.part(part).and_then(value)), noisy(r).then_some("noise")));
+        table.marked(title, |r| (shortly(r.part(part).and_then(&value)), noisy(r).then_some("noise")));
     }
     table.column("voxel recall", |r| shortly(r.done().and_then(|m| m.voxels.as_ref()?.recall)));
     table.marked("failed", |r| (cell(r.error()), Some("bad")));

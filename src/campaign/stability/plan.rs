@@ -116,7 +116,7 @@ fn job(
     check_size(experiment.size).map_err(LabError::Request)?;
     let wrong = |why: String| LabError::Request(format!("case '{}': {why}", title(&case.name, &case.variant)));
     let frames = options.frames.filter(|_| !case.own_frames).unwrap_or(case.frames);
-    let names: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.0).collect();
+    let names: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.name).collect();
     let parts = names.len() as u64;
     let values = u64::from(experiment.size.0) * u64::from(experiment.size.1) * frames as u64 * parts;
     if values > MAX_VALUES {

@@ -7,7 +7,7 @@ use crate::campaign::charts::{Axis, color, cut, drawn, plane, text};
 use crate::campaign::page::figure;
 use crate::campaign::table::{Table, cell, mebibytes, number, shortly};
 use crate::lab::LabError;
-use crate::measure::comparison::{NOISE_FACTOR, within_noise};
+use crate::metrics::{NOISE_FACTOR, RELMSE, within_noise};
 use maud::{Markup, html};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -67,7 +67,7 @@ impl Plot<'_> {
     pub fn csv(&self) -> Result<String, LabError> {
         let rows: Vec<(&String, &Row)> =
             self.groups.iter().flat_map(|(group, rows)| rows.iter().map(move |r| (group, r))).collect();
-        let part = &self.spec.part;
+        let part = self.spec.part();
         let mut table = Table::new(&rows);
         table.column("group", |r| r.0.clone());
         table.column("method", |r| r.1.method.clone());
@@ -84,12 +84,12 @@ impl Plot<'_> {
 
     /// Chart and tables, HTML.
     pub fn html(&self) -> Markup {
-        let CostChart { part, error, motions, equal_time, .. } = self.spec;
+        let CostChart { error, motions, equal_time, .. } = self.spec;
         let off = self.groups.iter().flat_map(|g| &g.1).any(|r| r.off);
         html! {
             h2 { "What stability costs" }
             p {
-                "Part: " (part) ". To the right relMSE of " (error.join(", ")) ", up the root mean square of E_t of "
+                "Part: " (self.spec.part()) ". To the right relMSE of " (error.join(", ")) ", up the root mean square of E_t of "
                 (motions.join(", ")) "; both are better towards the lower left. Times and memory are of frames that make \
                  the picture alone, timed in '" (cell(motions.first())) "'. A bar reaches to what is left without the noise \
                  that the reference adds on average; hollow: less than " (NOISE_FACTOR) " times the noise between its \
@@ -147,11 +147,13 @@ fn row(report: &Report, spec: &CostChart, method: &str) -> Row {
         off: tolerance.zip(ratio).is_some_and(|(t, r)| (r - 1.0).abs() > t),
         memory_bytes: taken.map(|c| c.memory_bytes),
         // The halves differ by four times the variance of their mean (half the samples each, and two of them).
-        error: values(report, spec, &spec.error, method, |p| Some((p.scores.as_ref()?.relmse, p.noise?))).map(|list| {
-            let mean = |f: fn(&(f64, f64)) -> f64| list.iter().map(f).sum::<f64>() / list.len() as f64;
-            let (value, noise) = (mean(|v| v.0), mean(|v| v.1));
-            Score { value, noise, without: (value - noise / 4.0).max(0.0) }
-        }),
+        error: values(report, spec, &spec.error, method, |p| Some((p.scores.as_ref()?.get(RELMSE), p.noise?))).map(
+            |list| {
+                let mean = |f: fn(&(f64, f64)) -> f64| list.iter().map(f).sum::<f64>() / list.len() as f64;
+                let (value, noise) = (mean(|v| v.0), mean(|v| v.1));
+                Score { value, noise, without: (value - noise / 4.0).max(0.0) }
+            },
+        ),
         change: values(report, spec, &spec.motions, method, |p| Some((p.e?, p.e_noise?))).map(|list| {
             let square = |f: fn(&(f64, f64)) -> f64| list.iter().map(|v| f(v).powi(2)).sum::<f64>() / list.len() as f64;
             let (value, noise) = (square(|v| v.0), square(|v| v.1));
@@ -173,7 +175,7 @@ fn values(
         let own = report.results.iter().filter(|r| r.about.case == *case && r.about.method == method);
         let before = list.len();
         for record in own {
-            list.push(value(record.part(&spec.part)?).filter(|v| v.0.is_finite() && v.1.is_finite())?);
+            list.push(value(record.part(spec.part())?).filter(|v| v.0.is_finite() && v.1.is_finite())?);
         }
         (list.len() > before).then_some(())?;
     }
@@ -204,8 +206,8 @@ fn draw(spec: &CostChart, groups: &[(String, Vec<Row>)]) -> Result<Option<String
     if all.is_empty() {
         return Ok(None);
     }
-    let x = axis(&format!("relMSE of {}, standing still", spec.part), all.iter().map(|d| d.1.value));
-    let y = axis(&format!("E_t of {}, moving", spec.part), all.iter().map(|d| d.2.value));
+    let x = axis(&format!("relMSE of {}, standing still", spec.part()), all.iter().map(|d| d.1.value));
+    let y = axis(&format!("E_t of {}, moving", spec.part()), all.iter().map(|d| d.2.value));
     let width = PANEL.0.saturating_mul(u32::try_from(groups.len()).unwrap_or(u32::MAX));
     let svg = drawn("cost", (width, PANEL.1), |area| {
         for ((title, rows), panel) in groups.iter().zip(area.split_evenly((1, groups.len()))) {

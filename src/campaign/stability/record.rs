@@ -4,7 +4,7 @@ use super::cost::Cost;
 use super::score::{Change, Flicker, Step};
 use crate::campaign::record::{Folder, Record};
 use crate::measure::oracle::Score;
-use crate::metrics::Scores;
+use crate::metrics::{Noise, Scores};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -64,6 +64,14 @@ pub struct PartResult {
     pub structure_noise: Option<f64>,
     /// Frame by frame.
     pub frames: Vec<FrameScore>,
+}
+
+impl PartResult {
+    /// The noise of the last frame's reference; no number where it is not known.
+    pub fn reference_noise(&self) -> Noise {
+        let known = |v: Option<f64>| v.unwrap_or(f64::NAN);
+        Noise { relmse: known(self.noise), structure: known(self.structure_noise) }
+    }
 }
 
 /// The frame that is farthest from its reference.
@@ -142,6 +150,12 @@ pub struct Report {
     pub text: String,
     /// Samples a pixel and bounces of the references; none without.
     pub reference: Option<(u64, u32)>,
+    /// Parts of the light that have tables on the page; the others are in the files.
+    #[serde(default)]
+    pub tables: Vec<String>,
+    /// The part that has charts besides the total: its name, and that within a sentence.
+    #[serde(default)]
+    pub focus: Option<(String, String)>,
     /// What charted methods cost; empty without a chart.
     #[serde(default)]
     pub costs: Vec<Cost>,

@@ -10,7 +10,8 @@ use super::{chart, cost, page, table};
 use crate::campaign::points::OpenScene;
 use crate::campaign::record::{json, write_files};
 use crate::campaign::runner::{Counts, Open, Progress, Runner};
-use crate::lab::LabError;
+use crate::lab::{LabError, focus_of, parts_of};
+use crate::metrics::Kind;
 
 /// Runs what is not finished of a suite, and writes tables, charts and the page of all of it. An error that belongs to a
 /// method in a case is kept in its place; it is tried again by the next run.
@@ -44,16 +45,25 @@ pub fn run(
     let mut measured = |runner: &mut Runner, job: &Job| measure(runner, job, tracing, &suite.pictures);
     let results = runner.run(&folder, &jobs.iter().collect::<Vec<_>>(), &mut kept, &mut measured)?;
     let counts = Counts::of(&results);
+    let graph = &runner.warm.graph(&runner.lab.home, &suite.experiment.graph)?.graph;
+    let focus = focus_of(graph).map(|p| (p.name.clone(), p.title.clone()));
+    let tables = parts_of(graph).into_iter().filter(|p| p.kind == Kind::Radiance).map(|p| p.name).collect();
     let report = Report {
         schema: SCHEMA.into(),
         version: env!("CARGO_PKG_VERSION").into(),
         suite: suite.name.clone(),
         text: suite.text.clone(),
         reference: options.reference.then_some((samples, suite.bounces)),
+        tables,
+        focus,
         costs,
         results,
     };
-    write(&report, suite.chart.as_ref(), options)?;
+    let chart = suite.chart.clone().map(|mut chart| {
+        chart.part = chart.part.or_else(|| report.focus.clone().map(|f| f.0));
+        chart
+    });
+    write(&report, chart.as_ref(), options)?;
     Ok((counts, report))
 }
 

@@ -1,7 +1,7 @@
 //! The definitions, on pictures and sequences at hand; docs/stability.md explains them with their sources.
 
+use crate::metrics::Linear;
 use crate::metrics::colour::{display, luminance};
-use crate::metrics::{Kind, Linear};
 use serde::{Deserialize, Serialize};
 
 /// What is near enough to the final value after a step.
@@ -22,7 +22,7 @@ pub struct Change {
 
 /// The change between two frames `x`, less that of their references `r`; none stands for references that are equal.
 /// Pixels that are no number in any of them are left out.
-pub fn change(kind: Kind, x: [&Linear; 2], r: Option<[&Linear; 2]>) -> Change {
+pub fn change(x: [&Linear; 2], r: Option<[&Linear; 2]>) -> Change {
     let [before, now] = x;
     let (mut sum, mut count, mut jump) = (0.0, 0usize, 0.0f64);
     let mut errors = Vec::with_capacity(now.rgb.len());
@@ -38,7 +38,7 @@ pub fn change(kind: Kind, x: [&Linear; 2], r: Option<[&Linear; 2]>) -> Change {
             let e = (wide(n[c]) - wide(b[c])) - (wide(rn[c]) - wide(rb[c]));
             sum += e * e;
             most = most.max(e.abs());
-            let show = |v: f32| display(kind, v);
+            let show = |v: f32| display(x[0].kind, v);
             jump = jump.max(((show(n[c]) - show(b[c])) - (show(rn[c]) - show(rb[c]))).abs());
         }
         errors.push(most);

@@ -43,7 +43,7 @@ pub(super) fn measure(
 ) -> Result<(Measured, Vec<File>), LabError> {
     let loaded = runner.warm.graph(&runner.lab.home, &job.experiment.graph)?.clone();
     let motion = &job.case.motion;
-    let mut wanted: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.1).collect();
+    let mut wanted: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.texture).collect();
     if job.case.voxels && loaded.graph.voxels.is_some() || motion.in_voxels() {
         wanted.extend(oracle::wanted(&loaded.graph)?);
     }
@@ -91,7 +91,7 @@ pub(super) fn measure(
                 warnings.push(format!("frame {frame}, perhaps others too: {lost} {note}"));
             }
             let known = known(&part, reference.as_deref(), earlier.map(|t| &**t), changed);
-            let own = series.entry(part.clone()).or_insert_with(|| PartSeries::new(&part));
+            let own = series.entry(part.clone()).or_insert_with(PartSeries::new);
             let shown = (part == pictures).then(|| Panels::new(own.before(), &x, known));
             let bad = own.add(x, known, number + 1 == frames);
             if let (Some(panels), Some(bad)) = (shown, bad.or((frame == 0).then_some(0.0)))
@@ -169,8 +169,7 @@ pub(super) fn cell_of(session: &mut Session, job: &Job) -> Result<f32, LabError>
         return Ok(0.0);
     }
     session.place_camera(&job.start.camera);
-    session.frame(0.0)?;
-    session.finish()?;
+    session.run(1)?;
     let (x, y, z) = job.start.camera.eye;
     let edges = oracle::grid(session)?.edges_at(DVec3::new(x.into(), y.into(), z.into()));
     Ok(edges.min_element() as f32)

@@ -2,10 +2,9 @@
 
 use super::record::{FrameScore, PartResult};
 use super::score::{FlickerSeries, change, settling, step};
-use crate::measure::comparison::within_noise;
 use crate::measure::reference::ReferencePart;
 use crate::metrics::colour::luminance;
-use crate::metrics::{Compared, Kind, Linear, relmse};
+use crate::metrics::{Compared, Linear, relmse, within_noise};
 
 /// What is known of the reference at a frame.
 #[derive(Clone, Copy)]
@@ -18,7 +17,6 @@ pub(super) enum Known<'a> {
 
 /// Gathers the scores of a part.
 pub(super) struct PartSeries {
-    kind: Kind,
     before: Option<Linear>,
     frames: Vec<FrameScore>,
     flicker: FlickerSeries,
@@ -29,9 +27,8 @@ pub(super) struct PartSeries {
 }
 
 impl PartSeries {
-    pub fn new(part: &str) -> PartSeries {
+    pub fn new() -> PartSeries {
         PartSeries {
-            kind: Kind::of_part(part),
             before: None,
             frames: Vec::new(),
             flicker: FlickerSeries::default(),
@@ -60,15 +57,16 @@ impl PartSeries {
             match known {
                 Known::Nothing { changed: true } => self.known = false,
                 Known::Nothing { changed: false } | Known::Reference { before: None, .. } => {
-                    frame.change = Some(change(self.kind, now, None));
+                    frame.change = Some(change(now, None));
                     frame.noise = reference.map(|_| 0.0);
                 }
                 Known::Reference { now: reference, before: Some(before) } => {
-                    frame.change = Some(change(self.kind, now, Some([&before.mean, &reference.mean])));
-                    frame.noise =
-                        before.halves.as_ref().zip(reference.halves.as_ref()).map(|(before, now)| {
-                            change(self.kind, [&before[0], &now[0]], Some([&before[1], &now[1]])).rms
-                        });
+                    frame.change = Some(change(now, Some([&before.mean, &reference.mean])));
+                    frame.noise = before
+                        .halves
+                        .as_ref()
+                        .zip(reference.halves.as_ref())
+                        .map(|(before, now)| change([&before[0], &now[0]], Some([&before[1], &now[1]])).rms);
                 }
             }
         }
@@ -80,7 +78,7 @@ impl PartSeries {
                 self.noise.add(even, Some(odd));
             }
             if last {
-                let compared = Compared::new(&x, &t.mean, self.kind).ok();
+                let compared = Compared::new(&x, &t.mean).ok();
                 self.result.scores = compared.and_then(|c| c.scores(None));
                 self.result.noise = number(t.noise.relmse);
                 self.result.structure_noise = number(t.noise.structure);

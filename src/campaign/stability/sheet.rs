@@ -4,7 +4,7 @@
 use super::record::{CaseRecord, Report, Worst, picture};
 use crate::campaign::table::short;
 use crate::lab::LabError;
-use crate::measure::comparison::within_noise;
+use crate::metrics::{RELMSE, within_noise};
 use egui::epaint::text::{FontDefinitions, Fonts, TextOptions};
 use egui::{Color32, FontId};
 use image::codecs::jpeg::JpegEncoder;
@@ -59,7 +59,7 @@ fn worst(report: &Report, method: &str, moving: bool) -> Option<Failure> {
         let part = r.part(&worst.part)?;
         let (metric, value, noise) = match moving {
             true => ("E_t", part.e?, part.e_noise),
-            false => ("relMSE", part.scores.as_ref()?.relmse, part.noise),
+            false => ("relMSE", part.scores.as_ref()?.get(RELMSE), part.noise),
         };
         let metric = format!("{metric} of {}", worst.part);
         let (case, id, method) = (r.about.title(), r.id.clone(), r.about.method.clone());

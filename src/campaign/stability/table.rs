@@ -5,32 +5,43 @@ use super::record::{CaseRecord, FrameScore, Measured, PartResult, Report};
 use crate::campaign::points::total_first;
 use crate::campaign::table::{Table, cell, mebibytes, number};
 use crate::lab::LabError;
+use crate::metrics::{Best, METRICS};
 
 /// A number of a part.
-pub(super) type Value = fn(&PartResult) -> Option<f64>;
+pub(super) type Value = Box<dyn Fn(&PartResult) -> Option<f64>>;
 
-/// Columns of every part: title in the table, title on the page if they are there, value.
-pub(super) const COLUMNS: [(&str, Option<&str>, Value); 19] = [
-    ("E_t", Some("E_t"), |p| p.e),
-    ("E_t noise", Some("noise"), |p| p.e_noise),
-    ("pops", Some("pops"), |p| p.pops),
-    ("peak jump /255", Some("jump"), |p| p.jump),
-    ("flicker mean", Some("flicker"), |p| p.flicker.map(|f| f.mean)),
-    ("flicker p99", Some("its p99"), |p| p.flicker.map(|f| f.p99)),
-    ("flicker noise", Some("its noise"), |p| p.flicker_noise),
-    ("convergence frames", Some("frames to 5 %"), |p| p.step.and_then(|s| s.frames).map(|f| f as f64)),
-    ("overshoot", Some("overshoot"), |p| p.step.map(|s| s.overshoot)),
-    ("settling frames", Some("settling frames"), |p| p.settling.map(|f| f as f64)),
-    ("relMSE", Some("relMSE"), |p| p.scores.as_ref().map(|s| s.relmse)),
-    ("relMSE noise", None, |p| p.noise),
-    ("structure", Some("structure"), |p| p.scores.as_ref().map(|s| s.structure)),
-    ("structure noise", None, |p| p.structure_noise),
-    ("energy ratio", Some("energy"), |p| p.scores.as_ref().map(|s| s.energy_ratio)),
-    ("leak", Some("leak"), |p| p.scores.as_ref().map(|s| s.leak)),
-    ("dark", None, |p| p.scores.as_ref().map(|s| s.dark)),
-    ("over-occlusion", None, |p| p.scores.as_ref().map(|s| s.over_occlusion)),
-    ("over-occluded", Some("over-occluded"), |p| p.scores.as_ref().map(|s| s.over_occluded)),
+/// A column of every part: title in the table, title on the page if it is there, value.
+pub(super) type Column = (String, Option<&'static str>, Value);
+
+type Of = fn(&PartResult) -> Option<f64>;
+
+/// What of changes is in every part's columns: titles in the table and on the page.
+const CHANGES: [(&str, &str, Of); 10] = [
+    ("E_t", "E_t", |p| p.e),
+    ("E_t noise", "noise", |p| p.e_noise),
+    ("pops", "pops", |p| p.pops),
+    ("peak jump /255", "jump", |p| p.jump),
+    ("flicker mean", "flicker", |p| p.flicker.map(|f| f.mean)),
+    ("flicker p99", "its p99", |p| p.flicker.map(|f| f.p99)),
+    ("flicker noise", "its noise", |p| p.flicker_noise),
+    ("convergence frames", "frames to 5 %", |p| p.step.and_then(|s| s.frames).map(|f| f as f64)),
+    ("overshoot", "overshoot", |p| p.step.map(|s| s.overshoot)),
+    ("settling frames", "settling frames", |p| p.settling.map(|f| f as f64)),
 ];
+
+/// The columns of every part: changes, then the scores of the last frame.
+pub(super) fn columns() -> Vec<Column> {
+    let mut list: Vec<Column> =
+        CHANGES.iter().map(|(title, page, v)| (String::from(*title), Some(*page), Box::new(*v) as _)).collect();
+    for metric in METRICS {
+        let page = (metric.best != Best::Nowhere).then_some(metric.title);
+        list.push((metric.title.into(), page, Box::new(|p| p.scores.as_ref().map(|s| s.get(metric.key)))));
+        if let Some(of) = &metric.noise {
+            list.push((format!("{} noise", metric.title), None, Box::new(|p| Some((of.of)(p.reference_noise())))));
+        }
+    }
+    list
+}
 
 /// All parts that results have.
 pub(super) fn parts(report: &Report) -> Vec<String> {
@@ -62,8 +73,8 @@ pub(super) fn rows(report: &Report) -> Result<String, LabError> {
     table.column("voxel recall", of(|m| number(m.voxels.as_ref().and_then(|v| v.recall))));
     table.column("voxel precision", of(|m| number(m.voxels.as_ref().and_then(|v| v.precision))));
     for part in &parts(report) {
-        for (title, _, value) in COLUMNS {
-            table.column(format!("{part} {title}"), |r| number(r.part(part).and_then(value)));
+        for (title, _, value) in columns() {
+            table.column(format!("{part} {title}"), |r| number(r.part(part).and_then(&value)));
             if title == "E_t noise" {
                 let told = |r: &CaseRecord| Some(if r.part(part)?.told_apart? { "yes" } else { "no" });
                 table.column(format!("{part} told apart"), |r| cell(told(r)));

@@ -14,4 +14,4 @@ pub use list::{check, list};
 pub use points::{MAX_POINTS, NOTHING, SCENE, SET, Sweep};
 pub use record::{About, Collected, Manifest, ManifestPoint, PointRecord, collect};
 pub use run::{Options, Shard, run};
-pub use table::{csv, numbers, parts_of};
+pub use table::{csv, parts_of};

@@ -2,7 +2,7 @@
 
 use super::axis::Choice;
 use crate::campaign::points::Labels;
-use crate::campaign::settings::{Setting, apply, lines};
+use crate::campaign::settings::{Axis, Setting, apply, lines};
 use crate::diagnostics::Diagnostic;
 use crate::experiment::Experiment;
 use crate::lab::LabError;
@@ -48,11 +48,7 @@ impl Sweep {
     ///
     /// # Errors
     /// A setting without values; more than [`MAX_POINTS`] combinations.
-    pub fn of(
-        mut experiments: Vec<Experiment>,
-        axes: &[(String, Vec<String>)],
-        frames: Frames,
-    ) -> Result<Sweep, LabError> {
+    pub fn of(mut experiments: Vec<Experiment>, axes: &[Axis], frames: Frames) -> Result<Sweep, LabError> {
         if let Some((name, _)) = axes.iter().find(|a| a.1.is_empty()) {
             return Err(LabError::Request(format!("'{name}' has no values")));
         }
@@ -63,7 +59,7 @@ impl Sweep {
             experiment.sources.add("--axis".as_ref(), text.clone());
         }
         let choice = |s: &Setting, value: &String| Choice::of(vec![Setting { text: value.clone(), ..s.clone() }]);
-        let axis = |(s, a): (&Setting, &(String, Vec<String>))| a.1.iter().map(|v| choice(s, v)).collect();
+        let axis = |(s, a): (&Setting, &Axis)| a.1.iter().map(|v| choice(s, v)).collect();
         let list: Vec<Vec<Choice>> = settings.iter().zip(axes).map(axis).collect();
         let points = list.iter().fold(experiments.len(), |n, l| n.saturating_mul(l.len()));
         if points > MAX_POINTS {

@@ -4,22 +4,13 @@ use super::record::{Collected, ManifestPoint, PointRecord};
 use crate::campaign::table::{Table, cell};
 use crate::lab::LabError;
 use crate::measure::Point;
-use crate::metrics::Scores;
 use crate::results::stats::Stats;
 use indexmap::IndexSet;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Scores of a point, by part and metric.
 pub fn parts_of(point: &Point) -> BTreeMap<String, BTreeMap<String, f64>> {
-    point.scores.iter().map(|(part, scores)| (part.clone(), numbers(scores))).collect()
-}
-
-/// Scores by metric, without those that are no number.
-pub fn numbers(scores: &Scores) -> BTreeMap<String, f64> {
-    match serde_json::to_value(scores) {
-        Ok(serde_json::Value::Object(map)) => map.into_iter().filter_map(|(k, v)| Some((k, v.as_f64()?))).collect(),
-        _ => BTreeMap::new(),
-    }
+    point.scores.iter().map(|(part, scores)| (part.clone(), scores.numbers())).collect()
 }
 
 /// A line of the table.

@@ -58,12 +58,9 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
         for (name, value) in &step.set.0 {
             set.set(&name.value, &value.value.0);
         }
-        let wanted = names.iter().map(|n| n.1.clone()).collect();
+        let wanted = names.iter().map(|n| n.texture.clone()).collect();
         let mut session = lab.build(&set, &loaded, scene.clone(), wanted, None)?;
-        for _ in 0..args.frames.unwrap_or(session.settling_frames()) {
-            session.frame(0.0)?;
-        }
-        session.finish()?;
+        session.run(args.frames.unwrap_or(session.settling_frames()))?;
         let parts = session.parts()?;
         if let Some(folder) = &args.pictures {
             for (part, light) in &parts {

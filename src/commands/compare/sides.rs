@@ -2,7 +2,7 @@
 
 use super::super::{DeviceArgs, open_scene, shown, validated};
 use crate::commands::adapt::Changes;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, FIELDS};
 use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::measure::comparison::Side;
 use crate::measure::reference;
@@ -34,14 +34,14 @@ impl<'a> Sources<'a> {
         let name = shown(path).display().to_string();
         if path.is_dir() {
             let parts = capture::parts(path, &Manifest::read(path)?)?;
-            return Ok(Side { name, kind: Default::default(), parts, noise: BTreeMap::new() });
+            return Ok(Side { name, parts, noise: BTreeMap::new() });
         }
         if path.extension().is_some_and(|e| e == "ron") {
             let parts = self.render(path, set)?;
-            return Ok(Side { name, kind: Default::default(), parts, noise: BTreeMap::new() });
+            return Ok(Side { name, parts, noise: BTreeMap::new() });
         }
-        let (linear, kind) = picture::read_linear(path)?;
-        Ok(Side { name, kind, parts: BTreeMap::from([("total".into(), linear)]), noise: BTreeMap::new() })
+        let parts = BTreeMap::from([("total".into(), picture::read_linear(path)?)]);
+        Ok(Side { name, parts, noise: BTreeMap::new() })
     }
 
     /// The cached reference of the first experiment, if there are both.
@@ -56,7 +56,6 @@ impl<'a> Sources<'a> {
         let found = reference::find(&Workspace::find()?, experiment, scene, bounces)?;
         Ok(found.map(|r| Side {
             name: format!("path traced, {} samples a pixel, bounces {bounces}", r.samples),
-            kind: Default::default(),
             noise: r.parts.iter().map(|(part, p)| (part.clone(), p.noise)).collect(),
             parts: r.parts.into_iter().map(|(part, p)| (part, p.mean)).collect(),
         }))
@@ -91,15 +90,12 @@ impl<'a> Sources<'a> {
                     format!("graph '{}' has neither `parts` nor `hdr`: there is nothing to compare", graph.name);
                 return Err(LabError::Request(message));
             }
-            Ok(parts.into_iter().map(|p| p.1).collect())
+            Ok(parts.into_iter().map(|p| p.texture).collect())
         })?;
         for warning in warnings {
             eprintln!("{warning}");
         }
-        for _ in 0..self.frames.unwrap_or(session.settling_frames()) {
-            session.frame(0.0)?;
-        }
-        session.finish()?;
+        session.run(self.frames.unwrap_or(session.settling_frames()))?;
         for message in session.failed_checks()? {
             eprintln!("warning: {}: {message}", path.display());
         }
@@ -111,8 +107,6 @@ impl<'a> Sources<'a> {
 /// Whether two experiments look at the same: only then can one reference be for both.
 fn same_view(a: &Experiment, b: &Experiment) -> bool {
     let lights = |e: &Experiment| e.lights.iter().map(|(name, l)| (name.value.clone(), *l)).collect::<Vec<_>>();
-    let picture = |e: &Experiment| e.environment.as_ref().map(|e| e.value.clone());
-    (&a.scene, &a.camera, a.time, a.sky) == (&b.scene, &b.camera, b.time, b.sky)
-        && lights(a) == lights(b)
-        && picture(a) == picture(b)
+    let mut seen = FIELDS.iter().filter(|f| !["graph", "size"].contains(&f.name));
+    seen.all(|f| (f.same)(a, b)) && lights(a) == lights(b)
 }

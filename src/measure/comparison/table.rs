@@ -1,26 +1,13 @@
 //! A comparison as text.
 
 use super::{Comparison, PartComparison, RegionComparison};
-use crate::metrics::Scores;
+use crate::metrics::{METRICS, Metric};
 use std::fmt::Write as _;
 
 /// Width of a column.
 const WIDTH: usize = 11;
 /// Width of the columns before them: region and picture.
 const TITLE: usize = 30;
-/// Heads of the columns, and the metrics whose verdict stands below them.
-const COLUMNS: [(&str, &str); 10] = [
-    ("relMSE", "relmse"),
-    ("RMSE", "rmse"),
-    ("energy", "energy_ratio"),
-    ("SMAPE", "smape"),
-    ("FLIP", "flip"),
-    ("HDR-FLIP", "hdr_flip"),
-    ("structure", "structure"),
-    ("leak", "leak"),
-    ("over-occl.", "over_occlusion"),
-    ("of pixels", "over_occluded"),
-];
 const LETTERS: [&str; 2] = ["A", "B"];
 
 /// The comparison as a table: a block for each part, a row for each region and picture.
@@ -41,7 +28,7 @@ pub fn table(comparison: &Comparison) -> String {
 
 fn block(out: &mut String, part: &PartComparison, pictures: &[String]) {
     let _ = write!(out, "\n{:TITLE$}", part.part);
-    for (head, _) in COLUMNS {
+    for (_, head) in columns() {
         let _ = write!(out, "{head:>WIDTH$}");
     }
     out.push('\n');
@@ -73,8 +60,8 @@ fn rows(out: &mut String, region: &RegionComparison) {
     for (letter, scores) in LETTERS.iter().zip(&region.scores) {
         let _ = write!(out, "  {title:<26}{letter} ");
         match scores {
-            Some(s) => values(s).iter().for_each(|v| {
-                let _ = write!(out, "{:>WIDTH$}", short(*v));
+            Some(s) => columns().for_each(|(metric, _)| {
+                let _ = write!(out, "{:>WIDTH$}", short(s.get(metric.key)));
             }),
             None => out.push_str(" no pixel is a finite number"),
         }
@@ -83,27 +70,17 @@ fn rows(out: &mut String, region: &RegionComparison) {
     }
     if !region.better.is_empty() {
         let _ = write!(out, "{:<TITLE$}", "    better");
-        for (_, metric) in COLUMNS {
-            let verdict = region.better.get(metric).map(ToString::to_string).unwrap_or_default();
+        for (metric, _) in columns() {
+            let verdict = region.better.get(metric.key).map(ToString::to_string).unwrap_or_default();
             let _ = write!(out, "{verdict:>WIDTH$}");
         }
         out.push('\n');
     }
 }
 
-fn values(s: &Scores) -> [f64; 10] {
-    [
-        s.relmse,
-        s.rmse,
-        s.energy_ratio,
-        s.smape,
-        s.flip,
-        s.hdr_flip,
-        s.structure,
-        s.leak,
-        s.over_occlusion,
-        s.over_occluded,
-    ]
+/// The metrics that have a column, and its head.
+fn columns() -> impl Iterator<Item = (&'static Metric, &'static str)> {
+    METRICS.iter().filter_map(|m| Some((m, m.head?)))
 }
 
 /// A number to four digits; `-` where there is none.

@@ -3,6 +3,7 @@
 use super::store::{self, Sums};
 use super::{Reference, key};
 use crate::experiment::Experiment;
+use crate::graph::load::LightPart;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::scene::Scene;
 use std::ops::ControlFlow;
@@ -50,8 +51,7 @@ pub fn gather(
     goal: Goal,
     progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
 ) -> Result<Reference, LabError> {
-    let (sums, folder) = Tracer::default().sums(lab, experiment, scene, bounces, goal, progress)?;
-    sums.reference(&folder, false)
+    Tracer::default().sums(lab, experiment, scene, bounces, goal, progress)?.reference(false)
 }
 
 /// Gathers one reference after another, each on what the one before it left: the compiled graph, its pipelines, and the
@@ -60,6 +60,19 @@ pub fn gather(
 pub struct Tracer {
     loaded: Option<Loaded>,
     shared: Option<ReusableParts>,
+}
+
+/// Sums that were gathered.
+struct Traced {
+    sums: Sums,
+    folder: PathBuf,
+    loaded: Loaded,
+}
+
+impl Traced {
+    fn reference(&self, halves: bool) -> Result<Reference, LabError> {
+        self.sums.reference(&self.loaded.graph, &self.folder, halves)
+    }
 }
 
 impl Tracer {
@@ -76,8 +89,7 @@ impl Tracer {
         goal: Goal,
         progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
     ) -> Result<Reference, LabError> {
-        let (sums, folder) = self.sums(lab, experiment, scene, bounces, goal, progress)?;
-        sums.reference(&folder, true)
+        self.sums(lab, experiment, scene, bounces, goal, progress)?.reference(true)
     }
 
     fn sums(
@@ -88,7 +100,7 @@ impl Tracer {
         bounces: u32,
         goal: Goal,
         progress: &mut dyn FnMut(Gathered) -> ControlFlow<()>,
-    ) -> Result<(Sums, PathBuf), LabError> {
+    ) -> Result<Traced, LabError> {
         let loaded = match &self.loaded {
             Some(loaded) => loaded.clone(),
             None => lab.home.load(key::GRAPH).map_err(LabError::Input)?,
@@ -96,22 +108,21 @@ impl Tracer {
         self.loaded = Some(loaded.clone());
         let mut traced = key::traced_by(&loaded, experiment, bounces)?;
         let folder = lab.home.root.join("captures/reference").join(key::key(&traced, &loaded, scene)?);
-        let parts: Vec<String> = loaded.graph.parts.iter().map(|p| p.0.clone()).collect();
         let mut sums = match store::read(&folder, traced.size, &loaded.graph)? {
             Some(sums) => sums,
-            None => Sums::new(traced.size, &parts),
+            None => Sums::new(traced.size, &loaded.graph.parts),
         };
         let mut now = state(&sums, goal)?;
         if now.samples >= now.goal {
-            return Ok((sums, folder));
+            return Ok(Traced { sums, folder, loaded });
         }
         let per_frame = samples_per_frame(lab.gpu.info.kind, traced.size);
         traced.set("samples", &per_frame.to_string());
-        let wanted = parts.iter().map(|p| store::sum_texture(p)).collect();
+        let wanted = loaded.graph.parts.iter().map(|p| store::sum_texture(&p.name)).collect();
         let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, self.shared.as_ref())?;
         let mut kept = Instant::now();
         while now.samples < now.goal {
-            frame(lab, &mut session, &mut sums, &parts, per_frame)?;
+            frame(lab, &mut session, &mut sums, per_frame)?;
             now = state(&sums, goal)?;
             let stop = progress(now).is_break();
             // Whole blocks only: then the sums do not depend on where a run was stopped.
@@ -125,7 +136,7 @@ impl Tracer {
             }
         }
         self.shared = Some(session.share());
-        Ok((sums, folder))
+        Ok(Traced { sums, folder, loaded })
     }
 }
 
@@ -159,21 +170,20 @@ fn samples_per_frame(kind: &str, (width, height): (u32, u32)) -> u64 {
     1 << most.ilog2()
 }
 
-fn frame(lab: &Lab, session: &mut Session, sums: &mut Sums, parts: &[String], samples: u64) -> Result<(), LabError> {
+fn frame(lab: &Lab, session: &mut Session, sums: &mut Sums, samples: u64) -> Result<(), LabError> {
     let mut params = session.params.clone();
     params.set("first_sample", &sums.samples.to_string()).map_err(LabError::Request)?;
     if !session.set_params(lab, &params)? {
         return Err(LabError::Request("'first_sample' of the reference graph must not change what is planned".into()));
     }
-    session.frame(0.0)?;
-    session.finish()?;
+    session.run(1)?;
     if let Some(message) = session.failed_checks()?.into_iter().next() {
         return Err(LabError::Request(message));
     }
-    for part in parts {
+    for LightPart { name, .. } in session.graph.parts.clone() {
         for half in 0..2 {
-            let texels = session.texels(&store::sum_texture(part), 0, half)?;
-            sums.add(part, half as usize, &texels.floats());
+            let texels = session.texels(&store::sum_texture(&name), 0, half)?;
+            sums.add(&name, half as usize, &texels.floats());
         }
     }
     sums.samples += samples;

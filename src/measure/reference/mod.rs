@@ -10,7 +10,7 @@ pub use key::{GRAPH, experiment_for};
 
 use crate::experiment::Experiment;
 use crate::lab::{LabError, Workspace};
-use crate::metrics::Linear;
+use crate::metrics::{Linear, Noise};
 use crate::scene::Scene;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ pub struct Reference {
     pub size: (u32, u32),
     /// Samples of every pixel.
     pub samples: u64,
-    /// Parts of the graph by name: total, direct, diffuse, specular, occlusion.
+    /// Parts of the graph by name.
     pub parts: BTreeMap<String, ReferencePart>,
     /// Folder of the reference.
     pub folder: PathBuf,
@@ -49,15 +49,6 @@ pub struct ReferencePart {
     pub noise: Noise,
     /// Means of the even and of the odd samples, where [`Tracer::gather`] made it: they take twice the memory again.
     pub halves: Option<[Linear; 2]>,
-}
-
-/// Noise floor of a part of a reference, from the means of its even and of its odd samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Noise {
-    /// relMSE of one mean against the other. The mean of all samples is four times better.
-    pub relmse: f64,
-    /// Structure error of the mean of all samples ([`crate::metrics::structure_noise`]), natural log units.
-    pub structure: f64,
 }
 
 /// A number of the shaders that references are made with, 64 hexadecimal digits.
@@ -84,7 +75,7 @@ pub fn find(
     let key = key::key(&traced, &loaded, scene)?;
     let folder = home.root.join("captures/reference").join(&key);
     match store::read(&folder, traced.size, &loaded.graph)? {
-        Some(sums) => Ok(Some(sums.reference(&folder, false)?)),
+        Some(sums) => Ok(Some(sums.reference(&loaded.graph, &folder, false)?)),
         None => Ok(None),
     }
 }

@@ -1,12 +1,12 @@
 //! Sums of samples, and their files: `sums-N.exr` with a layer for each part and half, and `reference.json`, which
 //! names the one that counts.
 
-use super::{Noise, Reference, ReferencePart};
+use super::{Reference, ReferencePart};
 use crate::experiment::Experiment;
 use crate::files::{check_input, hex, read_input};
-use crate::graph::load::Graph;
+use crate::graph::load::{Graph, LightPart};
 use crate::lab::LabError;
-use crate::metrics::{Linear, MetricError, relmse, structure_noise};
+use crate::metrics::{Kind, Linear, MetricError, Noise, relmse, structure_noise};
 use crate::vulkan::DeviceInfo;
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, ReadChannels, ReadLayers,
@@ -63,9 +63,9 @@ pub struct Sums {
 
 impl Sums {
     /// Without samples.
-    pub fn new(size: (u32, u32), parts: &[String]) -> Sums {
+    pub fn new(size: (u32, u32), parts: &[LightPart]) -> Sums {
         let pixels = size.0 as usize * size.1 as usize;
-        let empty = |p: &String| (p.clone(), [vec![[0.0; 4]; pixels], vec![[0.0; 4]; pixels]]);
+        let empty = |p: &LightPart| (p.name.clone(), [vec![[0.0; 4]; pixels], vec![[0.0; 4]; pixels]]);
         Sums { size, samples: 0, parts: parts.iter().map(empty).collect() }
     }
 
@@ -81,35 +81,35 @@ impl Sums {
     }
 
     /// Means of a part, over some halves.
-    fn mean(&self, part: &str, halves: &[usize]) -> Linear {
+    fn mean(&self, part: &str, kind: Kind, halves: &[usize]) -> Linear {
         let pixels = self.size.0 as usize * self.size.1 as usize;
         let mut sum = vec![[0f64; 4]; pixels];
         for half in self.parts.get(part).into_iter().flat_map(|p| halves.iter().map(|h| &p[*h])) {
             sum.par_iter_mut().zip(half).for_each(|(s, h)| (0..4).for_each(|i| s[i] += f64::from(h[i])));
         }
         let rgb = sum.par_iter().map(|s| [0, 1, 2].map(|i| (s[i] / s[3].max(1.0)) as f32)).collect();
-        Linear { size: self.size, rgb }
+        Linear { size: self.size, rgb, kind }
     }
 
     /// relMSE of the even samples' mean against the odd ones'.
     pub fn noise(&self, part: &str) -> Result<f64, LabError> {
-        let (even, odd) = (self.mean(part, &[0]), self.mean(part, &[1]));
+        let [even, odd] = [0, 1].map(|half| self.mean(part, Kind::Radiance, &[half]));
         relmse(&even, &odd).map_err(|e| wrong(part, &e))
     }
 
     /// Means and noise of all parts; `halves`: also the means of the even and of the odd samples.
-    pub fn reference(&self, folder: &Path, halves: bool) -> Result<Reference, LabError> {
-        let part = |name: &String| {
-            let (even, odd) = (self.mean(name, &[0]), self.mean(name, &[1]));
+    pub fn reference(&self, graph: &Graph, folder: &Path, halves: bool) -> Result<Reference, LabError> {
+        let part = |LightPart { name, kind, .. }: &LightPart| {
+            let [even, odd] = [0, 1].map(|half| self.mean(name, *kind, &[half]));
             let failed = |e: MetricError| wrong(name, &e);
             let noise = Noise {
                 relmse: relmse(&even, &odd).map_err(failed)?,
                 structure: structure_noise(&even, &odd).map_err(failed)?,
             };
             let halves = halves.then_some([even, odd]);
-            Ok((name.clone(), ReferencePart { mean: self.mean(name, &[0, 1]), noise, halves }))
+            Ok((name.clone(), ReferencePart { mean: self.mean(name, *kind, &[0, 1]), noise, halves }))
         };
-        let parts = self.parts.keys().map(part).collect::<Result<_, LabError>>()?;
+        let parts = graph.parts.iter().map(part).collect::<Result<_, LabError>>()?;
         Ok(Reference { size: self.size, samples: self.samples, parts, folder: folder.to_path_buf() })
     }
 }
@@ -212,8 +212,7 @@ pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Opt
         .all_attributes()
         .from_buffered(Cursor::new(&bytes))
         .map_err(|e| wrong(&e.to_string()))?;
-    let names: Vec<String> = graph.parts.iter().map(|p| p.0.clone()).collect();
-    let mut sums = Sums::new(size, &names);
+    let mut sums = Sums::new(size, &graph.parts);
     sums.samples = record.samples;
     for (part, halves) in &mut sums.parts {
         for (half, texels) in halves.iter_mut().enumerate() {

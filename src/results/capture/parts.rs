@@ -1,7 +1,7 @@
 //! The parts of the light that a capture holds.
 
 use super::{Manifest, SOURCES, failed};
-use crate::graph::load::{Folders, load};
+use crate::graph::load::{Folders, LightPart, load};
 use crate::lab::{LabError, parts_of};
 use crate::metrics::Linear;
 use crate::results::picture;
@@ -20,13 +20,13 @@ pub fn parts(folder: &Path, manifest: &Manifest) -> Result<BTreeMap<String, Line
     let folders = Folders { passes: sources.join("passes"), shaders: sources.join("shaders") };
     let graph = load(&folders.passes.join(&manifest.graph), &folders).map_err(LabError::Input)?;
     let mut parts = BTreeMap::new();
-    for (part, texture) in parts_of(&graph) {
+    for LightPart { name, texture, kind, .. } in parts_of(&graph) {
         let image = manifest
             .images
             .iter()
             .find(|i| i.texture == texture && (i.mip, i.layer) == (0, 0) && i.file.ends_with(".exr"));
         if let Some(image) = image {
-            parts.insert(part, picture::read_linear(&folder.join(&image.file))?.0);
+            parts.insert(name, Linear { kind, ..picture::read_linear(&folder.join(&image.file))? });
         }
     }
     if parts.is_empty() {

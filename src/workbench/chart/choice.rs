@@ -3,12 +3,9 @@
 use super::folder::Folder;
 use crate::campaign::report::{Data, Scored, pareto};
 use crate::measure::reference::ALL_BOUNCES;
+use crate::metrics::{METRICS, Metric};
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// Metrics that are offered, by their fields' names.
-pub const METRICS: [&str; 9] =
-    ["relmse", "hdr_flip", "flip", "structure", "rmse", "smape", "energy_ratio", "leak", "over_occluded"];
 
 /// A subject, part and metric.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,13 +14,13 @@ pub struct Choice {
     pub subject: usize,
     /// Part of the light; `PART, N bounces` for a further reference of a sweep.
     pub part: String,
-    /// Field of [`crate::metrics::Scores`].
-    pub metric: &'static str,
+    /// Metric.
+    pub metric: &'static Metric,
 }
 
 impl Default for Choice {
     fn default() -> Choice {
-        Choice { subject: 0, part: "total".into(), metric: METRICS[0] }
+        Choice { subject: 0, part: "total".into(), metric: &METRICS[0] }
     }
 }
 

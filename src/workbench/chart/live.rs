@@ -130,7 +130,7 @@ impl super::Chart {
     pub fn known_error(&self, side: usize, sent: u64) -> Option<(&str, f64)> {
         let measured = self.live.sides[side].error.as_ref().filter(|e| e.request >= sent)?;
         let error = measured.result.as_ref().ok()?.error?.error;
-        Some((measured.query.metric.as_str(), error))
+        Some((measured.query.metric.key, error))
     }
 
     /// The device is another one: what it was asked is asked again.
@@ -150,7 +150,7 @@ impl Workbench {
     /// The error that is to be asked for of A and B.
     fn query(&self) -> ErrorQuery {
         let (part, bounces) = self.chart.choice.part_and_bounces(self.chart.data().map(|d| &**d));
-        let metric = self.chart.choice.metric.to_string();
+        let metric = self.chart.choice.metric;
         ErrorQuery { part, metric, bounces, gathered: self.chart.live.gathered }
     }
 
@@ -201,7 +201,7 @@ impl Workbench {
         let ms = spread(side.times.clone()).median;
         let measured = result.result.as_ref().ok();
         let event = json!({ "side": result.side, "request": result.request, "part": result.query.part,
-            "metric": result.query.metric, "bounces": result.query.bounces, "gpu_ms": ms,
+            "metric": result.query.metric.key, "bounces": result.query.bounces, "gpu_ms": ms,
             "error": measured.and_then(|v| v.error).map(|e| e.error),
             "samples": measured.and_then(|v| v.error).map(|e| e.samples),
             "why": result.result.as_ref().err() });
@@ -249,6 +249,7 @@ impl Workbench {
 mod tests {
     use super::super::super::error_worker::{PictureError, ReferenceError};
     use super::*;
+    use crate::metrics::{METRICS, Noise};
 
     #[test]
     fn errors_against_another_reference_are_told() {
@@ -259,8 +260,8 @@ mod tests {
             size: (96, 72),
             time: String::new(),
         };
-        let error = Some(ReferenceError { error: 0.1, noise: 0.0, samples: 256 });
-        let query = ErrorQuery { bounces: 2, ..ErrorQuery::default() };
+        let error = Some(ReferenceError { error: 0.1, noise: Noise { relmse: 0.0, structure: 0.0 }, samples: 256 });
+        let query = ErrorQuery { part: "total".into(), metric: &METRICS[0], bounces: 2, gathered: 0 };
         let mut state = State::default();
         assert_eq!(state.reference_differs(&[(2, 32)]), None, "nothing is measured yet");
         let result = Ok(PictureError { subject, error });

@@ -10,10 +10,12 @@ mod thumbnail;
 
 use super::control::named;
 use super::{Tab, Workbench};
-use crate::campaign::report::{Data, Dot, axis_title};
+use crate::campaign::report::{Data, Dot};
 use crate::experiment::Experiment;
 use crate::graph::param::Params;
-use choice::{Choice, Chosen, METRICS};
+use crate::lab::parts_of;
+use crate::metrics::Metric;
+use choice::{Choice, Chosen};
 use egui::Ui;
 use folder::Folder;
 use serde_json::{Value, json};
@@ -62,7 +64,7 @@ impl Workbench {
         };
         let swept = data.as_ref().and_then(|d| d.samples.get(self.chart.choice.subject));
         differences.extend(swept.and_then(|swept| self.chart.live.reference_differs(swept)));
-        let title = axis_title(self.chart.choice.metric);
+        let title = self.chart.choice.metric.axis();
         let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent_number));
         let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
         let shown = plot::Shown {
@@ -138,19 +140,19 @@ impl Workbench {
             let fits = |key: &_| folder::differences(now, device, key).is_empty();
             self.chart.choice.subject = data.keys.iter().position(fits).unwrap_or(self.chart.choice.subject);
         }
+        let graph = self.sides[0].info.as_ref().map(|info| &info.graph);
+        let own = graph.map_or(Vec::new(), |graph| parts_of(graph).into_iter().map(|p| p.name).collect());
         let choice = &mut self.chart.choice;
         ui.horizontal_wrapped(|ui| {
             egui::ComboBox::from_id_salt("part").selected_text(format!("part: {}", choice.part)).show_ui(ui, |ui| {
-                let own = ["total", "direct", "diffuse", "specular", "occlusion"].map(String::from);
-                let parts = data.map(|d| d.parts.as_slice()).filter(|p| !p.is_empty()).unwrap_or(&own);
-                for part in parts {
+                for part in data.map(|d| &d.parts).filter(|p| !p.is_empty()).unwrap_or(&own) {
                     ui.selectable_value(&mut choice.part, part.clone(), part);
                 }
             });
-            let title = axis_title(choice.metric);
+            let title = choice.metric.axis();
             egui::ComboBox::from_id_salt("metric").selected_text(format!("error: {title}")).show_ui(ui, |ui| {
-                for metric in METRICS {
-                    ui.selectable_value(&mut choice.metric, metric, axis_title(metric));
+                for metric in Metric::ranking() {
+                    ui.selectable_value(&mut choice.metric, metric, metric.axis());
                 }
             });
         });
@@ -197,7 +199,7 @@ impl Workbench {
             json!({ "id": data.dots[s.index].id, "at": [at.x.round(), at.y.round()], "ms": s.ms, "error": s.error,
                 "front": front })
         });
-        let logged = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric, "differs": differences,
+        let logged = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric.key, "differs": differences,
             "dots": dots.collect::<Vec<_>>() });
         if logged == self.chart.logged {
             return;

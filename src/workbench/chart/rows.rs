@@ -3,7 +3,6 @@
 use super::super::Workbench;
 use super::super::control::spin;
 use super::plot::{LIVE, Live};
-use crate::measure::comparison::within_noise;
 use egui::{Button, DragValue, ProgressBar, Ui};
 
 impl Workbench {
@@ -22,7 +21,7 @@ impl Workbench {
                 Some((query, Ok(measured))) => match (&measured.error, live) {
                     (Some(error), Some(live)) => {
                         let old = if live.fresh { "" } else { " (of the picture before)" };
-                        let noisy = query.metric == "relmse" && within_noise(error.error, Some(error.noise));
+                        let noisy = query.metric.within(error.error, error.noise);
                         let noisy = if noisy { ", within the reference's noise" } else { "" };
                         let text = format!("{name}: {:.3} ms, {title} {:.4e}{noisy}{old}", live.ms, error.error);
                         ui.colored_label(LIVE[side], text).on_hover_text(format!(
@@ -31,7 +30,7 @@ impl Workbench {
                             state.times.len(),
                             bounces(query.bounces),
                             error.samples,
-                            error.noise
+                            error.noise.relmse
                         ));
                     }
                     (Some(_), None) => drop(ui.weak(format!("{name}: the metric is not defined here"))),
