@@ -1,8 +1,7 @@
 //! What a point sets: parameters of the graph, and fields of the experiment.
 
-use crate::diagnostics::{At, Diagnostic, Entries, Loc, options};
+use crate::diagnostics::{At, Diagnostic, Entries, Loc, RawText, options};
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, check_size, in_folder, scene_path};
-use crate::graph::file::RawText;
 use crate::lab::LabError;
 use serde::de::DeserializeOwned;
 use std::path::Path;

@@ -1,11 +1,11 @@
 //! What can be told of a graph without its shaders: names, values, expressions, sizes and formats.
 
 use super::expr::Expr;
-use super::file::{CheckDecl, Ex, RawText, VoxelsDecl};
+use super::file::{CheckDecl, Ex, VoxelsDecl};
 use super::load::{BUILTIN_VARIABLES, Folders, Graph, is_identifier};
 use super::param::Kind;
 use super::table::TableDecl;
-use crate::diagnostics::{At, Diagnostic, Loc};
+use crate::diagnostics::{At, Diagnostic, Loc, RawText};
 use crate::vulkan::Format;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;

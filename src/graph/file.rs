@@ -3,7 +3,7 @@
 use super::expr::Expr;
 use super::param::Decl;
 use super::table::TableDecl;
-use crate::diagnostics::{Entries, Items, Loc, TwoOrThree, nested, offset_in_file};
+use crate::diagnostics::{Entries, Items, Loc, RawText, TwoOrThree, nested, offset_in_file};
 use serde::Deserialize;
 
 /// A graph file.
@@ -748,15 +748,4 @@ pub struct VoxelsDecl {
     /// Ways of making them that are worth comparing.
     #[serde(default)]
     pub modes: Items<ViewDecl>,
-}
-
-/// A RON value kept as text, to be read by the parameter it is for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RawText(pub String);
-
-impl<'de> Deserialize<'de> for RawText {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
-        Ok(RawText(raw.trim().get_ron().to_string()))
-    }
 }

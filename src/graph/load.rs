@@ -3,14 +3,14 @@
 use super::alias::Alias;
 use super::check::Check;
 use super::file::{
-    BufferDecl, CheckDecl, CompareDecl, GraphFile, PassDecl, RawText, RefuseDecl, SceneNeeds, TextureDecl, ViewDecl,
-    VoxelsDecl, ungrouped,
+    BufferDecl, CheckDecl, CompareDecl, GraphFile, PassDecl, RefuseDecl, SceneNeeds, TextureDecl, ViewDecl, VoxelsDecl,
+    ungrouped,
 };
 use super::param::{OFF, Param, Params};
 use super::table::TableDecl;
 use super::value::{Named, ordered};
 use crate::diagnostics::excerpt::chain;
-use crate::diagnostics::{At, Diagnostic, Loc, Place, Severity, Sources};
+use crate::diagnostics::{At, Diagnostic, Loc, Place, RawText, Severity, Sources};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 

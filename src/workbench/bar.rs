@@ -2,9 +2,8 @@
 
 use super::engine::Order;
 use super::{Workbench, edit, ron_files, short, side_of};
-use crate::diagnostics::Entries;
+use crate::diagnostics::{Entries, RawText};
 use crate::experiment::Experiment;
-use crate::graph::file::RawText;
 use crate::timers::Rows;
 use egui::Ui;
 
