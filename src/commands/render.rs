@@ -3,7 +3,7 @@
 use super::adapt::{self, ExperimentArgs, parse_resource};
 use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
-use crate::graph::load::Graph;
+use crate::graph::Graph;
 use crate::graph::param::Value;
 use crate::graph::run::{FrameTimes, Redo};
 use crate::lab::{Lab, LabError, Session, Texels, Workspace};

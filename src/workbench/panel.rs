@@ -4,8 +4,8 @@ use super::control::{CHANGED, control};
 use super::edit;
 use super::effects::Found;
 use super::request::SideRequest;
+use crate::graph::Graph;
 use crate::graph::effect::Reason;
-use crate::graph::load::Graph;
 use crate::graph::param::Param;
 use egui::{RichText, Ui};
 

@@ -5,7 +5,7 @@ use super::engine::Engine;
 use super::report::{PictureReport, Report};
 use super::{COMPARISON, NewPixels, Workbench, events, save};
 use crate::experiment::{CameraChoice, Experiment};
-use crate::graph::hot_reload::Change;
+use crate::graph::run::Change;
 use crate::lab::{Viewpoint, viewpoint_of};
 use crate::scene::Scene;
 use serde_json::json;

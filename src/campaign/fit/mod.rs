@@ -8,7 +8,7 @@ pub use evaluate::{Evaluator, Goal, Metric, Subject};
 pub use search::{Found, Limits, Step, Stop, Trial, search};
 
 use crate::experiment::Experiment;
-use crate::graph::load::Graph;
+use crate::graph::Graph;
 use crate::graph::param::Params;
 use crate::lab::LabError;
 

@@ -1,8 +1,8 @@
 //! The voxels of a session, as its graph declares them.
 
 use super::grid::Grid;
+use crate::graph::Graph;
 use crate::graph::file::VoxelsDecl;
-use crate::graph::load::Graph;
 use crate::lab::{LabError, Session, Texels};
 use glam::Vec3;
 

@@ -4,7 +4,7 @@
 use super::{Noise, Reference, ReferencePart};
 use crate::experiment::Experiment;
 use crate::files::{check_input, hex, read_input};
-use crate::graph::load::Graph;
+use crate::graph::Graph;
 use crate::lab::LabError;
 use crate::metrics::{Linear, MetricError, relmse, structure_noise};
 use crate::vulkan::DeviceInfo;

@@ -6,9 +6,10 @@ use super::{
     scene_hash,
 };
 use crate::experiment::{Experiment, checked_name, resolved_text};
+use crate::graph::Graph;
 use crate::graph::link::Linked;
-use crate::graph::load::{Folders, Graph};
-use crate::graph::runs::generated;
+use crate::graph::link::generated;
+use crate::graph::load::Folders;
 use crate::lab::{Lab, LabError, camera_of, no_texture};
 use crate::results::picture;
 use crate::scene::Scene;
