@@ -124,7 +124,7 @@ pub struct AliasCase {
 }
 
 /// A resource of the graph, by its number among the textures or buffers; `true` is last frame's copy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Res {
     /// A texture.
     Texture(usize, bool),

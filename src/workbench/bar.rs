@@ -67,7 +67,7 @@ impl Workbench {
                 let make = |values: &Entries<RawText>| {
                     let mut side = base.clone();
                     for (name, text) in &values.0 {
-                        if let Some(param) = info.graph.params.list.iter().find(|p| p.name == name.value)
+                        if let Some(param) = info.graph.params.param(&name.value)
                             && let Ok(value) = param.parse(&text.value.0)
                         {
                             edit::set(&mut side, param, &value);

@@ -47,7 +47,7 @@ pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
 /// The place on the axes nearest to an experiment's own values; the first of an axis where there is no nearest.
 pub fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
     let place = |axis: &Axis| {
-        let own = params.index(&axis.name).map(|i| &params.values[i])?;
+        let own = params.get(&axis.name)?;
         let distance = |text: &String| {
             let mut tried = params.clone();
             tried.set(&axis.name, text).ok()?;

@@ -4,6 +4,7 @@ use super::path::Command;
 use super::resource::{Bind, Compare};
 use crate::diagnostics::{Entries, Items, Loc, nested, offset_in_file};
 use crate::graph::expr::Ex;
+use crate::vulkan::Blend;
 use serde::Deserialize;
 
 /// An item of `passes`.
@@ -259,24 +260,7 @@ pub struct ColorTarget {
     pub layer: Option<Ex>,
     /// Blending.
     #[serde(default)]
-    pub blend: BlendMode,
-}
-
-/// Blending.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum BlendMode {
-    /// Replace.
-    #[default]
-    Off,
-    /// Over.
-    Alpha,
-    /// Sum.
-    Add,
-    /// The smaller of both: does not depend on the order.
-    Min,
-    /// The larger of both: does not depend on the order.
-    Max,
+    pub blend: Blend,
 }
 
 /// A depth attachment.

@@ -14,11 +14,9 @@ use std::collections::BTreeSet;
 pub(super) fn prune(graph: &Graph, linked: &[Linked], plan: &mut Plan, wanted: &[String]) {
     let mut at_end: BTreeSet<Part> = BTreeSet::new();
     for name in wanted {
-        match graph.resource(name) {
-            Some(Res::Texture(t, _)) => at_end.extend((0..plan.textures[t].mips).map(|mip| (false, t, mip))),
-            Some(Res::Buffer(b, _)) => drop(at_end.insert((true, b, 0))),
-            None => {}
-        }
+        let Some(res) = graph.resource(name) else { continue };
+        let mips = if let Res::Texture(t, _) = res { plan.textures[t].mips } else { 1 };
+        at_end.extend((0..mips).map(|mip| (res, mip)));
     }
     // What a frame reads before writing it must be right at the end of the frame before: repeat until nothing is added.
     let kept = loop {
@@ -115,7 +113,7 @@ fn backward(steps: &[Step], at_end: &BTreeSet<Part>) -> (Vec<Option<Needed>>, BT
         let color: Vec<bool> = step
             .color
             .iter()
-            .map(|slot| slot.as_ref().is_some_and(|t| live.contains(&(false, t.texture, t.mip))))
+            .map(|slot| slot.as_ref().is_some_and(|t| live.contains(&(Res::Texture(t.texture, false), t.mip))))
             .collect();
         let dispatch = matches!(step.work, Work::Dispatch(_) | Work::DispatchIndirect(..));
         let only_stored = |u: &Use| dispatch && u.kind == UseKind::Storage && u.write && !u.read;

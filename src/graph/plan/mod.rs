@@ -6,6 +6,7 @@ mod layout;
 mod live;
 mod needs;
 mod numbers;
+mod places;
 mod schedule;
 mod settle;
 mod sizes;
@@ -15,6 +16,7 @@ mod uses;
 
 pub use compile::plan;
 pub use data::{AttachmentPlan, BindingPlan, BufferPlan, Plan, Settling, Step, TexturePlan, Transient, Work};
-pub use schedule::{Barrier, Layouts, Schedule, schedule};
+pub use places::Places;
+pub use schedule::{Barrier, Schedule, schedule};
 pub use transient::pack;
 pub use uses::{Use, UseKind};

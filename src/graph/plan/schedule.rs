@@ -1,6 +1,7 @@
 //! Barriers between the uses of a plan.
 
 use super::data::{Plan, Step};
+use super::places::Places;
 use super::uses::{Use, begins};
 use crate::graph::definition::Res;
 use crate::vulkan::vk::{AccessFlags2 as Access, ImageLayout as Layout, PipelineStageFlags2 as Stages};
@@ -20,7 +21,7 @@ pub struct Barrier {
     pub layouts: (Layout, Layout),
 }
 
-/// State of one mip of one copy, or of one copy of a buffer.
+/// State of a place.
 #[derive(Clone, Default)]
 struct State {
     layout: Layout,
@@ -32,42 +33,31 @@ struct State {
     seen: Vec<(Stages, Access)>,
 }
 
-/// Layouts of all mips: `[texture][copy][mip]`.
-pub type Layouts = Vec<[Vec<Layout>; 2]>;
-
 /// Barriers before each step, and the layouts that frames leave behind.
 pub struct Schedule {
     /// `[parity][step]`: even and odd frames differ where something has a history.
     pub barriers: [Vec<Vec<Barrier>>; 2],
-    /// `[parity]`: after even and odd frames. Those after an odd frame must hold before the first.
-    pub ends: [Layouts; 2],
-}
-
-/// The states of all mips of both copies of textures, and of buffers, which have one mip.
-struct States {
-    textures: Vec<[Vec<State>; 2]>,
-    buffers: Vec<[Vec<State>; 2]>,
+    /// `[parity][place]`: after even and odd frames. Those after an odd frame must hold before the first. Buffers have none.
+    pub ends: [Vec<Layout>; 2],
+    /// The places.
+    pub places: Places,
 }
 
 /// Derives all barriers by running the frame's uses until they repeat.
 pub fn schedule(plan: &Plan) -> Schedule {
-    let mips = |count: u32| std::array::from_fn(|_| vec![State::default(); count as usize]);
-    let mut states = States {
-        textures: plan.textures.iter().map(|t| mips(t.mips)).collect(),
-        buffers: plan.buffers.iter().map(|_| mips(1)).collect(),
-    };
+    let places = Places::new(plan);
+    let mut states = vec![State::default(); places.count];
     let shared = of_shared_memory(plan);
     let mut barriers = [Vec::new(), Vec::new()];
     let mut ends = [Vec::new(), Vec::new()];
     // Two rounds settle the states at the frame's border, two more record.
     for frame in 0..4 {
         let parity = frame % 2;
-        barriers[parity] =
-            plan.steps.iter().map(|step| before(plan, step, parity == 1, &shared, &mut states)).collect();
-        let layouts = |mips: &Vec<State>| mips.iter().map(|s| s.layout).collect();
-        ends[parity] = states.textures.iter().map(|copies| std::array::from_fn(|c| layouts(&copies[c]))).collect();
+        let before = |step| before(plan, &places, step, parity == 1, &shared, &mut states);
+        barriers[parity] = plan.steps.iter().map(before).collect();
+        ends[parity] = states.iter().map(|s| s.layout).collect();
     }
-    Schedule { barriers, ends }
+    Schedule { barriers, ends, places }
 }
 
 /// Who may have used memory before a transient resource begins in it: whoever uses transients at all.
@@ -81,19 +71,19 @@ fn of_shared_memory(plan: &Plan) -> State {
     all
 }
 
-fn before(plan: &Plan, step: &Step, odd: bool, shared: &State, states: &mut States) -> Vec<Barrier> {
+fn before(plan: &Plan, places: &Places, step: &Step, odd: bool, shared: &State, states: &mut [State]) -> Vec<Barrier> {
     let mut list: Vec<Barrier> = Vec::new();
     // Reads first: a step that takes its size from a buffer that it writes has not waited for that write.
     let (writes, reads): (Vec<&Use>, Vec<&Use>) = step.uses.iter().partition(|u| u.write);
     for u in reads.into_iter().chain(writes) {
         let anew = begins(u) && plan.transients.iter().any(|t| t.res == u.res);
         let copy = plan.copy_of(u.res, odd);
-        let (res, mips) = match u.res {
-            Res::Texture(t, _) => (Res::Texture(t, copy == 1), &mut states.textures[t][copy]),
-            Res::Buffer(b, _) => (Res::Buffer(b, copy == 1), &mut states.buffers[b][copy]),
+        let res = match u.res {
+            Res::Texture(t, _) => Res::Texture(t, copy == 1),
+            Res::Buffer(b, _) => Res::Buffer(b, copy == 1),
         };
-        for mip in u.mips.0..u.mips.0 + u.mips.1 {
-            let state = &mut mips[mip as usize];
+        for (mip, place) in (u.mips.0..).zip(places.of_copy(res, u.mips, copy)) {
+            let state = &mut states[place];
             if anew {
                 *state = shared.clone();
             }

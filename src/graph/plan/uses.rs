@@ -125,13 +125,10 @@ pub(in crate::graph) fn begins(u: &Use) -> bool {
     u.write && u.overwrite && !u.read
 }
 
-/// A subresource: (is a buffer, index, mip). What is read as history is needed as its content at the end of a frame.
-pub(super) type Part = (bool, usize, u32);
+/// A mip. What is read as history is needed as its content at the end of a frame.
+pub(super) type Part = (Res, u32);
 
 pub(super) fn parts(u: &Use) -> impl Iterator<Item = Part> + use<> {
-    let (buffer, index) = match u.res {
-        Res::Texture(t, _) => (false, t),
-        Res::Buffer(b, _) => (true, b),
-    };
-    (u.mips.0..u.mips.0 + u.mips.1).map(move |mip| (buffer, index, mip))
+    let res = u.res.current();
+    (u.mips.0..u.mips.0 + u.mips.1).map(move |mip| (res, mip))
 }

@@ -1,13 +1,13 @@
 //! What the graph's words mean to Vulkan: pipelines with their fixed state, descriptors, samplers, clear values.
 
 use crate::graph::definition::Graph;
-use crate::graph::file::{AddressMode, BlendMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology};
+use crate::graph::file::{AddressMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology};
 use crate::graph::link::{Linked, Target};
 use crate::graph::param::Params;
 use crate::graph::plan::{Plan, Step};
 use crate::shader::{Resource, strip_images, strip_outputs};
 use crate::vulkan::{
-    Attachments, BindingDesc, Blend, DrawState, Gpu, Pipeline, PipelineDesc, Result, SamplerDesc, Stage, StageDesc,
+    Attachments, BindingDesc, DrawState, Gpu, Pipeline, PipelineDesc, Result, SamplerDesc, Stage, StageDesc,
     format::Channels, vk,
 };
 use rayon::prelude::*;
@@ -147,18 +147,7 @@ fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachme
         samples: step.samples,
         conservative: raster.conservative.is_some(),
         discard: raster.discard,
-        blend: pass
-            .color
-            .0
-            .iter()
-            .map(|c| match c.value.blend {
-                BlendMode::Off => Blend::Off,
-                BlendMode::Alpha => Blend::Alpha,
-                BlendMode::Add => Blend::Add,
-                BlendMode::Min => Blend::Min,
-                BlendMode::Max => Blend::Max,
-            })
-            .collect(),
+        blend: pass.color.0.iter().map(|c| c.value.blend).collect(),
     };
     (state, attachments)
 }

@@ -8,11 +8,13 @@ use super::resources::{self, Resources};
 use super::scene::SceneResources;
 use super::sleep::{Contents, Frame, Redo};
 use super::transfer::{relayout, send};
+use crate::graph::definition::Res;
 use crate::graph::evaluated::Evaluated;
 use crate::graph::link::Linked;
-use crate::graph::plan::{Layouts, Plan, Schedule, schedule};
+use crate::graph::plan::{Plan, Schedule, schedule};
 use crate::vulkan::{Buffer, Commands, FrameSlot, Gpu, Recording, Result, vk};
 use gpu_allocator::MemoryLocation;
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -31,7 +33,7 @@ pub struct Program {
     names: Vec<String>,
     pub(super) resources: Resources,
     /// Layouts of all images between frames.
-    pub(super) resting: Layouts,
+    pub(super) resting: Vec<vk::ImageLayout>,
     /// What was taken over from the program before.
     pub change: Change,
     params: Arc<Buffer>,
@@ -168,7 +170,7 @@ impl Program {
     /// Gives every new image its first layout and zeroes what is new, so that first frames are like any other.
     fn initialise(&mut self, parts: &Parts) -> Result<()> {
         let dst = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
-        for layout in self.resting.iter_mut().flatten().flatten().filter(|l| **l == vk::ImageLayout::UNDEFINED) {
+        for layout in self.resting.iter_mut().filter(|l| **l == vk::ImageLayout::UNDEFINED) {
             *layout = dst;
         }
         // What is transient is begun by every frame.
@@ -177,8 +179,9 @@ impl Program {
             buffers.flat_map(|(copies, _)| copies.iter().flatten()).filter(|b| !parts.holds_buffer(b)).collect();
         let mut images = Vec::new();
         for (t, copies) in self.resources.images.iter().enumerate().filter(|(t, _)| !self.plan.textures[*t].transient) {
-            for (image, layouts) in copies.iter().zip(&self.resting[t]) {
-                images.extend(image.as_ref().filter(|i| !parts.holds_image(i)).map(|image| (t, image, layouts)));
+            for (c, image) in copies.iter().enumerate() {
+                let image = image.as_ref().filter(|i| !parts.holds_image(i));
+                images.extend(image.map(|image| (t, image, &self.resting[self.places_of(t, c)])));
             }
         }
         // A submission waits for the frames that run: nothing is submitted for nothing.
@@ -272,6 +275,12 @@ impl Program {
         Ok(())
     }
 
+    /// Where all mips of a copy of a texture are among the places.
+    pub(super) fn places_of(&self, texture: usize, copy: usize) -> Range<usize> {
+        let mips = (0, self.plan.textures[texture].mips);
+        self.schedule.places.of_copy(Res::Texture(texture, false), mips, copy)
+    }
+
     fn recorder(&self) -> Recorder<'_> {
         Recorder {
             plan: &self.plan,
@@ -360,9 +369,7 @@ impl Program {
 
     /// Remembers the layouts that a frame of this parity leaves behind.
     fn rest(&mut self, parity: usize) {
-        for (now, end) in
-            self.resting.iter_mut().flatten().flatten().zip(self.schedule.ends[parity].iter().flatten().flatten())
-        {
+        for (now, end) in self.resting.iter_mut().zip(&self.schedule.ends[parity]) {
             if *end != vk::ImageLayout::UNDEFINED {
                 *now = *end;
             }

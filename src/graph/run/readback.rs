@@ -22,9 +22,9 @@ impl Program {
         self.finish_all()?;
         let parity = usize::try_from((self.frame + 1) % 2).unwrap_or(0);
         let plan = &self.plan.textures[texture];
-        let copy = self.plan.copy_of(Res::Texture(texture, false), parity == 1);
         let image = self.resources.image(&self.plan, texture, false, parity)?.clone();
-        let layout = self.resting[texture][copy][mip as usize];
+        let place = self.schedule.places.of(&self.plan, Res::Texture(texture, false), (mip, 1), parity == 1).start;
+        let layout = self.resting[place];
         let extent = part.map_or(image.mip_extent(mip), |p| p.1);
         let size = extent.iter().map(|n| u64::from(*n)).product::<u64>() * u64::from(plan.format.bytes);
         let usage = vk::BufferUsageFlags::TRANSFER_DST;

@@ -8,7 +8,7 @@ use super::sleep::Frame;
 use super::transfer::{copy_out, relayout};
 use crate::graph::definition::Res;
 use crate::graph::file::Which;
-use crate::graph::plan::{Barrier, Layouts, Plan, Schedule, Step, Work};
+use crate::graph::plan::{Barrier, Plan, Schedule, Step, Work};
 use crate::vulkan::{Buffer, Commands, vk};
 
 /// What frames are recorded from.
@@ -25,7 +25,7 @@ pub(super) struct Recorder<'a> {
     /// Whether the device draws many in one command.
     pub multi_draw: bool,
     /// Layouts of all images between frames.
-    pub resting: &'a Layouts,
+    pub resting: &'a [vk::ImageLayout],
 }
 
 impl Recorder<'_> {
@@ -66,10 +66,10 @@ impl Recorder<'_> {
         to_host: Option<&Buffer>,
         handed: Option<&Buffer>,
     ) {
-        let copy = self.plan.copy_of(Res::Texture(texture, false), parity == 1);
-        let Some(image) = &self.resources.images[texture][copy] else { return };
-        let layout = match self.schedule.ends[parity][texture][copy][0] {
-            vk::ImageLayout::UNDEFINED => self.resting[texture][copy][0],
+        let Ok(image) = self.resources.image(self.plan, texture, false, parity) else { return };
+        let place = self.place(texture, (false, 0), parity);
+        let layout = match self.schedule.ends[parity][place] {
+            vk::ImageLayout::UNDEFINED => self.resting[place],
             layout => layout,
         };
         for to in to_host.into_iter().chain(handed) {
@@ -118,8 +118,11 @@ impl Recorder<'_> {
     fn layout_after(&self, step: usize, t: usize, (history, mip): (bool, u32), parity: usize) -> vk::ImageLayout {
         let mut before = self.plan.steps[..=step].iter().rev().flat_map(|s| &s.uses);
         let used = before.find(|u| u.res == Res::Texture(t, history) && (u.mips.0..u.mips.0 + u.mips.1).contains(&mip));
-        let copy = self.plan.copy_of(Res::Texture(t, history), parity == 1);
-        used.map_or(self.resting[t][copy][mip as usize], |u| u.layout)
+        used.map_or(self.resting[self.place(t, (history, mip), parity)], |u| u.layout)
+    }
+
+    fn place(&self, texture: usize, (last, mip): (bool, u32), parity: usize) -> usize {
+        self.schedule.places.of(self.plan, Res::Texture(texture, last), (mip, 1), parity == 1).start
     }
 
     fn barriers(&self, commands: &mut Commands<'_>, list: &[Barrier]) {

@@ -8,7 +8,7 @@ use crate::graph::definition::Res;
 use crate::graph::externals::{EXTERNALS, ExternalKind};
 use crate::graph::host::CAMERA_COUNTS;
 use crate::graph::link::{Linked, Target};
-use crate::graph::plan::{Plan, Step};
+use crate::graph::plan::{Places, Plan, Step};
 use crate::shader::Resource;
 use std::collections::BTreeSet;
 use std::hash::{BuildHasher, Hash, Hasher};
@@ -150,10 +150,10 @@ impl Contents {
         let reads: Vec<Reads> = of_steps.iter().flatten().cloned().collect::<BTreeSet<_>>().into_iter().collect();
         let number = |r: &Reads| reads.binary_search(r).unwrap_or(0);
         let of_steps: Vec<Vec<usize>> = of_steps.iter().map(|list| list.iter().map(number).collect()).collect();
-        let parts = Parts::new(plan);
-        let flows = [false, true].map(|odd| Flow::new(plan, &of_steps, &parts, odd));
+        let places = Places::new(plan);
+        let flows = [false, true].map(|odd| Flow::new(plan, &of_steps, &places, odd));
         let still = plan.settling.iter().map(|group| {
-            let mut own = vec![false; parts.count];
+            let mut own = vec![false; places.count];
             let written =
                 |flow: &Flow| group.ring.iter().flat_map(|i| &flow.steps[*i].writes).map(|w| w.to.part).collect();
             flows.iter().flat_map(|flow| -> Vec<usize> { written(flow) }).for_each(|part| own[part] = true);
@@ -164,7 +164,7 @@ impl Contents {
             Content { id, base: id, stores: Vec::new() }
         };
         Contents {
-            held: (0..parts.count).map(unknown).collect(),
+            held: (0..places.count).map(unknown).collect(),
             inputs: vec![[0; 2]; reads.len()],
             reads,
             externals: vec![Vec::new(); EXTERNALS.len()],
@@ -281,48 +281,17 @@ impl Reads {
     }
 }
 
-/// Numbers of all parts.
-struct Parts {
-    /// Where those of the two copies of each texture begin: one a mip. Those of buffers follow, one a copy.
-    textures: Vec<[usize; 2]>,
-    buffers: usize,
-    count: usize,
-}
-
-impl Parts {
-    fn new(plan: &Plan) -> Parts {
-        let mut count = 0;
-        let mut next = |parts: usize| {
-            count += parts;
-            count - parts
-        };
-        let textures = plan.textures.iter().map(|t| [next(t.mips as usize), next(t.mips as usize)]).collect();
-        let buffers = next(2 * plan.buffers.len());
-        Parts { textures, buffers, count }
-    }
-
-    /// Of mips of the copy of this frame or of the one before.
-    fn of(&self, plan: &Plan, res: Res, mips: (u32, u32), odd: bool) -> std::ops::Range<usize> {
-        let copy = plan.copy_of(res, odd);
-        let first = match res {
-            Res::Texture(t, _) => self.textures[t][copy],
-            Res::Buffer(b, _) => self.buffers + 2 * b + copy,
-        };
-        first + mips.0 as usize..first + (mips.0 + mips.1) as usize
-    }
-}
-
 impl Flow {
-    fn new(plan: &Plan, externals: &[Vec<usize>], parts: &Parts, odd: bool) -> Flow {
-        let mut last: Vec<usize> = (0..parts.count).collect();
-        let mut lives = parts.count;
+    fn new(plan: &Plan, externals: &[Vec<usize>], places: &Places, odd: bool) -> Flow {
+        let mut last: Vec<usize> = (0..places.count).collect();
+        let mut lives = places.count;
         let mut steps = Vec::new();
         for (step, externals) in plan.steps.iter().zip(externals) {
-            let read = step.uses.iter().filter(|u| u.read).flat_map(|u| parts.of(plan, u.res, u.mips, odd));
+            let read = step.uses.iter().filter(|u| u.read).flat_map(|u| places.of(plan, u.res, u.mips, odd));
             let reads = read.map(|part| Part { part, life: last[part] }).collect();
             let mut writes = Vec::new();
             for u in step.uses.iter().filter(|u| u.write) {
-                for (mip, part) in (u.mips.0..).zip(parts.of(plan, u.res, u.mips, odd)) {
+                for (mip, part) in (u.mips.0..).zip(places.of(plan, u.res, u.mips, odd)) {
                     if u.overwrite && !u.read {
                         last[part] = lives;
                         lives += 1;
@@ -333,7 +302,7 @@ impl Flow {
             }
             steps.push(StepFlow { externals: externals.clone(), reads, writes });
         }
-        let of = |res, mips| parts.of(plan, res, mips, odd);
+        let of = |res, mips| places.of(plan, res, mips, odd);
         let copies = |res: &Res| match *res {
             Res::Buffer(b, _) => of(*res, (0, 1)).zip(of(Res::Buffer(b, true), (0, 1))),
             Res::Texture(t, _) => {
@@ -342,7 +311,7 @@ impl Flow {
             }
         };
         let kept = plan.settling.iter().map(|group| group.kept.iter().flat_map(copies).collect()).collect();
-        let mut transient = vec![false; parts.count];
+        let mut transient = vec![false; places.count];
         plan.transients.iter().flat_map(|t| of(t.res, (0, 1))).for_each(|part| transient[part] = true);
         Flow { steps, last, lives, kept, transient }
     }

@@ -214,7 +214,7 @@ fn images_of(graph: &Graph, resources: &[Resource]) -> Result<Vec<Image>, LabErr
     let mut images: Vec<Image> =
         result(&graph.output, "picture.png").into_iter().chain(result(&graph.hdr, "picture.exr")).collect();
     for r in resources {
-        if !graph.textures.iter().any(|t| t.0 == r.name) {
+        if !graph.texture(&r.name).is_some() {
             return Err(no_texture(graph, &r.name));
         }
         let part = |n: u32, what: &str| if n > 0 { format!("-{what}{n}") } else { String::new() };
