@@ -15,8 +15,6 @@ pub struct Graph {
     pub name: String,
     /// Parameters at their defaults.
     pub params: Params,
-    /// Where each parameter is declared.
-    pub params_at: Vec<At>,
     /// Parameters that the panel shows first: name, title. One that is retired is shown with what to write instead.
     pub pinned: Vec<(String, String)>,
     /// Modules that nobody chooses: name, file in the shader folder.

@@ -1,7 +1,6 @@
 //! Passes.
 
-use super::path::Command;
-use super::resource::{Bind, Compare};
+use super::resource::{Bind, Command, Compare};
 use crate::diagnostics::{Entries, Items, Loc, nested, offset_in_file};
 use crate::graph::expr::Ex;
 use crate::vulkan::Blend;

@@ -1,6 +1,6 @@
 //! Buffers as tables for people: a graph names rows and columns, or says where they lie.
 
-use super::path::Path;
+use super::resource::Path;
 use crate::diagnostics::{At, Items, Loc};
 use serde::Deserialize;
 use std::collections::HashSet;

@@ -2,9 +2,8 @@
 
 use super::pass::PassItem;
 use super::resource::{AliasDecl, BufferDecl, NamedSampler, TextureDecl};
-use super::section::{CheckDecl, RefuseDecl, SceneNeeds, ValueDecl};
+use super::section::{CheckDecl, CompareDecl, RefuseDecl, SceneNeeds, ValueDecl, ViewDecl, VoxelsDecl};
 use super::table::TableDecl;
-use super::tools::{CompareDecl, ViewDecl, VoxelsDecl};
 use crate::diagnostics::{Entries, Items, Loc, RawText};
 use crate::graph::param::Decl;
 use serde::Deserialize;

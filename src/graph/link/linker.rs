@@ -67,7 +67,7 @@ pub fn link(
 fn where_declared(graph: &Graph, found: Diagnostic) -> Diagnostic {
     let line = found.source.as_deref().unwrap_or("");
     let is_name = |name: &str| has_word(line, name) || has_word(line, &name.to_uppercase());
-    let params = graph.params.names().zip(&graph.params_at).map(|(name, at)| (name, *at, "parameter"));
+    let params = graph.params.list.iter().map(|p| (p.name.as_str(), p.at, "parameter"));
     let mut declared = params.chain(graph.values.iter().map(|v| (v.name.as_str(), v.at, "value")));
     match declared.find(|(name, ..)| is_name(name)) {
         Some((name, at, what)) if found.place.file.starts_with("params.glsl (generated)") => {

@@ -7,13 +7,12 @@ mod linker;
 mod members;
 mod place;
 mod runs;
-mod tables;
 mod unused;
 
 pub use fit::bound_shape;
 pub use layouts::Layouts;
 pub use linked::{Bound, BoundCase, Linked, Target};
 pub use linker::link;
+pub use members::table;
 pub use place::has_word;
 pub use runs::{Runs, generated, runs};
-pub use tables::table;

@@ -40,12 +40,12 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
         }
     }
     let variables: HashSet<&String> = graph.expressions().flat_map(|e| e.value.variables()).collect();
-    for (param, at) in graph.params.list.iter().zip(&graph.params_at) {
+    for param in &graph.params.list {
         let in_graph = param.variables().iter().any(|v| variables.contains(v));
         let as_format = graph.textures.iter().any(|t| t.1.value.format.value == param.name);
         let included = param.is_module() && shaders.iter().any(|t| t.contains_key(&module_include(&param.name)));
         if !in_graph && !as_format && !included && !in_texts(&param.in_shaders()) {
-            warn(*at, format!("parameter '{}' is declared and never used", param.name));
+            warn(param.at, format!("parameter '{}' is declared and never used", param.name));
         }
     }
     for value in &graph.values {

@@ -2,7 +2,7 @@
 
 use super::findings::Findings;
 use super::include::Folders;
-use super::names::{BUILTIN_VARIABLES, is_identifier};
+use super::params::{BUILTIN_VARIABLES, is_identifier};
 use crate::diagnostics::{At, Entries, Loc, RawText, nearest};
 use crate::graph::definition::Graph;
 use crate::graph::expr::Ex;

@@ -1,23 +1,21 @@
 //! Reading a graph with its includes.
 
-mod alias;
 mod check;
 mod check_pass;
 mod choices;
 mod findings;
 mod include;
 mod join;
-mod names;
 mod params;
 mod values;
 
 pub use include::Folders;
-pub use names::BUILTIN_VARIABLES;
+pub use params::BUILTIN_VARIABLES;
 
 use super::definition::Graph;
 use super::file::{GraphFile, ungrouped};
-use super::param::{Param, Params};
-use crate::diagnostics::{At, Diagnostic, Entries, Items, Loc, RawText, Severity, Sources};
+use super::param::Params;
+use crate::diagnostics::{Diagnostic, Entries, Items, Loc, RawText, Severity, Sources};
 use check::Check;
 use findings::Findings;
 use std::path::Path;
@@ -35,7 +33,12 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     // Textures that are results of some file.
     let mut results = Vec::new();
     for mut more in files {
-        alias::join(&mut aliases, std::mem::take(&mut more.aliases), std::mem::take(&mut more.samplers), &mut found);
+        join::add_aliases(
+            &mut aliases,
+            std::mem::take(&mut more.aliases),
+            std::mem::take(&mut more.samplers),
+            &mut found,
+        );
         for pass in ungrouped(std::mem::take(&mut more.passes)) {
             join::insert_pass(&mut passes, pass, &mut found);
         }
@@ -45,7 +48,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     }
     let mut textures = by_name(file.textures);
     join::sizes_of_others(&mut textures, &mut found);
-    let (mut list, params_at): (Vec<Param>, Vec<At>) = params::declared(&file.params.0, &mut found).into_iter().unzip();
+    let mut list = params::declared(&file.params.0, &mut found);
     params::set_defaults(&mut list, &file.defaults, &mut found);
     let pass_names = passes.iter().map(|p| p.value.name.value.clone()).collect();
     let params = Params { retired: texts(&file.retired), passes: pass_names, ..Params::new(list) };
@@ -53,7 +56,6 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
         values: values::ordered(file.values.0, &params, &mut found),
         params,
-        params_at,
         pinned: texts(&file.pinned),
         modules: texts(&file.modules),
         textures,

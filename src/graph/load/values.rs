@@ -1,7 +1,7 @@
 //! Named values of a graph's files, in an order in which they can be evaluated.
 
 use super::findings::Findings;
-use super::names::{BUILTIN_VARIABLES, is_identifier};
+use super::params::{BUILTIN_VARIABLES, is_identifier};
 use crate::diagnostics::Loc;
 use crate::graph::definition::Named;
 use crate::graph::file::ValueDecl;

@@ -1,7 +1,6 @@
 //! Declarations of parameters as they stand in a graph file.
 
-use super::one::Param;
-use super::value::{Kind, Value};
+use super::kinds::{Kind, Param, Value};
 use crate::diagnostics::{Entries, Loc};
 use crate::graph::expr::Ex;
 use serde::Deserialize;
@@ -135,7 +134,7 @@ impl<T> Fields<T> {
     }
 
     fn param(self, kind: Kind, value: impl Fn(T) -> Value) -> Result<Param, String> {
-        let name = self.name.value;
+        let Loc { value: name, at } = self.name;
         let default = self.default.map(&value).ok_or(format!("parameter '{name}' has no default"))?;
         if self.help.trim().is_empty() || self.help.contains('\n') {
             return Err(format!("parameter '{name}' needs one line of help"));
@@ -150,6 +149,7 @@ impl<T> Fields<T> {
         }
         let param = Param {
             name,
+            at,
             kind,
             declared: default.clone(),
             default,

@@ -1,11 +1,9 @@
 //! Parameters: declared once in a graph, read by shaders, `--set`, experiments, panels and sweeps.
 
 mod decl;
-mod one;
+mod kinds;
 mod params;
-mod value;
 
 pub use decl::Decl;
-pub use one::Param;
+pub use kinds::{Kind, Param, Value};
 pub use params::{OFF, Params};
-pub use value::{Kind, Value};

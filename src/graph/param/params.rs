@@ -1,7 +1,6 @@
 //! The parameters of a graph with their present values.
 
-use super::one::Param;
-use super::value::{Kind, Value};
+use super::kinds::{Kind, Param, Value};
 use crate::diagnostics::{nearest, options};
 use crate::graph::expr::{Env, Var};
 use std::fmt::Write;

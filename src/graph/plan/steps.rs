@@ -4,9 +4,9 @@ use super::data::{AttachmentPlan, BindingPlan, BufferPlan, Step, TexturePlan, Wo
 use super::numbers::Numbers;
 use super::sizes::format;
 use super::uses::{Use, UseKind, merge};
-use crate::diagnostics::At;
+use crate::diagnostics::{At, Loc};
 use crate::graph::definition::{Graph, Res};
-use crate::graph::expr::Var;
+use crate::graph::expr::{Ex, Var};
 use crate::graph::file::{Command, CopyDecl, DISPATCH_WORDS, DRAW_WORDS, Dispatch, Draw, PassDecl};
 use crate::graph::link::{Bound, BoundCase, Layouts, Linked, Target};
 use crate::shader::Resource;
@@ -151,33 +151,18 @@ impl<'a> Planner<'a, '_> {
     }
 
     fn attachments(&mut self, pass: &PassDecl, step: &mut Step) {
-        let mut size: Option<[u32; 2]> = None;
-        for target in &pass.color.0 {
-            let t = &target.value;
-            let Some(texture) = self.graph().texture(&t.to.value) else { continue };
+        let mut size = None;
+        for t in pass.color.0.iter().map(|target| &target.value) {
             let mip = t.mip.as_ref().map_or(0, |ex| self.numbers.count(ex, 0, "mip"));
-            let layer = t.layer.as_ref().map_or(0, |ex| self.numbers.count(ex, 0, "layer"));
+            let clear = t.clear.map(|c| [c.0, c.1, c.2, c.3]);
             let plan =
-                AttachmentPlan { texture, mip, layer, clear: t.clear.map(|c| [c.0, c.1, c.2, c.3]), write: true };
-            // A clear of one layer leaves the others.
-            let whole = t.clear.is_some() && self.textures[texture].layers == 1;
-            step.uses.push(Use::attachment(texture, mip, UseKind::Color, !whole, true, whole));
-            self.attachment_size(t.to.at, &plan, &mut size);
-            step.color.push(Some(plan));
+                self.attachment(&t.to, (mip, t.layer.as_ref()), clear, UseKind::Color, &mut step.uses, &mut size);
+            step.color.extend(plan.map(Some));
         }
-        if let Some(target) = &pass.depth {
-            let t = &target.value;
-            if let Some(texture) = self.graph().texture(&t.to.value) {
-                let layer = t.layer.as_ref().map_or(0, |ex| self.numbers.count(ex, 0, "layer"));
-                let clear = t.clear.map(|c| [c, 0.0, 0.0, 0.0]);
-                let plan = AttachmentPlan { texture, mip: 0, layer, clear, write: t.write };
-                let kind = if t.write { UseKind::Depth } else { UseKind::DepthRead };
-                // A clear of one layer leaves the others.
-                let whole = clear.is_some() && self.textures[texture].layers == 1;
-                step.uses.push(Use::attachment(texture, 0, kind, clear.is_none() || !whole, t.write, whole));
-                self.attachment_size(t.to.at, &plan, &mut size);
-                step.depth = Some(plan);
-            }
+        if let Some(t) = pass.depth.as_ref().map(|target| &target.value) {
+            let clear = t.clear.map(|c| [c, 0.0, 0.0, 0.0]);
+            let kind = if t.write { UseKind::Depth } else { UseKind::DepthRead };
+            step.depth = self.attachment(&t.to, (0, t.layer.as_ref()), clear, kind, &mut step.uses, &mut size);
         }
         step.viewport = size.unwrap_or([1, 1]);
         if let Some(extent) = &pass.raster.size {
@@ -212,24 +197,30 @@ impl<'a> Planner<'a, '_> {
         }
     }
 
-    fn attachment_size(&mut self, at: At, plan: &AttachmentPlan, size: &mut Option<[u32; 2]>) {
-        let t = &self.textures[plan.texture];
-        if plan.mip >= t.mips || plan.layer >= t.layers {
-            let message = format!("mip {} or layer {} does not exist", plan.mip, plan.layer);
-            self.numbers.error(at, message);
-            return;
+    /// An attachment, of the same size as those before.
+    fn attachment(
+        &mut self,
+        to: &Loc<String>,
+        (mip, layer): (u32, Option<&Ex>),
+        clear: Option<[f32; 4]>,
+        kind: UseKind,
+        uses: &mut Vec<Use>,
+        size: &mut Option<[u32; 2]>,
+    ) -> Option<AttachmentPlan> {
+        let texture = self.graph().texture(&to.value)?;
+        let layer = layer.map_or(0, |ex| self.numbers.count(ex, 0, "layer"));
+        let t = &self.textures[texture];
+        // A clear of one layer leaves the others.
+        uses.push(Use::attachment(texture, mip, kind, clear.is_some() && t.layers == 1));
+        let [width, height, _] = t.mip_extent(mip);
+        if mip >= t.mips || layer >= t.layers {
+            self.numbers.error(to.at, format!("mip {mip} or layer {layer} does not exist"));
+        } else if let [w, h] = *size.get_or_insert([width, height])
+            && [w, h] != [width, height]
+        {
+            self.numbers.error(to.at, format!("attachments differ in size: {w}x{h} and {width}x{height}"));
         }
-        let [width, height, _] = t.mip_extent(plan.mip);
-        let this = [width, height];
-        match size {
-            None => *size = Some(this),
-            Some(other) if *other != this => {
-                let message =
-                    format!("attachments differ in size: {}x{} and {}x{}", other[0], other[1], this[0], this[1]);
-                self.numbers.error(at, message);
-            }
-            Some(_) => {}
-        }
+        Some(AttachmentPlan { texture, mip, layer, clear, write: kind != UseKind::DepthRead })
     }
 
     fn work(&mut self, pass: &PassDecl, link: &Linked, step: &mut Step) -> Option<Work> {
@@ -300,7 +291,7 @@ impl<'a> Planner<'a, '_> {
             _ => return None,
         };
         step.uses.push(Use::transfer(from, mips, true, false));
-        step.uses.push(Use { overwrite: !longer, ..Use::transfer(to, mips, longer, true) });
+        step.uses.push(Use::transfer(to, mips, longer, true));
         Some(work)
     }
 

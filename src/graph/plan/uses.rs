@@ -73,8 +73,8 @@ impl Use {
         Use::new(res, (0, 1), UseKind::Buffer, stages, Access::UNIFORM_READ)
     }
 
-    /// An attachment.
-    pub fn attachment(texture: usize, mip: u32, kind: UseKind, read: bool, write: bool, overwrite: bool) -> Use {
+    /// An attachment; one that is cleared as a whole holds nothing of before.
+    pub fn attachment(texture: usize, mip: u32, kind: UseKind, overwrite: bool) -> Use {
         let (stages, access) = match kind {
             UseKind::Color => (
                 Stages::COLOR_ATTACHMENT_OUTPUT,
@@ -86,13 +86,15 @@ impl Use {
             }
             _ => (DEPTH_STAGES, Access::DEPTH_STENCIL_ATTACHMENT_READ),
         };
+        let (read, write) = (!overwrite, kind != UseKind::DepthRead);
         Use { read, write, overwrite, ..Use::new(Res::Texture(texture, false), (mip, 1), kind, stages, access) }
     }
 
-    /// A clear (which overwrites) or one side of a copy.
+    /// A clear or one side of a copy: what writes and reads nothing overwrites.
     pub fn transfer(res: Res, mips: (u32, u32), read: bool, write: bool) -> Use {
         let access = if write { Access::TRANSFER_WRITE } else { Access::TRANSFER_READ };
-        Use { read, write, overwrite: write, ..Use::new(res, mips, UseKind::Transfer, Stages::ALL_TRANSFER, access) }
+        let overwrite = write && !read;
+        Use { read, write, overwrite, ..Use::new(res, mips, UseKind::Transfer, Stages::ALL_TRANSFER, access) }
     }
 
     /// Sizes of a dispatch or draw.

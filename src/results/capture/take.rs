@@ -214,7 +214,7 @@ fn images_of(graph: &Graph, resources: &[Resource]) -> Result<Vec<Image>, LabErr
     let mut images: Vec<Image> =
         result(&graph.output, "picture.png").into_iter().chain(result(&graph.hdr, "picture.exr")).collect();
     for r in resources {
-        if !graph.texture(&r.name).is_some() {
+        if graph.texture(&r.name).is_none() {
             return Err(no_texture(graph, &r.name));
         }
         let part = |n: u32, what: &str| if n > 0 { format!("-{what}{n}") } else { String::new() };
