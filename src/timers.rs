@@ -1,6 +1,6 @@
 //! Times on a picture: what the GPU spends on each stage or pass, drawn into its corner, in the window and in files.
 
-use crate::graph::load::Graph;
+use crate::graph::Graph;
 use crate::graph::param::Params;
 use crate::lab::Texels;
 use crate::results::picture;

@@ -206,7 +206,7 @@ proptest! {
 }
 
 fn params(decls: &[&str]) -> Params {
-    let param = |d: &&str| conelab::diagnostics::options().from_str::<Decl>(d).unwrap().param().unwrap();
+    let param = |d: &&str| conelab::diagnostics::options().from_str::<Decl>(d).unwrap().param.unwrap();
     Params::new(decls.iter().map(param).collect())
 }
 

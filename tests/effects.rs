@@ -4,8 +4,8 @@ mod common;
 
 use conelab::experiment::Experiment;
 use conelab::graph::effect::{Reason, Running, effective, idle};
-use conelab::graph::plan::{PlanInput, plan};
-use conelab::graph::usage::Res;
+use conelab::graph::plan::plan;
+use conelab::graph::{Evaluated, Res};
 use conelab::lab::{Workspace, any_device, environment, params_of};
 use conelab::shader::ShaderCompiler;
 use std::collections::BTreeMap;
@@ -18,26 +18,19 @@ fn found(graph: &str, params: &str) -> (BTreeMap<String, Reason>, Option<f64>) {
     let (scene, device) = (common::scene("cornell"), any_device());
     let loaded = home.load_for(&experiment, &scene, &device).unwrap();
     let params = params_of(&loaded.graph, &experiment).unwrap();
-    let variables = environment(&scene, experiment.size, &device);
+    let set = Evaluated::new(&loaded.graph, &params, environment(&scene, experiment.size, &device));
     let wanted = vec![loaded.graph.output.clone().unwrap()];
-    let input = PlanInput { params: &params, env: variables.clone(), wanted, device: &device };
-    let plan = plan(&loaded.graph, &loaded.linked, &input).unwrap();
+    let plan = plan(&set, &loaded.linked, &wanted, &device).unwrap();
     let mut passes: Vec<usize> = plan.steps.iter().map(|s| s.pass).collect();
     passes.dedup();
     let written = plan.steps.iter().flat_map(|s| &s.uses).filter(|u| u.write).map(|u| match u.res {
         Res::Texture(t, _) => loaded.graph.textures[t].0.as_str(),
         Res::Buffer(b, _) => loaded.graph.buffers[b].0.as_str(),
     });
-    let running = Running {
-        graph: &loaded.graph,
-        linked: &loaded.linked,
-        passes: &passes,
-        written: written.collect(),
-        variables: &variables,
-    };
+    let running = Running { set: &set, linked: &loaded.linked, passes: &passes, written: written.collect() };
     let aperture = params.list.iter().find(|p| p.name == "diffuse_aperture").unwrap();
-    let taken = effective(&loaded.graph, aperture, &params, &variables);
-    (idle(&running, &params, &ShaderCompiler::new(&home.folders().shaders, home.cache.as_deref())), taken)
+    let taken = effective(&set, aperture);
+    (idle(&running, &ShaderCompiler::new(&home.folders().shaders, home.cache.as_deref())), taken)
 }
 
 #[test]

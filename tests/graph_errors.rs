@@ -3,7 +3,8 @@
 
 use conelab::diagnostics::Diagnostic;
 use conelab::experiment::Experiment;
-use conelab::graph::plan::{PlanInput, plan};
+use conelab::graph::Evaluated;
+use conelab::graph::plan::plan;
 use conelab::lab::{LabError, Workspace, any_device, environment, params_of};
 use conelab::scene::Scene;
 use conelab::vulkan::DeviceInfo;
@@ -175,10 +176,9 @@ impl Bench {
             other => panic!("{other}"),
         })?;
         let scene = Scene::open(&experiment.scene, &|_, _| std::ops::ControlFlow::Continue(())).unwrap();
-        let env = environment(&scene, experiment.size, &self.device);
-        let wanted = graph.output.iter().chain(&graph.outputs).cloned().collect();
-        let input = PlanInput { params: &params, env, wanted, device: &self.device };
-        plan(&graph, &linked, &input)?;
+        let set = Evaluated::new(&graph, &params, environment(&scene, experiment.size, &self.device));
+        let wanted: Vec<String> = graph.output.iter().chain(&graph.outputs).cloned().collect();
+        plan(&set, &linked, &wanted, &self.device)?;
         Ok(warnings)
     }
 }

@@ -5,7 +5,8 @@ mod common;
 
 use common::{assert_clean, experiment, floats, lab, mean, prepare, root, scene};
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
-use conelab::graph::plan::{PlanInput, plan};
+use conelab::graph::Evaluated;
+use conelab::graph::plan::plan;
 use conelab::lab::{Lab, LabError, Session, environment};
 use conelab::vulkan::{DeviceInfo, Features};
 use glam::Vec3;
@@ -412,9 +413,8 @@ fn the_preview_shows_every_scene_on_the_plainest_device() {
     assert_eq!(warnings, []);
     let params = graph.params.clone();
     let device = DeviceInfo::imaginary(Features::default());
-    let env = environment(&scene("cornell"), (64, 48), &device);
-    let input = PlanInput { params: &params, env, wanted: vec!["display".into()], device: &device };
-    plan(&graph, &linked, &input).unwrap();
+    let set = Evaluated::new(&graph, &params, environment(&scene("cornell"), (64, 48), &device));
+    plan(&set, &linked, &["display".into()], &device).unwrap();
 }
 
 /// A lamp whose plane goes through voxels: the shadow lookup there must not divide by zero.

@@ -5,10 +5,11 @@ mod common;
 
 use common::{assert_clean, conelab, experiment, fails, floats, lab, mean, prepare, root, scene, succeeds};
 use conelab::experiment::Experiment;
-use conelab::graph::hot_reload::Change;
-use conelab::graph::load::{Folders, Graph, load};
+use conelab::graph::load::{Folders, load};
 use conelab::graph::param::Value;
-use conelab::lab::{Lab, Session, Workspace, any_device, values_of};
+use conelab::graph::run::Change;
+use conelab::graph::{Evaluated, Graph};
+use conelab::lab::{Lab, Session, Workspace, any_device, environment};
 use insta::assert_snapshot;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -415,9 +416,9 @@ fn value(graph: &Graph, name: &str, settings: &[(&str, &str)]) -> Value {
     for (name, value) in settings {
         params.set(name, value).unwrap();
     }
-    let values = values_of(graph, &params, &scene("triangles"), (64, 48), &any_device());
+    let set = Evaluated::new(graph, &params, environment(&scene("triangles"), (64, 48), &any_device()));
     let index = graph.values.iter().position(|v| v.name == name).unwrap();
-    values[index].clone()
+    set.values[index].clone()
 }
 
 #[test]

@@ -4,7 +4,7 @@ mod common;
 
 use common::{assert_clean, experiment, floats, lab, root, scene};
 use conelab::experiment::Experiment;
-use conelab::graph::hot_reload::Change;
+use conelab::graph::run::Change;
 use conelab::lab::{Lab, LabError, Session};
 use conelab::scene::Scene;
 use std::path::Path;

@@ -1,8 +1,7 @@
 //! What a point sets: parameters of the graph, and fields of the experiment.
 
-use crate::diagnostics::{At, Diagnostic, Entries, Loc};
+use crate::diagnostics::{At, Diagnostic, Entries, Loc, RawText};
 use crate::experiment::{Experiment, Field};
-use crate::graph::file::RawText;
 use crate::lab::LabError;
 use std::path::Path;
 

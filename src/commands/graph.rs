@@ -3,10 +3,10 @@
 use crate::campaign::settings::named;
 use crate::diagnostics::nearest;
 use crate::experiment::Experiment;
+use crate::graph::Evaluated;
 use crate::graph::outline::outline;
-use crate::graph::plan::{PlanInput, plan};
+use crate::graph::plan::plan;
 use crate::graph::report;
-use crate::graph::value::fill;
 use crate::lab::{LabError, Workspace, any_device, environment, params_of};
 use clap::Args;
 use std::path::PathBuf;
@@ -79,22 +79,19 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     let scene_name = args.scene.clone().or(experiment.as_ref().map(|e| e.scene.clone())).unwrap_or("cornell".into());
     let scene = super::open_scene(&scene_name)?;
     let device = any_device();
-    let env = environment(&scene, size, &device);
+    let set = Evaluated::new(&graph, &params, environment(&scene, size, &device));
     if args.params {
-        let (values, errors) = fill(&graph, &params, &mut env.clone());
-        say_part!("{}", report::values(&graph, &values));
-        return if errors.is_empty() { Ok(()) } else { Err(LabError::Input(errors)) };
+        say_part!("{}", report::values(&set));
+        return if set.errors.is_empty() { Ok(()) } else { Err(LabError::Input(set.errors)) };
     }
     let mut wanted: Vec<String> = graph.output.iter().chain(&graph.hdr).chain(&args.want).cloned().collect();
-    let known = || graph.textures.iter().map(|t| t.0.as_str()).chain(graph.buffers.iter().map(|b| b.0.as_str()));
-    if let Some(name) = wanted.iter().find(|w| !known().any(|k| k == w.as_str())) {
-        let hint = nearest(name, known()).map_or(String::new(), |h| format!(" ({h})"));
+    if let Some(name) = wanted.iter().find(|w| graph.resource(w).is_none()) {
+        let hint = nearest(name, graph.resource_names()).map_or(String::new(), |h| format!(" ({h})"));
         return Err(LabError::Request(format!("no resource '{name}'{hint}")));
     }
     wanted.extend(graph.checked_with(&wanted));
     let linked = home.linked(&graph, &params).map_err(LabError::Input)?;
-    let input = PlanInput { params: &params, env, wanted, device: &device };
-    let plan = plan(&graph, &linked, &input).map_err(LabError::Input)?;
+    let plan = plan(&set, &linked, &wanted, &device).map_err(LabError::Input)?;
     if let Some(path) = &args.json {
         return super::write_json(path, &outline(&graph, &params, &plan));
     }

@@ -3,9 +3,9 @@
 use super::adapt::{self, ExperimentArgs, parse_resource};
 use super::{DeviceArgs, writable};
 use crate::camera_path::CameraPath;
-use crate::graph::load::{Graph, LightPart};
 use crate::graph::param::Value;
 use crate::graph::run::{FrameTimes, Redo};
+use crate::graph::{Graph, LightPart};
 use crate::lab::{Lab, LabError, Session, Texels, Workspace};
 use crate::results::{picture, stats};
 use crate::timers::{Rows, Timers, stamped};
@@ -82,7 +82,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     let (mut shown, mut frames_of) = (None, None);
     let (mut session, warnings) = lab.prepare(&experiment, Arc::new(scene), |graph| {
         let named = |exr| match &resource {
-            Some(r) if graph.textures.iter().any(|t| t.0 == r.0) => Ok(r.clone()),
+            Some(r) if graph.texture(&r.0).is_some() => Ok(r.clone()),
             Some(r) => Err(crate::lab::no_texture(graph, &r.0)),
             None => Ok((result_name(graph, exr)?, 0, 0)),
         };

@@ -406,3 +406,14 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for TwoOrThree<T> {
         if values.len() < parts.len() { Err(D::Error::custom(REPORTED)) } else { Ok(TwoOrThree(values)) }
     }
 }
+
+/// A RON value kept as text, to be read by the parameter it is for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RawText(pub String);
+
+impl<'de> Deserialize<'de> for RawText {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+        Ok(RawText(raw.trim().get_ron().to_string()))
+    }
+}

@@ -3,7 +3,7 @@
 use super::{
     CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera, check_size,
 };
-use crate::diagnostics::{Diagnostic, Entries, Loc, Severity, Sources};
+use crate::diagnostics::{Diagnostic, Entries, Loc, RawText, Severity, Sources};
 use glam::Vec3;
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
@@ -25,17 +25,6 @@ impl<'de> Deserialize<'de> for CameraChoice {
             }
         }
         deserializer.deserialize_any(V)
-    }
-}
-
-/// A RON value kept as text, to be read by the parameter it is for.
-#[derive(Clone, Debug)]
-struct RawText(String);
-
-impl<'de> Deserialize<'de> for RawText {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
-        Ok(RawText(raw.trim().get_ron().to_string()))
     }
 }
 

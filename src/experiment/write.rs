@@ -271,7 +271,7 @@ fn edited(wanted: &Wanted, defaults: &Params) -> Option<String> {
         }
     }
     let same_param = |name: &str, old: &str, new: &str| {
-        let param = defaults.index(name).map(|i| &defaults.list[i]);
+        let param = defaults.param(name);
         param.is_some_and(|p| p.parse(old).is_ok_and(|v| Ok(v) == p.parse(new)))
     };
     let same_light = |name: &str, _: &str, new: &str| {

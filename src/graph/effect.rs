@@ -2,29 +2,24 @@
 //! a parameter counts where a shader of a pass that runs reads it, or where another value of it would change an expression
 //! that counts. What shaders decide at run time is beyond that; a declaration's `when` tells it.
 
-use super::expr::{Env, Var};
+use super::evaluated::Evaluated;
+use super::expr::{Env, Ex, Var};
 use super::externals::EXTERNALS;
-use super::file::Ex;
-use super::link::{Linked, Target, has_word};
-use super::load::Graph;
+use super::link::{Linked, Target, generated, has_word};
 use super::param::{Kind, Param, Params, Value};
-use super::plan::pass_expressions;
-use super::runs::generated;
 use crate::shader::{ShaderCompiler, module_include};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What runs.
 pub struct Running<'a> {
-    /// The graph.
-    pub graph: &'a Graph,
+    /// The graph, with its parameters set.
+    pub set: &'a Evaluated<'a>,
     /// Its passes with their shaders; those of passes that do not run are not looked at.
     pub linked: &'a [Linked],
     /// Numbers of the passes that run.
     pub passes: &'a [usize],
     /// Textures and buffers that they write.
     pub written: BTreeSet<&'a str>,
-    /// Scene, size and device, as expressions see them.
-    pub variables: &'a Env,
 }
 
 /// Why a parameter changes nothing.
@@ -38,9 +33,9 @@ pub struct Reason {
 
 /// Parameters that change nothing now, by name, with the reason. `compiler` finds the files of options that are
 /// not chosen.
-pub fn idle(running: &Running<'_>, params: &Params, compiler: &ShaderCompiler) -> BTreeMap<String, Reason> {
-    let read = read_by_shaders(running);
-    let trial = Trial::new(running, params, &read);
+pub fn idle(running: &Running<'_>, compiler: &ShaderCompiler) -> BTreeMap<String, Reason> {
+    let (params, read) = (running.set.params, read_by_shaders(running));
+    let trial = Trial::new(running, &read);
     let silent: Vec<&Param> = params
         .list
         .iter()
@@ -49,17 +44,14 @@ pub fn idle(running: &Running<'_>, params: &Params, compiler: &ShaderCompiler) -
     if silent.is_empty() {
         return BTreeMap::new();
     }
-    let texts = Texts::new(running, params, compiler);
+    let texts = Texts::new(running, compiler);
     silent.into_iter().map(|p| (p.name.clone(), trial.reason(p, &texts))).collect()
 }
 
 /// What shaders take in a parameter's place, where that is a number and another than its value.
-pub fn effective(graph: &Graph, param: &Param, params: &Params, variables: &Env) -> Option<f64> {
-    let expr = param.effective.as_ref()?;
-    let mut env = variables.clone();
-    super::value::fill(graph, params, &mut env);
-    let taken = expr.value.eval(&env).ok()?;
-    let own = params.get(&param.name)?.number()?;
+pub fn effective(set: &Evaluated<'_>, param: &Param) -> Option<f64> {
+    let taken = param.effective.as_ref()?.value.eval(&set.env).ok()?;
+    let own = set.params.get(&param.name)?.number()?;
     ((taken - own).abs() > 1e-6 * own.abs().max(1.0)).then_some(taken)
 }
 
@@ -92,7 +84,7 @@ fn read_by_shaders(running: &Running<'_>) -> BTreeSet<String> {
             texts.extend(stage.texts.iter().filter(|t| t.0 != "params.glsl").map(|(f, t)| (f.as_str(), t.as_str())));
         }
     }
-    for param in &running.graph.params.list {
+    for param in &running.set.graph.params.list {
         let upper = param.name.to_uppercase();
         if param.is_module() && texts.contains_key(module_include(&param.name).as_str())
             || param.constant && texts.values().any(|text| has_word(text, &upper))
@@ -114,27 +106,21 @@ struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    fn new(running: &'a Running<'a>, params: &'a Params, read: &'a BTreeSet<String>) -> Trial<'a> {
-        let graph = running.graph;
-        let mut env = running.variables.clone();
-        super::value::fill(graph, params, &mut env);
+    fn new(running: &'a Running<'a>, read: &'a BTreeSet<String>) -> Trial<'a> {
+        let Evaluated { graph, params, .. } = *running.set;
+        let mut env = running.set.env.clone();
         for name in ["index", "mip"] {
             env.insert(name.into(), Var::Number(0.0));
         }
         let mut expressions: Vec<&Ex> = graph.passes.iter().flat_map(|p| p.value.conditions()).collect();
-        expressions.extend(running.passes.iter().flat_map(|p| pass_expressions(&graph.passes[*p].value)));
-        for (name, texture) in &graph.textures {
-            if running.written.contains(name.as_str()) {
-                let t = &texture.value;
-                expressions.extend(t.size.0.iter().chain(&t.mips).chain(&t.layers));
-            }
-        }
+        expressions.extend(running.passes.iter().flat_map(|p| graph.passes[*p].value.expressions()));
+        let textures = graph.textures.iter().filter(|t| running.written.contains(t.0.as_str()));
+        expressions.extend(textures.flat_map(|(_, t)| t.value.expressions()));
         let buffers = graph.buffers.iter().filter(|b| running.written.contains(b.0.as_str()));
         expressions.extend(buffers.filter_map(|(_, b)| b.value.size.value.expression()));
-        let cases = graph.aliases.iter().flat_map(|a| &a.cases);
-        expressions.extend(cases.flat_map(|c| c.when.iter().chain(&c.bind.mip).chain(&c.bind.layer)));
+        expressions.extend(graph.alias_expressions());
         expressions.extend(graph.values.iter().filter(|v| read.contains(&v.name)).map(|v| &v.expr));
-        expressions.extend(graph.scene.iter().flat_map(|s| std::iter::once(&s.value.max_edge).chain(&s.value.when)));
+        expressions.extend(graph.scene_expressions());
         Trial { running, params, read, env, expressions }
     }
 
@@ -149,7 +135,7 @@ impl<'a> Trial<'a> {
 
     /// Whether it is the format of a texture that is made.
     fn is_format(&self, param: &Param) -> bool {
-        let mut made = self.running.graph.textures.iter().filter(|t| self.running.written.contains(t.0.as_str()));
+        let mut made = self.running.set.graph.textures.iter().filter(|t| self.running.written.contains(t.0.as_str()));
         made.any(|t| t.1.value.format.value == param.name)
     }
 
@@ -223,7 +209,7 @@ impl<'a> Trial<'a> {
     /// Choices and flags with which another value would change an expression that depends on both.
     fn switches(&self, param: &Param) -> (Vec<String>, Vec<(String, String)>) {
         let moved = self.depending_on(param);
-        let all: Vec<&Ex> = super::plan::all_expressions(self.running.graph).filter(|ex| !is_hash(ex)).collect();
+        let all: Vec<&Ex> = self.running.set.graph.expressions().filter(|ex| !is_hash(ex)).collect();
         let naming: Vec<&Ex> =
             all.into_iter().filter(|ex| ex.value.variables().iter().any(|v| moved.contains(v))).collect();
         let (mut clauses, mut needs) = (Vec::new(), Vec::new());
@@ -247,8 +233,8 @@ impl<'a> Trial<'a> {
 
     /// The parameter's names in expressions, and the values that follow from it.
     fn depending_on(&self, param: &Param) -> Vec<String> {
-        let mut moved = variables_of(param);
-        for value in &self.running.graph.values {
+        let mut moved = param.variables();
+        for value in &self.running.set.graph.values {
             if !is_hash(&value.expr) && value.expr.value.variables().iter().any(|v| moved.contains(v)) {
                 moved.push(value.name.clone());
             }
@@ -259,11 +245,10 @@ impl<'a> Trial<'a> {
     /// The variables with another value of a parameter, and all that follows from it.
     fn with(&self, env: &Env, param: &Param, value: &Value) -> Env {
         let mut env = env.clone();
-        put(&mut env, param, value);
+        param.put(value, &mut env);
         let moved = self.depending_on(param);
-        for value in self.running.graph.values.iter().filter(|v| moved.contains(&v.name)) {
-            if let Ok(number) = value.expr.value.eval(&env) {
-                let number = if value.whole { (number + 1e-9).floor() } else { number };
+        for value in self.running.set.graph.values.iter().filter(|v| moved.contains(&v.name)) {
+            if let Ok(number) = value.number(&env) {
                 env.insert(value.name.clone(), Var::Number(number));
             }
         }
@@ -274,14 +259,6 @@ impl<'a> Trial<'a> {
 /// Whether an expression only tells settings apart: such a number changes nothing by itself.
 fn is_hash(ex: &Ex) -> bool {
     ex.value.text.contains("hash(")
-}
-
-/// Its names in expressions.
-fn variables_of(param: &Param) -> Vec<String> {
-    match param.kind.components() {
-        0 => vec![param.name.clone()],
-        n => ["x", "y", "z", "w"].iter().take(n).map(|c| format!("{}_{c}", param.name)).collect(),
-    }
 }
 
 /// Other values worth trying: all of a choice, the ends and the middle of a range, the neighbours.
@@ -296,36 +273,12 @@ fn others(param: &Param, now: &Value) -> Vec<Value> {
         Value::Int(v) => numbers(*v as f64).iter().map(|x| Value::Int(x.round() as i64)).collect(),
         Value::Float(v) => numbers(*v).iter().map(|x| Value::Float(*x)).collect(),
         Value::Vector(v) => (0..5).map(|i| Value::Vector(v.iter().map(|x| numbers(*x)[i]).collect())).collect(),
-        Value::Choice(_) => match &param.kind {
-            Kind::Choice(options) => options.iter().map(|o| Value::Choice(o.clone())).collect(),
-            _ => Vec::new(),
-        },
+        Value::Choice(_) => param.kind.options().iter().map(|o| Value::Choice(o.clone())).collect(),
     };
     list.extend(param.plain.clone());
     list.push(param.default.clone());
     list.retain(|v| v != now);
     list
-}
-
-/// Sets a parameter among the variables of expressions.
-fn put(env: &mut Env, param: &Param, value: &Value) {
-    let name = &param.name;
-    let var = match value {
-        Value::Bool(v) => Var::Bool(*v),
-        Value::Int(v) => Var::Number(*v as f64),
-        Value::Float(v) => Var::Number(*v),
-        Value::Choice(option) => match env.get(option) {
-            Some(code) => *code,
-            None => return,
-        },
-        Value::Vector(v) => {
-            for (name, x) in variables_of(param).into_iter().zip(v) {
-                env.insert(name, Var::Number(*x));
-            }
-            return;
-        }
-    };
-    env.insert(name.clone(), var);
 }
 
 /// The shader files of a module's option.
@@ -345,8 +298,8 @@ struct Texts {
 }
 
 impl Texts {
-    fn new(running: &Running<'_>, params: &Params, compiler: &ShaderCompiler) -> Texts {
-        let graph = running.graph;
+    fn new(running: &Running<'_>, compiler: &ShaderCompiler) -> Texts {
+        let Evaluated { graph, params, ref env, .. } = *running.set;
         let made = generated(graph, params);
         let mut files = BTreeMap::new();
         let mut take = |file: &str| -> BTreeSet<String> {
@@ -358,19 +311,16 @@ impl Texts {
         };
         let mut options = Vec::new();
         for param in params.list.iter().filter(|p| p.is_module()) {
-            let Kind::Choice(names) = &param.kind else { continue };
             let chosen = params.get(&param.name);
-            for (option, file) in names.iter().zip(&param.files) {
+            for (option, file) in param.kind.options().iter().zip(&param.files) {
                 let is_chosen = chosen == Some(&Value::Choice(option.clone()));
                 let (module, option) = (param.name.clone(), option.clone());
                 options.push(OptionFiles { module, option, is_chosen, files: take(file) });
             }
         }
-        let mut env = running.variables.clone();
-        super::value::fill(graph, params, &mut env);
         let mut resting = Vec::new();
         for (number, pass) in graph.passes.iter().enumerate().filter(|(i, _)| !running.passes.contains(i)) {
-            let fails = |when: &&Ex| when.value.eval(&env) == Ok(0.0);
+            let fails = |when: &&Ex| when.value.eval(env) == Ok(0.0);
             let Some(condition) = pass.value.conditions().find(fails) else { continue };
             let used = graph.passes[number].value.shaders.0.iter().flat_map(|s| take(&s.value)).collect();
             resting.push((condition.value.text.clone(), used));
@@ -383,8 +333,8 @@ impl Texts {
         if param.is_module() {
             return BTreeSet::from([module_include(&param.name)]);
         }
-        let own = if param.constant { param.name.to_uppercase() } else { format!("params.{}", param.name) };
-        let words: Vec<String> = std::iter::once(own).chain(moved.iter().map(|v| format!("params.{v}"))).collect();
+        let words: Vec<String> =
+            std::iter::once(param.in_shaders()).chain(moved.iter().map(|v| format!("params.{v}"))).collect();
         let named = |text: &str| words.iter().any(|w| has_word(text, w));
         self.files.iter().filter(|(_, text)| named(text)).map(|(file, _)| file.clone()).collect()
     }

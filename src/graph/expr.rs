@@ -1,6 +1,7 @@
 //! Expressions over parameters: sizes, counts and conditions. The language is that of Rhai's expressions; variables are
 //! numbers or booleans, a true result counts as 1.
 
+use crate::diagnostics::Loc;
 use rhai::packages::{ArithmeticPackage, BasicMathPackage, LogicPackage, Package};
 use rhai::{AST, ASTNode, Dynamic, Engine, EvalAltResult, ImmutableString, Scope};
 use serde::de::{Deserialize, Deserializer, Visitor};
@@ -16,6 +17,9 @@ pub enum Var {
     /// true or false.
     Bool(bool),
 }
+
+/// An expression with its place.
+pub type Ex = Loc<Expr>;
 
 /// Values of variables by name.
 pub type Env = BTreeMap<String, Var>;

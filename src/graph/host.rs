@@ -11,36 +11,23 @@ trait Glsl {
     const LAYOUT: Layout;
 }
 
-impl Glsl for f32 {
-    const LAYOUT: Layout = Layout::Scalar(Scalar::Float);
+macro_rules! glsl {
+    ($($ty:ty: $layout:expr;)*) => {
+        $(impl Glsl for $ty {
+            const LAYOUT: Layout = $layout;
+        })*
+    };
 }
 
-impl Glsl for u32 {
-    const LAYOUT: Layout = Layout::Scalar(Scalar::Uint);
-}
-
-impl Glsl for i32 {
-    const LAYOUT: Layout = Layout::Scalar(Scalar::Int);
-}
-
-impl Glsl for [f32; 2] {
-    const LAYOUT: Layout = Layout::Vector(Scalar::Float, 2);
-}
-
-impl Glsl for [f32; 3] {
-    const LAYOUT: Layout = Layout::Vector(Scalar::Float, 3);
-}
-
-impl Glsl for [f32; 4] {
-    const LAYOUT: Layout = Layout::Vector(Scalar::Float, 4);
-}
-
-impl Glsl for [f32; 16] {
-    const LAYOUT: Layout = Layout::Matrix { columns: 4, rows: 4, stride: 16 };
-}
-
-impl Glsl for [u32; 2] {
-    const LAYOUT: Layout = Layout::Vector(Scalar::Uint, 2);
+glsl! {
+    f32: Layout::Scalar(Scalar::Float);
+    u32: Layout::Scalar(Scalar::Uint);
+    i32: Layout::Scalar(Scalar::Int);
+    [f32; 2]: Layout::Vector(Scalar::Float, 2);
+    [f32; 3]: Layout::Vector(Scalar::Float, 3);
+    [f32; 4]: Layout::Vector(Scalar::Float, 4);
+    [f32; 16]: Layout::Matrix { columns: 4, rows: 4, stride: 16 };
+    [u32; 2]: Layout::Vector(Scalar::Uint, 2);
 }
 
 /// Defines a struct and the layout of its fields.
@@ -54,13 +41,17 @@ macro_rules! block {
         }
 
         impl $name {
-            fn members() -> Vec<Member> {
+            /// Its members and bytes.
+            fn layout() -> (Vec<Member>, usize) {
                 let member = |name: &str, offset: usize, layout: Layout| Member {
                     name: name.into(),
                     offset: u32::try_from(offset).unwrap_or(u32::MAX),
                     layout,
                 };
-                vec![$(member(stringify!($field), offset_of!($name, $field), <$ty as Glsl>::LAYOUT),)*]
+                let members = vec![
+                    $(member(stringify!($field), offset_of!($name, $field), <$ty as Glsl>::LAYOUT),)*
+                ];
+                (members, size_of::<$name>())
             }
         }
     };
@@ -188,15 +179,15 @@ block! {
 /// Why a shader's declaration of one of the scene's resources does not fit, and the member that it is about, if it is one.
 /// Members of other names, and resources without a struct, are the shader's own affair.
 pub(super) fn mismatch(resource: &str, declared: &Layout) -> Option<(String, Option<String>)> {
-    let (members, bytes, elements) = match resource {
-        "camera" => (CameraBlock::members(), size_of::<CameraBlock>(), false),
-        "sceneInfo" => (SceneInfoBlock::members(), size_of::<SceneInfoBlock>(), false),
-        "lights" => (LightBlock::members(), size_of::<LightBlock>(), true),
-        "shadowViews" => (ShadowBlock::members(), size_of::<ShadowBlock>(), true),
-        "materials" => (MaterialBlock::members(), size_of::<MaterialBlock>(), true),
-        "instances" => (InstanceBlock::members(), size_of::<InstanceBlock>(), true),
-        "draws" => (DrawBlock::members(), size_of::<DrawBlock>(), true),
-        "emitters" => (EmitterBlock::members(), size_of::<EmitterBlock>(), true),
+    let (elements, (members, bytes)) = match resource {
+        "camera" => (false, CameraBlock::layout()),
+        "sceneInfo" => (false, SceneInfoBlock::layout()),
+        "lights" => (true, LightBlock::layout()),
+        "shadowViews" => (true, ShadowBlock::layout()),
+        "materials" => (true, MaterialBlock::layout()),
+        "instances" => (true, InstanceBlock::layout()),
+        "draws" => (true, DrawBlock::layout()),
+        "emitters" => (true, EmitterBlock::layout()),
         _ => return None,
     };
     let declared = if elements { element(declared)? } else { (declared, None) };

@@ -1,31 +1,20 @@
 //! The pass graph: parameters, textures, buffers and passes, read from RON. It knows no voxels.
-mod alias;
-mod check;
-mod check_pass;
-mod choices;
+
+mod definition;
 pub mod effect;
+mod evaluated;
 pub mod expr;
 pub mod externals;
 pub mod file;
 pub(crate) mod host;
-pub mod hot_reload;
-pub mod layouts;
 pub mod link;
-mod live;
 pub mod load;
-mod needs;
 pub mod outline;
 pub mod param;
-mod pipelines;
 pub mod plan;
 pub mod report;
-mod resources;
 pub mod run;
-pub mod runs;
-pub mod settle;
-mod sleep;
 pub mod table;
-pub mod transient;
-mod unused;
-pub mod usage;
-pub mod value;
+
+pub use definition::{Alias, AliasCase, Graph, LightPart, Named, Res};
+pub use evaluated::Evaluated;

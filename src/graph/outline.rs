@@ -1,9 +1,8 @@
 //! A plan for programs: what runs, on what, and how large it is.
 
-use super::load::Graph;
+use super::definition::Graph;
 use super::param::{Params, Value};
-use super::plan::Plan;
-use super::report::{resource_name, texture_bytes};
+use super::plan::{Plan, Use};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -83,7 +82,7 @@ pub fn outline(graph: &Graph, params: &Params, plan: &Plan) -> Outline {
     let passes = plan.steps.chunk_by(|a, b| a.pass == b.pass).map(|steps| {
         let pass = &graph.passes[steps[0].pass].value;
         let uses = || steps.iter().flat_map(|s| &s.uses);
-        let name = |u: &super::usage::Use| resource_name(graph, u.res);
+        let name = |u: &Use| graph.title_of(u.res);
         PassOutline {
             name: pass.name.value.clone(),
             stage: pass.stage().into(),
@@ -100,7 +99,7 @@ pub fn outline(graph: &Graph, params: &Params, plan: &Plan) -> Outline {
         layers: p.layers,
         transient: p.transient,
         history: p.history,
-        bytes: texture_bytes(plan, t),
+        bytes: p.bytes(),
     });
     let buffers = plan.buffers.iter().zip(&graph.buffers).filter(|(p, _)| p.used).map(|(p, b)| BufferOutline {
         name: b.0.clone(),
@@ -108,11 +107,11 @@ pub fn outline(graph: &Graph, params: &Params, plan: &Plan) -> Outline {
         history: p.history,
         bytes: p.bytes(),
     });
-    let left_out = plan.dropped.iter().map(|(pass, why)| (graph.passes[*pass].value.name.value.clone(), why.clone()));
+    let left_out = plan.dropped.iter().map(|(pass, why)| (graph.pass_name(*pass).to_string(), why.clone()));
     Outline {
         schema: SCHEMA,
         graph: graph.name.clone(),
-        params: params.list.iter().map(|p| p.name.clone()).zip(params.values.iter().cloned()).collect(),
+        params: params.names().map(String::from).zip(params.values.iter().cloned()).collect(),
         passes: passes.collect(),
         textures: textures.collect(),
         buffers: buffers.collect(),

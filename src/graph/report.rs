@@ -1,32 +1,16 @@
 //! A plan for people: order, lifetimes, barriers, memory, and what was left out; or a Graphviz picture.
 
+use super::definition::{Graph, Res};
+use super::evaluated::Evaluated;
 use super::link::Linked;
-use super::load::Graph;
-use super::param::{Params, Value};
-use super::plan::{Plan, Step, Work};
-use super::transient::{Transient, pack};
-use super::usage::{Barrier, Res, schedule};
+use super::param::Params;
+use super::plan::{Barrier, Plan, Step, Work, pack, schedule};
 use std::fmt::Write;
-
-pub(super) fn resource_name(graph: &Graph, res: Res) -> String {
-    match res {
-        Res::Texture(t, false) => graph.textures[t].0.clone(),
-        Res::Texture(t, true) => format!("{} (last frame)", graph.textures[t].0),
-        Res::Buffer(b, false) => graph.buffers[b].0.clone(),
-        Res::Buffer(b, true) => format!("{} (last frame)", graph.buffers[b].0),
-    }
-}
-
-pub(super) fn texture_bytes(plan: &Plan, t: usize) -> u64 {
-    let p = &plan.textures[t];
-    let mips = (0..p.mips).map(|m| p.extent.iter().map(|n| u64::from((n >> m).max(1))).product::<u64>()).sum::<u64>();
-    mips * u64::from(p.layers) * u64::from(p.format.bytes) * (1 + u64::from(p.history))
-}
 
 /// What runs, stage by stage: work, what it reads and what it writes; memory; what was left out and why.
 pub fn summary(graph: &Graph, plan: &Plan) -> String {
     let mut out = String::new();
-    let (ran, all, params) = (ran(plan).len(), graph.passes.len(), graph.params.list.len());
+    let (ran, all, params) = (plan.passes().len(), graph.passes.len(), graph.params.list.len());
     let _ = writeln!(out, "graph {}: {ran} of {all} passes run, {params} parameters", graph.name);
     let mut stage = "";
     for steps in plan.steps.chunk_by(|a, b| a.pass == b.pass) {
@@ -39,7 +23,7 @@ pub fn summary(graph: &Graph, plan: &Plan) -> String {
         let times = if steps.len() > 1 { format!(" x{}", steps.len()) } else { String::new() };
         let named = |written: bool| {
             let uses = first.uses.iter().filter(|u| if written { u.write } else { u.read && !u.write });
-            let mut names: Vec<String> = uses.map(|u| resource_name(graph, u.res)).collect();
+            let mut names: Vec<String> = uses.map(|u| graph.title_of(u.res)).collect();
             names.sort();
             names.dedup();
             names.join(" ")
@@ -52,18 +36,14 @@ pub fn summary(graph: &Graph, plan: &Plan) -> String {
         };
     }
     for settling in &plan.settling {
-        let mut passes: Vec<&str> =
-            settling.steps.iter().map(|i| graph.passes[plan.steps[*i].pass].value.name.value.as_str()).collect();
+        let mut passes: Vec<&str> = settling.steps.iter().map(|i| graph.pass_name(plan.steps[*i].pass)).collect();
         passes.dedup();
         let _ = writeln!(out, "after {} still frames rest: {}", settling.frames, passes.join(", "));
     }
     let _ = writeln!(out, "\nmemory, MiB");
-    let textures = plan.textures.iter().enumerate().filter(|(_, p)| !p.usage.is_empty());
-    let star = |name: &str, transient: bool| format!("{name}{}", if transient { "*" } else { "" });
-    let textures = textures.map(|(t, p)| (star(&graph.textures[t].0, p.transient), texture_bytes(plan, t)));
-    let buffers = plan.buffers.iter().enumerate().filter(|(_, p)| p.used);
-    let buffers = buffers.map(|(b, p)| (star(&graph.buffers[b].0, p.transient), p.bytes()));
-    let mut memory: Vec<(String, u64)> = textures.chain(buffers).collect();
+    let star = |res: Res| if plan.is_transient(res) { "*" } else { "" };
+    let named = |res: Res| (format!("{}{}", graph.name_of(res), star(res)), plan.bytes_of(res));
+    let mut memory: Vec<(String, u64)> = plan.made().map(named).collect();
     memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
     // What is smaller than a tenth is not worth a word.
@@ -78,18 +58,14 @@ pub fn summary(graph: &Graph, plan: &Plan) -> String {
     let _ = writeln!(out, "  {}, {} smaller ones; {total:.1} in all{stars}", items.join(", "), small.len());
     let _ = writeln!(out, "\nleft out");
     for (pass, why) in &plan.dropped {
-        let _ = writeln!(out, "  {}: {why}", graph.passes[*pass].value.name.value);
+        let _ = writeln!(out, "  {}: {why}", graph.pass_name(*pass));
     }
     out
 }
 
 /// Bytes of the memory that transient resources share, and how much more they had alone. Devices round sizes up.
 fn shared(plan: &Plan) -> (u64, u64) {
-    let bytes = |t: &Transient| match t.res {
-        Res::Texture(t, _) => texture_bytes(plan, t),
-        Res::Buffer(b, _) => plan.buffers[b].bytes(),
-    };
-    let sizes: Vec<(u64, u64)> = plan.transients.iter().map(|t| (bytes(t), 1)).collect();
+    let sizes: Vec<(u64, u64)> = plan.transients.iter().map(|t| (plan.bytes_of(t.res), 1)).collect();
     let all = pack(&sizes, &plan.transients).1;
     (all, sizes.iter().map(|(bytes, _)| bytes).sum::<u64>() - all)
 }
@@ -97,14 +73,14 @@ fn shared(plan: &Plan) -> (u64, u64) {
 /// Every step in order with its barriers; sizes, formats and lifetimes of resources; what was left out and why.
 pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
     let mut out = String::new();
-    let _ = writeln!(out, "graph {}: {} of {} passes run\n", graph.name, ran(plan).len(), graph.passes.len());
+    let _ = writeln!(out, "graph {}: {} of {} passes run\n", graph.name, plan.passes().len(), graph.passes.len());
     let schedule = schedule(plan);
     let _ = writeln!(out, "order");
     for (i, step) in plan.steps.iter().enumerate() {
         for barrier in &schedule.barriers[0][i] {
             let _ = writeln!(out, "       | {}", barrier_text(graph, barrier));
         }
-        let _ = writeln!(out, "{i:5}  {}{}", graph.passes[step.pass].value.name.value, repeat_text(plan, i));
+        let _ = writeln!(out, "{i:5}  {}{}", graph.pass_name(step.pass), repeat_text(plan, i));
         let _ = writeln!(out, "       {}", work_text(graph, step));
         for u in &step.uses {
             let how = match (u.read, u.write) {
@@ -120,67 +96,40 @@ pub fn text(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
                 format!("mips {}-{}", u.mips.0, u.mips.0 + u.mips.1 - 1)
             };
             let mips = if matches!(u.res, Res::Texture(..)) { mips } else { String::new() };
-            let _ = writeln!(out, "         {how} {} {mips}", resource_name(graph, u.res));
+            let _ = writeln!(out, "         {how} {} {mips}", graph.title_of(u.res));
         }
         for i in &step.stripped {
             let _ = writeln!(out, "         leaves out its stores to {}", linked[step.pass].bound[*i].name);
         }
     }
     let _ = writeln!(out, "\nresources                        size                 format       MiB  lifetime (steps)");
-    let mut total = 0;
-    for (t, p) in plan.textures.iter().enumerate().filter(|(_, p)| !p.usage.is_empty()) {
-        let bytes = texture_bytes(plan, t);
-        total += bytes;
-        let [x, y, z] = p.extent;
-        let size = if p.volume { format!("{x}x{y}x{z}") } else { format!("{x}x{y}x{} layers", p.layers) };
-        let size = format!("{size}, {} mips", p.mips);
-        let _ = writeln!(
-            out,
-            "{:<28} {:>22}  {:<10} {:>7.1}  {}",
-            graph.textures[t].0,
-            size,
-            p.format.name,
-            bytes as f64 / 1048576.0,
-            lifetime(plan, |r| matches!(r, Res::Texture(x, _) if x == t), p.history)
-        );
+    let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
+    for res in plan.made() {
+        let (size, format) = match res {
+            Res::Texture(t, _) => {
+                let p = &plan.textures[t];
+                let ([x, y, z], mips) = (p.extent, p.mips);
+                let size = if p.volume { format!("{x}x{y}x{z}") } else { format!("{x}x{y}x{} layers", p.layers) };
+                (format!("{size}, {mips} mips"), p.format.name)
+            }
+            Res::Buffer(b, _) => (format!("{} bytes", plan.buffers[b].size), "buffer"),
+        };
+        let (name, mib, lifetime) = (graph.name_of(res), mib(plan.bytes_of(res)), lifetime(plan, res));
+        let _ = writeln!(out, "{name:<28} {size:>22}  {format:<10} {mib:>7.1}  {lifetime}");
     }
-    for (b, p) in plan.buffers.iter().enumerate().filter(|(_, p)| p.used) {
-        total += p.bytes();
-        let _ = writeln!(
-            out,
-            "{:<28} {:>22}  {:<10} {:>7.1}  {}",
-            graph.buffers[b].0,
-            format!("{} bytes", p.size),
-            "buffer",
-            p.bytes() as f64 / 1048576.0,
-            lifetime(plan, |r| matches!(r, Res::Buffer(x, _) if x == b), p.history)
-        );
-    }
+    let total: u64 = plan.made().map(|res| plan.bytes_of(res)).sum();
     let saved = shared(plan).1;
-    let _ = writeln!(out, "{:<62} {:>10.1}", "saved by memory that transient ones share", saved as f64 / 1048576.0);
-    let _ = writeln!(out, "{:<62} {:>10.1}", "total", (total - saved) as f64 / 1048576.0);
-    let unmade: Vec<&str> = graph
-        .textures
-        .iter()
-        .zip(&plan.textures)
-        .filter(|(_, p)| p.usage.is_empty())
-        .map(|(t, _)| t.0.as_str())
-        .chain(graph.buffers.iter().zip(&plan.buffers).filter(|(_, p)| !p.used).map(|(b, _)| b.0.as_str()))
-        .collect();
+    let _ = writeln!(out, "{:<62} {:>10.1}", "saved by memory that transient ones share", mib(saved));
+    let _ = writeln!(out, "{:<62} {:>10.1}", "total", mib(total - saved));
     let _ = writeln!(out, "\nleft out");
     for (pass, why) in &plan.dropped {
-        let _ = writeln!(out, "  pass {}: {why}", graph.passes[*pass].value.name.value);
+        let _ = writeln!(out, "  pass {}: {why}", graph.pass_name(*pass));
     }
-    for name in unmade {
+    let made: Vec<&str> = plan.made().map(|res| graph.name_of(res)).collect();
+    for name in graph.resource_names().filter(|name| !made.contains(name)) {
         let _ = writeln!(out, "  {name}: no pass that runs uses it");
     }
     out
-}
-
-fn ran(plan: &Plan) -> Vec<usize> {
-    let mut list: Vec<usize> = plan.steps.iter().map(|s| s.pass).collect();
-    list.dedup();
-    list
 }
 
 fn repeat_text(plan: &Plan, i: usize) -> String {
@@ -213,19 +162,15 @@ fn barrier_text(graph: &Graph, b: &Barrier) -> String {
         if b.layouts.0 == b.layouts.1 { String::new() } else { format!(", {:?} to {:?}", b.layouts.0, b.layouts.1) };
     let mips =
         if matches!(b.res, Res::Buffer(..)) { String::new() } else { format!(" mips {}+{}", b.mips.0, b.mips.1) };
-    format!("{}{mips}: {:?} to {:?}{layouts}", resource_name(graph, b.res), b.src.0, b.dst.0)
+    format!("{}{mips}: {:?} to {:?}{layouts}", graph.title_of(b.res), b.src.0, b.dst.0)
 }
 
-fn lifetime(plan: &Plan, is: impl Fn(Res) -> bool, history: bool) -> String {
-    let uses: Vec<(usize, bool)> = plan
-        .steps
-        .iter()
-        .enumerate()
-        .filter_map(|(i, s)| s.uses.iter().find(|u| is(u.res)).map(|u| (i, u.read)))
-        .collect();
-    match (uses.first(), uses.last()) {
+fn lifetime(plan: &Plan, res: Res) -> String {
+    let used = |step: &Step| step.uses.iter().find(|u| u.res.current() == res).map(|u| u.read);
+    let uses = || plan.steps.iter().enumerate().filter_map(|(i, step)| Some((i, used(step)?)));
+    match (uses().next(), uses().next_back()) {
         (Some((first, read)), Some((last, _))) => {
-            let carried = if *read || history { ", kept from frame to frame" } else { "" };
+            let carried = if read || plan.has_history(res) { ", kept from frame to frame" } else { "" };
             format!("{first}-{last}{carried}")
         }
         _ => String::from("-"),
@@ -251,12 +196,12 @@ pub fn params(params: &Params) -> String {
 }
 
 /// Named values with what they are now.
-pub fn values(graph: &Graph, values: &[Value]) -> String {
+pub fn values(set: &Evaluated<'_>) -> String {
     let mut out = String::new();
-    if !values.is_empty() {
+    if !set.values.is_empty() {
         out.push_str("\nvalues, which follow from these\n");
     }
-    for (named, value) in graph.values.iter().zip(values) {
+    for (named, value) in set.graph.values.iter().zip(&set.values) {
         let _ = writeln!(out, "  {} = {value}  ({})", named.name, named.expr.value.text);
     }
     out
@@ -265,16 +210,16 @@ pub fn values(graph: &Graph, values: &[Value]) -> String {
 /// A Graphviz picture: passes as boxes, resources as ellipses.
 pub fn dot(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
     let mut out = String::from("digraph graph_of_passes {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n");
-    for pass in ran(plan) {
+    for pass in plan.passes() {
         let shaders: Vec<&str> = linked[pass].stages.iter().map(|s| s.file.as_str()).collect();
-        let name = &graph.passes[pass].value.name.value;
+        let name = graph.pass_name(pass);
         let _ = writeln!(out, "  \"pass {name}\" [shape=box, label=\"{name}\\n{}\"];", shaders.join("\\n"));
     }
     let mut edges: Vec<String> = Vec::new();
     for step in &plan.steps {
-        let name = &graph.passes[step.pass].value.name.value;
+        let name = graph.pass_name(step.pass);
         for u in &step.uses {
-            let res = resource_name(graph, u.res);
+            let res = graph.title_of(u.res);
             if u.read {
                 edges.push(format!("  \"{res}\" -> \"pass {name}\";"));
             }

@@ -1,63 +1,7 @@
-//! Buffers as tables for people: a graph names rows and columns, or says where they lie, and the bytes become cells.
+//! Tables of a graph with their bytes, and the cells that these become.
 
-use super::file::Path;
-use super::layouts::Layouts;
-use crate::diagnostics::{At, Diagnostic, Items, Loc, nearest};
-use crate::shader::Layout;
-use crate::shader::layout::Scalar;
-use serde::Deserialize;
-use std::collections::HashSet;
+use super::file::{CellKind, ColumnDecl, RowCount, TableDecl};
 use std::fmt;
-
-/// A buffer whose content may be read as a table, as it stands in a graph file: by names of members, or by bytes.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TableDecl {
-    /// The array whose elements are the rows, `buffer.member`; or, by bytes, `buffer`, `start` and `stride`.
-    pub list: Option<Loc<Path>>,
-    /// The buffer.
-    pub buffer: Option<Loc<String>>,
-    /// What holds the number of rows.
-    pub rows: Loc<RowCount>,
-    /// Byte where the first row begins.
-    pub start: Option<u32>,
-    /// Bytes from one row to the next.
-    pub stride: Option<u32>,
-    /// Heading, unique in the graph.
-    pub title: String,
-    /// One line.
-    pub help: String,
-    /// Columns in the order shown.
-    pub columns: Items<ColumnDecl>,
-}
-
-/// What holds the number of rows of a table.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
-pub enum RowCount {
-    /// The 32-bit word of that index.
-    Word(u32),
-    /// A member.
-    Field(Path),
-}
-
-/// A column of a table, as it stands in a graph file.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ColumnDecl {
-    /// Heading, unique in the table.
-    pub name: String,
-    /// The member of a row; that of the column's name when absent.
-    pub of: Option<String>,
-    /// Byte of the row where it begins, in a table by bytes.
-    pub at: Option<u32>,
-    /// Type of its values, in a table by bytes.
-    #[serde(rename = "as")]
-    pub kind: Option<CellKind>,
-    /// Unit, for people.
-    #[serde(default)]
-    pub unit: String,
-}
 
 /// A table with its bytes.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,31 +27,6 @@ pub struct Column {
     pub kind: CellKind,
     /// Unit, for people.
     pub unit: String,
-}
-
-/// Type of a column's values: 32-bit numbers, one or several.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-#[expect(missing_docs, reason = "named after GLSL's types")]
-pub enum CellKind {
-    Uint,
-    Int,
-    Float,
-    Vec2,
-    Vec3,
-    Vec4,
-}
-
-impl CellKind {
-    /// Size in bytes.
-    pub fn bytes(self) -> usize {
-        match self {
-            CellKind::Uint | CellKind::Int | CellKind::Float => 4,
-            CellKind::Vec2 => 8,
-            CellKind::Vec3 => 12,
-            CellKind::Vec4 => 16,
-        }
-    }
 }
 
 /// A value of a table.
@@ -168,155 +87,12 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
     bytes.try_into().ok().map(u32::from_ne_bytes)
 }
 
-impl TableDecl {
-    /// The buffer that it is read from.
-    pub fn buffer(&self) -> &str {
-        self.list.as_ref().map_or_else(|| self.buffer.as_ref().map_or("", |b| &b.value), |l| &l.value.buffer)
-    }
-
-    /// The members that it names, with what names them.
-    pub(super) fn paths(&self) -> impl Iterator<Item = &Loc<Path>> {
-        self.list.iter()
-    }
-
-    /// With its bytes; nothing where no compiled shader declares the buffer.
-    ///
-    /// # Errors
-    /// Members that are not there, or that no table can show.
-    pub(super) fn resolve(&self, layouts: &Layouts<'_>) -> Result<Option<Table>, Vec<Diagnostic>> {
-        let Some(list) = &self.list else { return Ok(self.by_bytes()) };
-        let error = |at: At, message: String| vec![layouts.graph().sources.error(at, message)];
-        let rows = match &self.rows.value {
-            RowCount::Word(word) => Some(*word),
-            RowCount::Field(path) => {
-                let path = Loc { value: path.clone(), at: self.rows.at };
-                match layouts.find(&path).map_err(|e| vec![e])? {
-                    Some((byte, Layout::Scalar(Scalar::Uint))) => Some(byte / 4),
-                    Some((_, other)) => {
-                        return Err(error(
-                            path.at,
-                            format!("'{}' is of type {other}; rows are counted by a uint", path.value),
-                        ));
-                    }
-                    None => None,
-                }
-            }
-        };
-        let (Some(rows), Some((start, found))) = (rows, layouts.find(list).map_err(|e| vec![e])?) else {
-            return Ok(None);
-        };
-        let Layout::Array { of, stride, .. } = found else {
-            return Err(error(
-                list.at,
-                format!("'{}' is of type {found}; the rows of a table are an array's", list.value),
-            ));
-        };
-        let (mut columns, mut wrong) = (Vec::new(), Vec::new());
-        for column in &self.columns.0 {
-            match column.value.resolve(&of) {
-                Ok(column) => columns.push(column),
-                Err((message, help)) => wrong.push(layouts.graph().sources.error(column.at, message).help(help)),
-            }
-        }
-        if wrong.is_empty() { Ok(Some(Table { rows, start, stride, columns })) } else { Err(wrong) }
-    }
-
-    /// A table whose bytes stand in the file; nothing where it goes by names.
-    pub fn by_bytes(&self) -> Option<Table> {
-        let RowCount::Word(rows) = self.rows.value else { return None };
-        let column =
-            |c: &ColumnDecl| Some(Column { name: c.name.clone(), at: c.at?, kind: c.kind?, unit: c.unit.clone() });
-        let columns = self.columns.0.iter().map(|c| column(&c.value)).collect::<Option<_>>()?;
-        Some(Table { rows, start: self.start?, stride: self.stride?, columns })
-    }
-
-    /// What is wrong with it, and where, as far as that needs no shader; `at` is the table's own place.
-    pub(super) fn mistakes(&self, at: At) -> Vec<(At, String)> {
-        let mut list = Vec::new();
-        let title = &self.title;
-        if self.columns.0.is_empty() {
-            list.push((at, format!("table '{title}' has no columns")));
-        }
-        if self.help.trim().is_empty() || self.help.contains('\n') {
-            list.push((at, format!("table '{title}' needs one line of help")));
-        }
-        let mut names = HashSet::new();
-        for Loc { value: column, at } in &self.columns.0 {
-            if !names.insert(&column.name) {
-                list.push((*at, format!("two columns of '{title}' are named '{}'", column.name)));
-            }
-        }
-        let by_bytes =
-            self.columns.0.iter().all(|c| c.value.at.is_some() && c.value.kind.is_some() && c.value.of.is_none());
-        let by_names = self.columns.0.iter().all(|c| c.value.at.is_none() && c.value.kind.is_none());
-        match (&self.list, &self.buffer, self.start, self.stride, &self.rows.value) {
-            (Some(path), None, None, None, rows) if by_names => {
-                if let RowCount::Field(rows) = rows
-                    && rows.buffer != path.value.buffer
-                {
-                    let message = format!("'{rows}' is not in '{}', which holds the rows", path.value.buffer);
-                    list.push((self.rows.at, message));
-                }
-            }
-            (None, Some(_), Some(start), Some(stride), RowCount::Word(_)) if by_bytes => {
-                if stride == 0 || !stride.is_multiple_of(4) || !start.is_multiple_of(4) {
-                    let message = format!(
-                        "table '{title}': start {start} and stride {stride} must be multiples of 4, the stride not 0"
-                    );
-                    list.push((at, message));
-                }
-                for Loc { value: column, at } in &self.columns.0 {
-                    list.extend(column.outside(stride).map(|message| (*at, message)));
-                }
-            }
-            _ => {
-                let message = format!(
-                    "table '{title}' needs either list and rows by names, or buffer, rows, start, stride and for each column at and as"
-                );
-                list.push((at, message));
-            }
-        }
-        list
-    }
-}
-
-impl ColumnDecl {
-    /// With its bytes in a row.
-    fn resolve(&self, row: &Layout) -> Result<Column, (String, Option<String>)> {
-        let path = self.of.as_deref().unwrap_or(&self.name);
-        // The rows of an array of numbers have no members.
-        let whole = row.members().is_empty() && self.of.is_none();
-        let (at, layout) = if whole { Ok((0, row.clone())) } else { row.find(path) }.map_err(|missing| {
-            let known = missing.known.iter().map(String::as_str);
-            (format!("column '{}': a row has no member '{path}'", self.name), nearest(&missing.name, known))
-        })?;
-        let kind = match layout {
-            Layout::Scalar(Scalar::Uint) => CellKind::Uint,
-            Layout::Scalar(Scalar::Int) => CellKind::Int,
-            Layout::Scalar(Scalar::Float) => CellKind::Float,
-            Layout::Vector(Scalar::Float, 2) => CellKind::Vec2,
-            Layout::Vector(Scalar::Float, 3) => CellKind::Vec3,
-            Layout::Vector(Scalar::Float, 4) => CellKind::Vec4,
-            other => {
-                let message = format!("column '{}': '{path}' is of type {other}, which no table shows", self.name);
-                return Err((message, Some("tables show uint, int, float, vec2, vec3 and vec4".into())));
-            }
-        };
-        Ok(Column { name: self.name.clone(), at, kind, unit: self.unit.clone() })
-    }
-
-    /// Why it does not lie in a row of so many bytes.
-    fn outside(&self, stride: u32) -> Option<String> {
-        let (name, at) = (&self.name, self.at?);
-        let end = u64::from(at) + self.kind?.bytes() as u64;
-        if end > u64::from(stride) {
-            Some(format!("column '{name}' ends at byte {end} of a row of {stride}"))
-        } else if !at.is_multiple_of(4) {
-            Some(format!("column '{name}' begins at byte {at}, which is no multiple of 4"))
-        } else {
-            None
-        }
-    }
+/// A table whose bytes stand in the file; nothing where it goes by names.
+pub fn by_bytes(decl: &TableDecl) -> Option<Table> {
+    let RowCount::Word(rows) = decl.rows.value else { return None };
+    let column = |c: &ColumnDecl| Some(Column { name: c.name.clone(), at: c.at?, kind: c.kind?, unit: c.unit.clone() });
+    let columns = decl.columns.0.iter().map(|c| column(&c.value)).collect::<Option<_>>()?;
+    Some(Table { rows, start: decl.start?, stride: decl.stride?, columns })
 }
 
 #[cfg(test)]
@@ -324,7 +100,7 @@ mod tests {
     use super::*;
 
     fn table(text: &str) -> Table {
-        crate::diagnostics::options().from_str::<TableDecl>(text).unwrap().by_bytes().unwrap()
+        by_bytes(&crate::diagnostics::options().from_str(text).unwrap()).unwrap()
     }
 
     const PAIRS: &str = r#"(buffer: "b", rows: 1, start: 8, stride: 16, title: "t", help: "h", columns: [

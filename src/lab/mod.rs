@@ -15,23 +15,20 @@ mod workspace;
 pub use parts::{focus_of, parts_of};
 pub use scene::SceneGpu;
 pub use texels::Texels;
-pub use variables::{environment, values_of};
+pub use variables::environment;
 pub use view::Viewpoint;
 pub use workspace::{Loaded, Workspace};
 
 use crate::diagnostics::{Diagnostic, nearest};
 use crate::experiment::{CameraChoice, Experiment, ExperimentError, PlacedCamera};
+use crate::graph::expr::Env;
 use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
-use crate::graph::hot_reload::Parts;
-use crate::graph::layouts::Layouts;
-use crate::graph::link::{Linked, Target};
-use crate::graph::load::Graph;
+use crate::graph::link::{Layouts, Linked, Target, runs, table};
 use crate::graph::param::{Params, Value};
-use crate::graph::plan::{Plan, PlanInput, plan};
-use crate::graph::run::{FrameTimes, Program, Redo};
-use crate::graph::runs::runs;
+use crate::graph::plan::{Plan, plan};
+use crate::graph::run::{FrameTimes, Parts, Program, Redo};
 use crate::graph::table::Table;
-use crate::graph::usage::Res;
+use crate::graph::{Evaluated, Graph, Res};
 use crate::metrics::MetricError;
 use crate::scene::{Camera, Light, Scene, SceneError};
 use crate::vulkan::{Buffer, DeviceInfo, Features, Gpu, GpuOptions, VulkanError};
@@ -95,6 +92,8 @@ pub struct Session {
     /// Its passes with their shaders.
     pub linked: Arc<Vec<Linked>>,
     wanted: Vec<String>,
+    /// Scene, size and device, as expressions see them.
+    pub surroundings: Env,
     /// Present parameter values.
     pub params: Params,
     /// The graph's named values with these.
@@ -154,12 +153,14 @@ impl Lab {
         mut wanted: Vec<String>,
         reuse: Option<&ReusableParts>,
     ) -> Result<Session, LabError> {
-        let params = params_of(&loaded.graph, experiment)?;
-        let Loaded { graph, linked, .. } =
-            self.home.complete(loaded, experiment, &scene, &self.gpu.info).map_err(LabError::Input)?;
+        let graph = loaded.graph.clone();
+        let params = params_of(&graph, experiment)?;
+        let surroundings = environment(&scene, experiment.size, &self.gpu.info);
+        let set = Evaluated::new(&graph, &params, surroundings.clone());
+        let Loaded { linked, .. } = self.home.with_shaders(loaded, &runs(&set)).map_err(LabError::Input)?;
         wanted.extend(graph.checked_with(&wanted));
         let viewpoint = viewpoint_of(experiment, &scene)?;
-        let plan = plan_of(&graph, &linked, &params, &scene, experiment.size, &wanted, &self.gpu.info)?;
+        let plan = plan(&set, &linked, &wanted, &self.gpu.info).map_err(LabError::Input)?;
         let rays = traces_rays(&linked, &plan);
         let fits = |s: &&ReusableParts| {
             Arc::ptr_eq(&s.scene, &scene) && s.max_edge == plan.max_edge && (s.scene_gpu.has_rays() || !rays)
@@ -179,12 +180,13 @@ impl Lab {
             Some(reuse) => reuse.parts.pipelines_only(),
             None => Parts::default(),
         };
-        let values = values_of(&graph, &params, &scene, experiment.size, &self.gpu.info);
-        let program = Program::new(&self.gpu, &graph, &linked, plan, &params, &scene_gpu.resources, &parts)?;
+        let program = Program::new(&self.gpu, &set, &linked, plan, &scene_gpu.resources, &parts)?;
+        let values = set.values;
         Ok(Session {
             graph,
             linked,
             wanted,
+            surroundings,
             params,
             values,
             program,
@@ -200,19 +202,6 @@ impl Lab {
             sent_params: false,
         })
     }
-}
-
-fn plan_of(
-    graph: &Graph,
-    linked: &[Linked],
-    params: &Params,
-    scene: &Scene,
-    size: (u32, u32),
-    wanted: &[String],
-    device: &DeviceInfo,
-) -> Result<Plan, LabError> {
-    let input = PlanInput { params, env: environment(scene, size, device), wanted: wanted.to_vec(), device };
-    plan(graph, linked, &input).map_err(LabError::Input)
 }
 
 /// Whether a pass that runs asks for the hierarchy over the scene's triangles.
@@ -345,13 +334,11 @@ impl Session {
         if params.constants() != self.params.constants() {
             return Ok(false);
         }
-        let size = self.size;
-        if !runs(&self.graph, params, &environment(&self.scene, size, &lab.gpu.info))
-            .are_linked(&self.graph, &self.linked)
-        {
+        let set = Evaluated::new(&self.graph, params, self.surroundings.clone());
+        if !runs(&set).are_linked(&self.graph, &self.linked) {
             return Ok(false);
         }
-        let mut plan = plan_of(&self.graph, &self.linked, params, &self.scene, size, &self.wanted, &lab.gpu.info)?;
+        let mut plan = plan(&set, &self.linked, &self.wanted, &lab.gpu.info).map_err(LabError::Input)?;
         // When passes rest is nothing that anything is made by.
         let settling = std::mem::replace(&mut plan.settling, self.program.plan.settling.clone());
         if plan != self.program.plan {
@@ -359,7 +346,7 @@ impl Session {
         }
         self.program.plan.settling = settling;
         self.params = params.clone();
-        self.values = values_of(&self.graph, params, &self.scene, size, &lab.gpu.info);
+        self.values = set.values;
         self.sent_params = false;
         Ok(true)
     }
@@ -391,7 +378,7 @@ impl Session {
 
     /// Copies this texture to the CPU with every frame ([`FrameTimes::picture`]).
     pub fn show(&mut self, texture: &str) {
-        self.program.show(self.graph.textures.iter().position(|t| t.0 == texture));
+        self.program.show(self.graph.texture(texture));
     }
 
     /// Runs one frame. The times that come back are those of an earlier frame, which has finished meanwhile.
@@ -463,7 +450,7 @@ impl Session {
 
     /// A table of the graph with its bytes; nothing where no shader that runs declares its buffer.
     pub fn table(&self, number: usize) -> Option<Table> {
-        Layouts::new(&self.graph, &self.linked).table(number)
+        table(&Layouts::new(&self.graph, &self.linked), number)
     }
 
     /// Messages of the graph's checks that failed in the last frame.
@@ -475,8 +462,8 @@ impl Session {
         let mut failed = Vec::new();
         // Checks of one buffer share one reading of it: each waits for the device.
         let mut read = BTreeMap::new();
-        for check in &self.graph.checks {
-            let Some(buffer) = self.graph.buffers.iter().position(|b| b.0 == check.buffer()) else { continue };
+        for check in self.graph.checks.iter().map(|c| &c.value) {
+            let Some(buffer) = self.graph.buffer(check.buffer()) else { continue };
             // Mistakes were told with the shaders; what none of them declares none of them writes.
             let Ok(Some(word)) = layouts.check(check) else { continue };
             let bytes = match read.entry(buffer) {
@@ -506,10 +493,9 @@ impl Session {
     /// # Errors
     /// As [`Session::texels`].
     pub fn slice(&mut self, name: &str, mip: u32, layer: u32, axis: usize, slice: u32) -> Result<Texels, LabError> {
-        let index = self.graph.textures.iter().position(|t| t.0 == name);
-        let plan = index.map(|i| &self.program.plan.textures[i]);
+        let plan = self.graph.texture(name).map(|i| &self.program.plan.textures[i]);
         let Some(plan) = plan.filter(|p| p.volume) else { return self.texels(name, mip, layer) };
-        let whole = plan.extent.map(|n| (n >> mip.min(31)).max(1));
+        let whole = plan.mip_extent(mip);
         let axis = axis.min(2);
         let (mut first, mut extent) = ([0; 3], whole);
         first[axis] = slice.min(whole[axis] - 1);
@@ -531,9 +517,7 @@ impl Session {
         layer: u32,
         part: Option<([u32; 3], [u32; 3])>,
     ) -> Result<Texels, LabError> {
-        let Some(index) = self.graph.textures.iter().position(|t| t.0 == name) else {
-            return Err(no_texture(&self.graph, name));
-        };
+        let index = self.graph.texture(name).ok_or_else(|| no_texture(&self.graph, name))?;
         let plan = &self.program.plan.textures[index];
         if plan.usage.is_empty() {
             return Err(LabError::Request(format!(
@@ -550,7 +534,7 @@ impl Session {
             );
             return Err(LabError::Request(message));
         }
-        let extent = part.map_or(plan.extent.map(|n| (n >> mip).max(1)), |p| p.1);
+        let extent = part.map_or(plan.mip_extent(mip), |p| p.1);
         let format = plan.format;
         Ok(Texels { extent, format, bytes: self.program.read_texture(index, mip, layer, part)? })
     }
@@ -560,7 +544,7 @@ impl Session {
     /// # Errors
     /// No such buffer; the device was lost.
     pub fn buffer(&mut self, name: &str) -> Result<Vec<u8>, LabError> {
-        match self.graph.buffers.iter().position(|b| b.0 == name) {
+        match self.graph.buffer(name) {
             Some(index) if self.program.plan.buffers[index].transient => Err(not_kept(name)),
             Some(index) => Ok(self.program.read_buffer(index)?),
             None => Err(LabError::Request(format!("no buffer '{name}'"))),

@@ -1,7 +1,7 @@
 //! The parts of a picture's light, as pictures of their own.
 
 use super::{LabError, Session};
-use crate::graph::load::{Graph, LightPart};
+use crate::graph::{Graph, LightPart};
 use crate::metrics::{Kind, Linear};
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ impl Session {
     pub fn parts(&mut self) -> Result<BTreeMap<String, Linear>, LabError> {
         let mut parts = BTreeMap::new();
         for LightPart { name, texture, kind, .. } in parts_of(&self.graph) {
-            let index = self.graph.textures.iter().position(|t| t.0 == texture);
+            let index = self.graph.texture(&texture);
             let made = index.is_some_and(|i| !self.program.plan.textures[i].usage.is_empty());
             if made && self.wanted.contains(&texture) {
                 parts.insert(name, Linear { kind, ..self.texels(&texture, 0, 0)?.linear() });

@@ -2,9 +2,6 @@
 
 use super::view::{directional_view_count, shadow_view_count};
 use crate::graph::expr::{Env, Var};
-use crate::graph::load::Graph;
-use crate::graph::param::{Params, Value};
-use crate::graph::value::fill;
 use crate::scene::{Scene, origin_of};
 use crate::vulkan::DeviceInfo;
 
@@ -34,9 +31,4 @@ pub fn environment(scene: &Scene, size: (u32, u32), device: &DeviceInfo) -> Env 
         put(&format!("scene_max_{axis}"), f64::from(b));
     }
     env
-}
-
-/// The graph's named values; a plan reports those that have none.
-pub fn values_of(graph: &Graph, params: &Params, scene: &Scene, size: (u32, u32), device: &DeviceInfo) -> Vec<Value> {
-    fill(graph, params, &mut environment(scene, size, device)).0
 }

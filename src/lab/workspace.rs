@@ -4,9 +4,10 @@ use super::{LabError, environment, params_of};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::experiment::Experiment;
 use crate::graph::link::{Linked, link};
-use crate::graph::load::{Folders, Graph, load};
-use crate::graph::param::{Kind, Params, Value};
-use crate::graph::runs::{Runs, runs};
+use crate::graph::link::{Runs, runs};
+use crate::graph::load::{Folders, load};
+use crate::graph::param::{Params, Value};
+use crate::graph::{Evaluated, Graph};
 use crate::scene::Scene;
 use crate::shader::ShaderCompiler;
 use crate::vulkan::DeviceInfo;
@@ -104,8 +105,7 @@ impl Workspace {
         let mut findings: Vec<Diagnostic> = Vec::new();
         let mut settings = vec![graph.params.clone()];
         for param in graph.params.list.iter().filter(|p| p.is_module()) {
-            let Kind::Choice(options) = &param.kind else { continue };
-            for option in options.iter().filter(|o| Value::Choice((*o).clone()) != param.default) {
+            for option in param.kind.options().iter().filter(|o| Value::Choice((*o).clone()) != param.default) {
                 let mut params = graph.params.clone();
                 findings.extend(params.set(&param.name, option).err().map(|e| Diagnostic::error(Place::default(), e)));
                 settings.push(params);
@@ -169,11 +169,15 @@ impl Workspace {
         scene: &Scene,
         device: &DeviceInfo,
     ) -> Result<Loaded, Vec<Diagnostic>> {
-        let runs = runs_of(&loaded.graph, experiment, scene, device);
+        self.with_shaders(loaded, &runs_of(&loaded.graph, experiment, scene, device))
+    }
+
+    /// A graph with the shaders of all passes that run; as it is, if it has them.
+    pub(super) fn with_shaders(&self, loaded: &Loaded, runs: &Runs) -> Result<Loaded, Vec<Diagnostic>> {
         if runs.are_linked(&loaded.graph, &loaded.linked) {
             return Ok(loaded.clone());
         }
-        let (linked, warnings) = self.link(&loaded.graph, &runs)?;
+        let (linked, warnings) = self.link(&loaded.graph, runs)?;
         Ok(Loaded { graph: loaded.graph.clone(), linked: Arc::new(linked), warnings })
     }
 
@@ -191,6 +195,6 @@ impl Workspace {
 fn runs_of(graph: &Graph, experiment: &Experiment, scene: &Scene, device: &DeviceInfo) -> Runs {
     params_of(graph, experiment).map_or_else(
         |_| Runs::all(graph, &graph.params),
-        |params| runs(graph, &params, &environment(scene, experiment.size, device)),
+        |params| runs(&Evaluated::new(graph, &params, environment(scene, experiment.size, device))),
     )
 }

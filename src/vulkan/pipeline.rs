@@ -1,6 +1,7 @@
 //! Pipelines, their layouts and descriptor sets. One descriptor set a pipeline, number 0.
 
 use super::{Buffer, Gpu, Result, Sampler, View, VulkanError, vk};
+use serde::Deserialize;
 
 use std::ffi::CString;
 use std::sync::Arc;
@@ -98,7 +99,8 @@ pub struct Attachments {
 }
 
 /// How a colour is combined with what is there.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Blend {
     /// Replaced.
     #[default]

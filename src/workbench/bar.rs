@@ -2,9 +2,8 @@
 
 use super::engine::Order;
 use super::{Workbench, edit, ron_files, short, side_of};
-use crate::diagnostics::Entries;
+use crate::diagnostics::{Entries, RawText};
 use crate::experiment::Experiment;
-use crate::graph::file::RawText;
 use crate::timers::Rows;
 use egui::Ui;
 
@@ -68,7 +67,7 @@ impl Workbench {
                 let make = |values: &Entries<RawText>| {
                     let mut side = base.clone();
                     for (name, text) in &values.0 {
-                        if let Some(param) = info.graph.params.list.iter().find(|p| p.name == name.value)
+                        if let Some(param) = info.graph.params.param(&name.value)
                             && let Ok(value) = param.parse(&text.value.0)
                         {
                             edit::set(&mut side, param, &value);

@@ -84,7 +84,7 @@ fn build(job: Job) -> Result<(Box<Session>, Loaded), LabError> {
     let output = graph.output.clone().ok_or_else(|| {
         LabError::Request(format!("graph '{}' has no `output`: there is nothing to show", graph.name))
     })?;
-    let has = |name: &String| graph.textures.iter().any(|t| t.0 == *name) || graph.buffers.iter().any(|b| b.0 == *name);
+    let has = |name: &String| graph.resource(name).is_some();
     let mut wanted = vec![output.clone()];
     wanted.extend(job.key.wanted.iter().filter(|n| has(n)).cloned());
     let mut session = job.lab.build(&job.experiment, &loaded, job.scene, wanted, job.reuse.as_ref())?;

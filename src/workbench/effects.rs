@@ -2,6 +2,7 @@
 
 use super::Workbench;
 use super::report::GraphInfo;
+use crate::graph::Evaluated;
 use crate::graph::effect::{Reason, Running, effective, idle};
 use crate::shader::ShaderCompiler;
 use crossbeam_channel::{Receiver, Sender, unbounded};
@@ -96,14 +97,14 @@ fn find((info, set): &Of, compiler: &ShaderCompiler) -> Found {
         // What is wrong with a value is told where it is built.
         let _ = params.set(name, text);
     }
+    let set = Evaluated::new(graph, &params, info.variables.clone());
     let running = Running {
-        graph,
+        set: &set,
         linked: &info.linked,
         passes: &info.passes,
         written: info.uses.iter().flat_map(|u| &u.writes).map(String::as_str).collect(),
-        variables: &info.variables,
     };
-    let taken = |name: &str| effective(graph, &params.list[params.index(name)?], &params, &info.variables);
+    let taken = |name: &str| effective(&set, params.param(name)?);
     let effective = params.list.iter().filter_map(|p| Some((p.name.clone(), taken(&p.name)?))).collect();
-    Found { idle: idle(&running, &params, compiler), effective }
+    Found { idle: idle(&running, compiler), effective }
 }

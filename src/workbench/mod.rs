@@ -329,7 +329,7 @@ impl Workbench {
     fn point_at(&mut self, at: Option<Vec2>) {
         let Some(info) = self.sides[0].info.clone() else { return };
         let Some(name) = &info.graph.pointer else { return };
-        let Some(param) = info.graph.params.list.iter().find(|p| p.name == *name) else { return };
+        let Some(param) = info.graph.params.param(name) else { return };
         let at = at.map_or([-1.0; 2], |p| [f64::from(p.x.floor()), f64::from(p.y.floor())]);
         for side in self.desired.sides.iter_mut().flatten() {
             edit::set(side, param, &crate::graph::param::Value::Vector(at.to_vec()));

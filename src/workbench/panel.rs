@@ -4,8 +4,8 @@ use super::control::{CHANGED, control};
 use super::edit;
 use super::effects::Found;
 use super::request::SideRequest;
+use crate::graph::Graph;
 use crate::graph::effect::Reason;
-use crate::graph::load::Graph;
 use crate::graph::param::Param;
 use egui::{RichText, Ui};
 
@@ -123,7 +123,7 @@ impl Shown<'_> {
     fn pinned(&self, ui: &mut Ui, side: &mut SideRequest) {
         for (name, title) in &self.graph.pinned {
             let params = &self.graph.params;
-            if let Some(param) = params.list.iter().find(|p| p.name == *name) {
+            if let Some(param) = params.param(name) {
                 self.row(ui, param, title, side);
             } else if let Some((_, instead)) = params.retired.iter().find(|r| r.0 == *name) {
                 elsewhere(ui, name, title, instead, side);
@@ -139,7 +139,7 @@ impl Shown<'_> {
         let count = |need: &(String, String)| needs.iter().filter(|n| **n == need).count();
         // Of several, the first.
         let Some((name, option)) = needs.iter().rev().max_by_key(|n| count(n)) else { return };
-        let Some(param) = self.graph.params.list.iter().find(|p| p.name == *name) else { return };
+        let Some(param) = self.graph.params.param(name) else { return };
         let Ok(value) = param.parse(option) else { return };
         ui.horizontal(|ui| {
             ui.weak("what is dimmed counts with");

@@ -5,7 +5,7 @@ use super::engine::Engine;
 use super::report::{PictureReport, Report};
 use super::{COMPARISON, NewPixels, Workbench, events, save};
 use crate::experiment::{CameraChoice, Experiment};
-use crate::graph::hot_reload::Change;
+use crate::graph::run::Change;
 use crate::lab::{Viewpoint, viewpoint_of};
 use crate::scene::Scene;
 use serde_json::json;
@@ -115,7 +115,7 @@ impl Workbench {
             }
             Report::Texels(target, texels) => {
                 let info = self.sides[target.side.min(1)].info.as_ref();
-                let number = info.and_then(|i| i.graph.textures.iter().position(|t| t.0 == target.texture));
+                let number = info.and_then(|i| i.graph.texture(&target.texture));
                 let volume = info.zip(number).is_some_and(|(i, n)| i.textures.get(n).is_some_and(|t| t.volume));
                 self.inspector.note(target, *texels, volume, &self.wake);
             }

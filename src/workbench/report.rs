@@ -1,12 +1,12 @@
 //! Messages from the engine to the window.
 
 use crate::diagnostics::Diagnostic;
+use crate::graph::Graph;
 use crate::graph::expr::Env;
-use crate::graph::hot_reload::Change;
 use crate::graph::link::Linked;
-use crate::graph::load::Graph;
 use crate::graph::param::Params;
 use crate::graph::plan::TexturePlan;
+use crate::graph::run::Change;
 use crate::graph::table::Table;
 use crate::lab::Texels;
 use crate::scene::Scene;

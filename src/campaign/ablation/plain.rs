@@ -32,7 +32,7 @@ pub fn changes(params: &Params, only: &[String]) -> Result<Vec<Change>, LabError
         if all.iter().any(|c| c.name == *name) {
             continue;
         }
-        return Err(LabError::Request(match params.index(name).map(|i| &params.list[i].plain) {
+        return Err(LabError::Request(match params.param(name).map(|p| &p.plain) {
             Some(Some(plain)) => format!("'{name}' is at its plain value ({plain}) already, or plainer"),
             Some(None) => format!("'{name}' has no plain value in its graph"),
             None => {

@@ -9,7 +9,7 @@ pub use search::{Found, Limits, Step, Stop, Trial, search};
 
 use crate::campaign::settings::Axis;
 use crate::experiment::Experiment;
-use crate::graph::load::Graph;
+use crate::graph::Graph;
 use crate::graph::param::Params;
 use crate::lab::LabError;
 
@@ -35,7 +35,7 @@ pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
 /// The place on the axes nearest to an experiment's own values; the first of an axis where there is no nearest.
 pub fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
     let place = |(name, values): &Axis| {
-        let own = params.index(name).map(|i| &params.values[i])?;
+        let own = params.get(name)?;
         let distance = |text: &String| {
             let mut tried = params.clone();
             tried.set(name, text).ok()?;

@@ -2,8 +2,7 @@
 
 use super::file::{Case, Method};
 use crate::campaign::settings::Setting;
-use crate::diagnostics::{At, Entries, Loc};
-use crate::graph::file::RawText;
+use crate::diagnostics::{At, Entries, Loc, RawText};
 use serde::Deserialize;
 
 /// Most values that are timed for one method.

@@ -1,7 +1,7 @@
 //! What moves, and where it is at each frame.
 
+use crate::diagnostics::RawText;
 use crate::experiment::{CameraChoice, PlacedCamera};
-use crate::graph::file::RawText;
 use crate::graph::param::Value;
 use crate::scene::{Light, Scene};
 use glam::{Mat4, Quat, Vec3};

@@ -30,7 +30,7 @@ impl ParamTrack {
         let Motion::Parameter { name, step, values } = motion else { return Ok(None) };
         let mut own = params.clone();
         // The graph's own message, with the nearest name.
-        let (Some(param), Some(start)) = (params.index(name).map(|i| &params.list[i]), params.get(name)) else {
+        let (Some(param), Some(start)) = (params.param(name), params.get(name)) else {
             return Err(own.set(name, "0").err().unwrap_or_default());
         };
         if param.is_compiled() {

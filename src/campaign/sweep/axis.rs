@@ -3,8 +3,7 @@
 use super::points::MAX_POINTS;
 use crate::campaign::points::Labels;
 use crate::campaign::settings::{Setting, settings};
-use crate::diagnostics::{At, Entries, Items, Loc};
-use crate::graph::file::RawText;
+use crate::diagnostics::{At, Entries, Items, Loc, RawText};
 use crate::scene::splitmix;
 use serde::Deserialize;
 

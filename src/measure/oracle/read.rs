@@ -1,8 +1,8 @@
 //! The voxels of a session, as its graph declares them.
 
 use super::grid::Grid;
+use crate::graph::Graph;
 use crate::graph::file::VoxelsDecl;
-use crate::graph::load::Graph;
 use crate::lab::{LabError, Session, Texels};
 use glam::Vec3;
 
@@ -70,7 +70,7 @@ pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
 /// As [`read`].
 pub fn grid(session: &mut Session) -> Result<Grid, LabError> {
     let v = declared(&session.graph)?.clone();
-    let index = session.graph.textures.iter().position(|t| t.0 == v.occupied.value);
+    let index = session.graph.texture(&v.occupied.value);
     let extent = index.map_or([0; 3], |i| session.program.plan.textures[i].extent);
     Ok(grid_in(session, &v, extent)?.0)
 }

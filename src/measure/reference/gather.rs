@@ -3,7 +3,7 @@
 use super::store::{self, Sums};
 use super::{Reference, key};
 use crate::experiment::Experiment;
-use crate::graph::load::LightPart;
+use crate::graph::LightPart;
 use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::scene::Scene;
 use std::ops::ControlFlow;

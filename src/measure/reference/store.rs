@@ -4,7 +4,7 @@
 use super::{Reference, ReferencePart};
 use crate::experiment::Experiment;
 use crate::files::{check_input, hex, read_input};
-use crate::graph::load::{Graph, LightPart};
+use crate::graph::{Graph, LightPart};
 use crate::lab::LabError;
 use crate::metrics::{Kind, Linear, MetricError, Noise, relmse, structure_noise};
 use crate::vulkan::DeviceInfo;

@@ -15,7 +15,7 @@ pub use scene_hash::scene_hash;
 pub use take::{Resource, What, free_name, take};
 
 use crate::experiment::Experiment;
-use crate::graph::load::Graph;
+use crate::graph::Graph;
 use crate::lab::{Lab, LabError, Texels, Workspace};
 use crate::results::stats::{self, Stats};
 use crate::scene::Scene;

@@ -1,7 +1,8 @@
 //! The parts of the light that a capture holds.
 
 use super::{Manifest, SOURCES, failed};
-use crate::graph::load::{Folders, LightPart, load};
+use crate::graph::LightPart;
+use crate::graph::load::{Folders, load};
 use crate::lab::{LabError, parts_of};
 use crate::metrics::Linear;
 use crate::results::picture;

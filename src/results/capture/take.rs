@@ -6,9 +6,10 @@ use super::{
     scene_hash,
 };
 use crate::experiment::{Experiment, checked_name, resolved_text};
+use crate::graph::Graph;
 use crate::graph::link::Linked;
-use crate::graph::load::{Folders, Graph};
-use crate::graph::runs::generated;
+use crate::graph::link::generated;
+use crate::graph::load::Folders;
 use crate::lab::{Lab, LabError, camera_of, no_texture};
 use crate::results::picture;
 use crate::scene::Scene;
@@ -213,7 +214,7 @@ fn images_of(graph: &Graph, resources: &[Resource]) -> Result<Vec<Image>, LabErr
     let mut images: Vec<Image> =
         result(&graph.output, "picture.png").into_iter().chain(result(&graph.hdr, "picture.exr")).collect();
     for r in resources {
-        if !graph.textures.iter().any(|t| t.0 == r.name) {
+        if graph.texture(&r.name).is_none() {
             return Err(no_texture(graph, &r.name));
         }
         let part = |n: u32, what: &str| if n > 0 { format!("-{what}{n}") } else { String::new() };

@@ -237,7 +237,7 @@ fn runs(name: &str, graph: &str) -> bool {
 
 fn without_defaults(experiment: &mut Experiment, defaults: &Params) {
     experiment.params.retain(|(name, text)| {
-        let param = defaults.list.iter().find(|p| p.name == name.value);
+        let param = defaults.param(&name.value);
         param.is_none_or(|p| p.parse(text).ok().as_ref() != Some(&p.default))
     });
 }

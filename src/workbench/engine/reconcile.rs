@@ -5,9 +5,8 @@ use super::super::report::{GraphInfo, PassUses, Report};
 use super::super::request::SideRequest;
 use super::Run;
 use crate::diagnostics::{Diagnostic, Place};
-use crate::graph::usage::Res;
-use crate::lab::{LabError, Loaded, Session, environment, params_of};
-use crate::vulkan::{DeviceInfo, VulkanError};
+use crate::lab::{LabError, Loaded, Session, params_of};
+use crate::vulkan::VulkanError;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -119,7 +118,7 @@ impl Run<'_> {
                 side.lights = true;
                 side.inspected = None;
                 side.failed = None;
-                let info = info(&session, &loaded, &self.lab.gpu.info);
+                let info = info(&session, &loaded);
                 let change = session.program.change;
                 side.session = Some(session);
                 side.loaded = Some(loaded);
@@ -171,7 +170,7 @@ impl Run<'_> {
     }
 }
 
-fn info(session: &Session, loaded: &Loaded, device: &DeviceInfo) -> GraphInfo {
+fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
     let plan = &session.program.plan;
     let mut uses: Vec<PassUses> = Vec::new();
     for step in &plan.steps {
@@ -180,12 +179,9 @@ fn info(session: &Session, loaded: &Loaded, device: &DeviceInfo) -> GraphInfo {
         }
         let Some(of) = uses.last_mut() else { continue };
         for u in &step.uses {
-            let name = match u.res {
-                Res::Texture(t, _) => &session.graph.textures[t].0,
-                Res::Buffer(b, _) => &session.graph.buffers[b].0,
-            };
+            let name = session.graph.name_of(u.res).to_string();
             for list in [u.read.then_some(&mut of.reads), u.write.then_some(&mut of.writes)].into_iter().flatten() {
-                if !list.contains(name) {
+                if !list.contains(&name) {
                     list.push(name.clone());
                 }
             }
@@ -194,7 +190,7 @@ fn info(session: &Session, loaded: &Loaded, device: &DeviceInfo) -> GraphInfo {
     GraphInfo {
         graph: loaded.graph.clone(),
         linked: session.linked.clone(),
-        variables: environment(&session.scene, session.size(), device),
+        variables: session.surroundings.clone(),
         params: session.params.clone(),
         textures: plan.textures.clone(),
         memory: session.program.memory(&session.graph),

@@ -176,7 +176,7 @@ impl Workbench {
             self.inspector.open(self.inspector.target.side, name);
         }
         let target = &mut self.inspector.target;
-        let index = info.graph.textures.iter().position(|t| t.0 == target.texture)?;
+        let index = info.graph.texture(&target.texture)?;
         let plan = info.textures.get(index)?.clone();
         let last = |n: u32| n.saturating_sub(1);
         target.mip = target.mip.min(last(plan.mips));
@@ -297,7 +297,7 @@ fn short_number(x: f64) -> String {
 
 /// Name, size and format of a texture.
 fn describe(info: &GraphInfo, name: &str) -> String {
-    let index = info.graph.textures.iter().position(|t| t.0 == name);
+    let index = info.graph.texture(name);
     let Some(p) = index.and_then(|i| info.textures.get(i)) else { return name.to_string() };
     let [x, y, z] = p.extent;
     let size = if p.volume { format!("{x}×{y}×{z}") } else { format!("{x}×{y}") };

@@ -42,7 +42,7 @@ impl Workbench {
         let Some(view) = chosen.and_then(|i| info.graph.views.get(i)) else { return };
         let Some(desired) = self.desired.sides[side].as_mut() else { return };
         for (name, text) in &view.value.set.0 {
-            let Some(param) = info.graph.params.list.iter().find(|p| p.name == name.value) else { continue };
+            let Some(param) = info.graph.params.param(&name.value) else { continue };
             let Ok(value) = param.parse(&text.value.0) else { continue };
             let before = &mut self.inspector.before.0;
             if !before.iter().any(|b| b.0 == side && b.1 == name.value) {

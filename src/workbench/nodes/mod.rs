@@ -163,7 +163,7 @@ impl Workbench {
             ui.add_space(4.0);
             ui.label(title);
             for resource in list {
-                let texture = info.graph.textures.iter().position(|t| t.0 == *resource);
+                let texture = info.graph.texture(resource);
                 let text = format!("{resource}  {}", texture.map_or(String::new(), |t| of(info, t)));
                 if ui.add_enabled(texture.is_some(), egui::Button::new(text).small().frame(false)).clicked() {
                     self.inspector.open(side, resource.clone());
@@ -183,7 +183,7 @@ impl Workbench {
         needed.extend(layout.nodes.iter().rposition(|n| n.writes.iter().any(|w| w == output)));
         let others = layout.nodes.iter().enumerate().filter(|(i, _)| !needed.contains(i));
         *off = others.map(|(_, n)| n.name.clone()).collect();
-        let texture = |w: &&String| info.graph.textures.iter().any(|t| t.0 == **w);
+        let texture = |w: &&String| info.graph.texture(w).is_some();
         if let Some(texture) = layout.nodes[node].writes.iter().find(texture).cloned() {
             self.inspector.open(side, texture);
         }
@@ -295,7 +295,7 @@ impl Canvas<'_> {
         self.text(rect, right, Align2::RIGHT_CENTER, &said, 10.5, color);
         for (i, resource) in node.writes.iter().enumerate() {
             let row = row_of(node.rect, i);
-            let texture = info.graph.textures.iter().any(|t| t.0 == *resource);
+            let texture = info.graph.texture(resource).is_some();
             let name = format!("{} writes {resource}", node.name);
             let Some(hit) = self.button(row, (node.pass, i), texture, name) else { continue };
             let color = if hit.hovered() && texture { strong } else { Color32::from_gray(150) };

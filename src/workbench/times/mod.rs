@@ -211,7 +211,7 @@ impl Workbench {
     /// Opens the first texture that a pass writes in the inspector.
     fn inspect_pass(&mut self, side: usize, name: &str) {
         let Some(info) = self.sides[side].info.clone() else { return };
-        let texture = |n: &&String| info.graph.textures.iter().any(|t| t.0 == **n);
+        let texture = |n: &&String| info.graph.texture(n).is_some();
         let Some(texture) = self.pass_writes(side, name).iter().find(texture).cloned() else {
             self.status = format!("{name} writes no texture");
             return;

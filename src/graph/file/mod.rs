@@ -1,0 +1,13 @@
+//! What stands in a graph file, field by field.
+
+mod pass;
+mod resource;
+mod section;
+mod table;
+mod whole;
+
+pub use pass::*;
+pub use resource::*;
+pub use section::*;
+pub use table::{CellKind, ColumnDecl, RowCount, TableDecl};
+pub use whole::GraphFile;

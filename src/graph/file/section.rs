@@ -1,0 +1,135 @@
+//! Small sections of a graph file.
+
+use super::resource::Path;
+use crate::diagnostics::{Entries, Items, Loc, RawText, nested};
+use crate::graph::expr::Ex;
+use crate::metrics::Kind;
+use serde::Deserialize;
+
+/// What a name stands for.
+#[derive(Clone, Debug, Deserialize)]
+pub enum ValueDecl {
+    /// A number.
+    Float(Ex),
+    /// A whole number.
+    Int(Ex),
+}
+
+/// A part of the light, or the name of its texture alone.
+#[derive(Debug)]
+pub struct PartItem(pub PartDecl);
+
+/// A part of the light.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartDecl {
+    /// Its texture.
+    pub texture: Loc<String>,
+    /// What its numbers are.
+    #[serde(default)]
+    pub kind: Kind,
+    /// Its name within a sentence.
+    pub title: Option<String>,
+    /// Whether it is what methods are looked at for: it has charts and short tables as the total has.
+    #[serde(default)]
+    pub focus: bool,
+}
+
+impl<'de> Deserialize<'de> for PartItem {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let raw = <&'de ron::value::RawValue>::deserialize(deserializer)?;
+        if raw.trim().get_ron().starts_with('(') {
+            return nested(raw).map(PartItem);
+        }
+        let texture = nested(raw)?;
+        Ok(PartItem(PartDecl { texture, kind: Kind::default(), title: None, focus: false }))
+    }
+}
+
+/// Geometry prepared for the graph.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneNeeds {
+    /// World length (m) above which triangle edges are split at load.
+    pub max_edge: Ex,
+    /// When that is needed.
+    pub when: Option<Ex>,
+}
+
+/// A word of a buffer that must be zero: `field`, or `buffer` and `word`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CheckDecl {
+    /// The member of a buffer's block, `buffer.member`.
+    pub field: Option<Loc<Path>>,
+    /// The buffer.
+    pub buffer: Option<Loc<String>>,
+    /// Index of the 32-bit word.
+    pub word: Option<u32>,
+    /// A texture: the check is made where it is wanted. Always where nothing is said.
+    pub with: Option<Loc<String>>,
+    /// What it means when it is not zero, and what to do.
+    pub message: String,
+}
+
+impl CheckDecl {
+    /// The buffer.
+    pub fn buffer(&self) -> &str {
+        self.field.as_ref().map_or_else(|| self.buffer.as_ref().map_or("", |b| &b.value), |f| &f.value.buffer)
+    }
+}
+
+/// Settings that make no sense together.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RefuseDecl {
+    /// When they do not.
+    pub when: Ex,
+    /// Why not, and what to do.
+    pub message: String,
+}
+
+/// Two settings that the graph offers to put side by side.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CompareDecl {
+    /// What a button says.
+    pub title: String,
+    /// One line.
+    pub help: String,
+    /// Parameters of the first.
+    pub a: Entries<RawText>,
+    /// Parameters of the second.
+    pub b: Entries<RawText>,
+}
+
+/// Settings that the graph offers to look into its work.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ViewDecl {
+    /// What a button says.
+    pub title: String,
+    /// One line.
+    pub help: String,
+    /// Parameters that it sets.
+    pub set: Entries<RawText>,
+}
+
+/// Voxels that a graph makes, for comparing them with what its triangles exactly overlap.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VoxelsDecl {
+    /// 3D texture whose first channel is not zero in occupied cells.
+    pub occupied: Loc<String>,
+    /// 3D texture of linear base colour; alpha is opacity.
+    pub color: Loc<String>,
+    /// 3D texture of the unit normal * 0.5 + 0.5.
+    pub normal: Loc<String>,
+    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; the z of the first of
+    /// them in the textures; how many there are along x, y and z; then, as floats, the world coordinates (m) of their
+    /// borders along x, y and z, one more than cells each.
+    pub borders: Loc<String>,
+    /// Ways of making them that are worth comparing.
+    #[serde(default)]
+    pub modes: Items<ViewDecl>,
+}

@@ -1,0 +1,70 @@
+//! A graph file.
+
+use super::pass::PassItem;
+use super::resource::{AliasDecl, BufferDecl, NamedSampler, TextureDecl};
+use super::section::{CheckDecl, CompareDecl, PartItem, RefuseDecl, SceneNeeds, ValueDecl, ViewDecl, VoxelsDecl};
+use super::table::TableDecl;
+use crate::diagnostics::{Entries, Items, Loc, RawText};
+use crate::graph::param::Decl;
+use serde::Deserialize;
+
+/// A graph file.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GraphFile {
+    /// Files whose sections come before this one's.
+    pub include: Items<String>,
+    /// Parameters.
+    pub params: Items<Decl>,
+    /// Other defaults for parameters of included files.
+    pub defaults: Entries<RawText>,
+    /// Parameters that the panel shows first: name, title in plain words.
+    pub pinned: Entries<String>,
+    /// Modules that nobody chooses: name, file in the shader folder.
+    pub modules: Entries<String>,
+    /// What to write instead of a parameter, or of `parameter=option`, that is no more.
+    pub retired: Entries<String>,
+    /// Expressions by name, for other expressions and shaders.
+    pub values: Entries<ValueDecl>,
+    /// Textures by name.
+    pub textures: Entries<TextureDecl>,
+    /// Buffers by name.
+    pub buffers: Entries<BufferDecl>,
+    /// Names that shaders bind, each for the first of its cases that holds.
+    pub aliases: Entries<Vec<Loc<AliasDecl>>>,
+    /// Names that shaders bind, each for a texture sampled in its own way.
+    pub samplers: Entries<NamedSampler>,
+    /// Passes and groups of them, in order.
+    pub passes: Items<PassItem>,
+    /// The display-encoded picture.
+    pub output: Option<Loc<String>>,
+    /// The linear picture.
+    pub hdr: Option<Loc<String>>,
+    /// Further results that may be asked for.
+    pub outputs: Items<String>,
+    /// Contributions to the linear picture that other graphs have too.
+    pub parts: Entries<PartItem>,
+    /// What the graph needs of the scene's geometry.
+    pub scene: Option<Loc<SceneNeeds>>,
+    /// Words of buffers that must be zero after a frame.
+    pub checks: Items<CheckDecl>,
+    /// Settings that make no sense together.
+    pub refuse: Items<RefuseDecl>,
+    /// What a picture is said to be made with: a line, where `{NAME}` is the value of a parameter.
+    pub caption: Option<Loc<String>>,
+    /// The `Vec2` parameter that a click on the picture sets.
+    pub pointer: Option<Loc<String>>,
+    /// Buffers that may be read as tables.
+    pub tables: Items<TableDecl>,
+    /// Settings worth comparing.
+    pub compare: Items<CompareDecl>,
+    /// Settings that show something worth looking into.
+    pub views: Items<ViewDecl>,
+    /// Parameters that cost time and quality, and the values worth trying.
+    pub fit: Entries<Items<RawText>>,
+    /// Settings from the ideal to the method: what each step costs is the method's error, split.
+    #[serde(alias = "ladder")]
+    pub ablation: Items<ViewDecl>,
+    /// The voxels that the graph makes.
+    pub voxels: Option<Loc<VoxelsDecl>>,
+}

@@ -1,0 +1,146 @@
+//! Members of buffers where shaders put them: tables, and names that the shaders do not have or have otherwise than others.
+
+use super::layouts::{Declared, Layouts};
+use crate::diagnostics::{At, Diagnostic, Loc, nearest};
+use crate::graph::file::{BufferSize, CellKind, ColumnDecl, Path, RowCount, TableDecl};
+use crate::graph::table::{Column, Table, by_bytes};
+use crate::shader::Layout;
+use crate::shader::layout::Scalar;
+use std::collections::BTreeSet;
+
+/// With its bytes; nothing where no compiled shader declares the buffer.
+///
+/// # Errors
+/// Members that are not there, or that no table can show.
+fn resolve(decl: &TableDecl, layouts: &Layouts<'_>) -> Result<Option<Table>, Vec<Diagnostic>> {
+    let Some(list) = &decl.list else { return Ok(by_bytes(decl)) };
+    let error = |at: At, message: String| vec![layouts.graph.sources.error(at, message)];
+    let rows = match &decl.rows.value {
+        RowCount::Word(word) => Some(*word),
+        RowCount::Field(path) => {
+            let path = Loc { value: path.clone(), at: decl.rows.at };
+            match layouts.find(&path).map_err(|e| vec![e])? {
+                Some((byte, Layout::Scalar(Scalar::Uint))) => Some(byte / 4),
+                Some((_, other)) => {
+                    return Err(error(
+                        path.at,
+                        format!("'{}' is of type {other}; rows are counted by a uint", path.value),
+                    ));
+                }
+                None => None,
+            }
+        }
+    };
+    let (Some(rows), Some((start, found))) = (rows, layouts.find(list).map_err(|e| vec![e])?) else {
+        return Ok(None);
+    };
+    let Layout::Array { of, stride, .. } = found else {
+        return Err(error(list.at, format!("'{}' is of type {found}; the rows of a table are an array's", list.value)));
+    };
+    let (mut columns, mut wrong) = (Vec::new(), Vec::new());
+    for column in &decl.columns.0 {
+        match column_of(&column.value, &of) {
+            Ok(column) => columns.push(column),
+            Err((message, help)) => wrong.push(layouts.graph.sources.error(column.at, message).help(help)),
+        }
+    }
+    if wrong.is_empty() { Ok(Some(Table { rows, start, stride, columns })) } else { Err(wrong) }
+}
+
+/// With its bytes in a row.
+fn column_of(decl: &ColumnDecl, row: &Layout) -> Result<Column, (String, Option<String>)> {
+    let path = decl.of.as_deref().unwrap_or(&decl.name);
+    // The rows of an array of numbers have no members.
+    let whole = row.members().is_empty() && decl.of.is_none();
+    let (at, layout) = if whole { Ok((0, row.clone())) } else { row.find(path) }.map_err(|missing| {
+        let known = missing.known.iter().map(String::as_str);
+        (format!("column '{}': a row has no member '{path}'", decl.name), nearest(&missing.name, known))
+    })?;
+    let kind = match layout {
+        Layout::Scalar(Scalar::Uint) => CellKind::Uint,
+        Layout::Scalar(Scalar::Int) => CellKind::Int,
+        Layout::Scalar(Scalar::Float) => CellKind::Float,
+        Layout::Vector(Scalar::Float, 2) => CellKind::Vec2,
+        Layout::Vector(Scalar::Float, 3) => CellKind::Vec3,
+        Layout::Vector(Scalar::Float, 4) => CellKind::Vec4,
+        other => {
+            let message = format!("column '{}': '{path}' is of type {other}, which no table shows", decl.name);
+            return Err((message, Some("tables show uint, int, float, vec2, vec3 and vec4".into())));
+        }
+    };
+    Ok(Column { name: decl.name.clone(), at, kind, unit: decl.unit.clone() })
+}
+
+/// A table of the graph; nothing where no compiled shader declares its buffer.
+pub fn table(layouts: &Layouts<'_>, number: usize) -> Option<Table> {
+    resolve(&layouts.graph.tables.get(number)?.value, layouts).ok().flatten()
+}
+
+/// What is wrong with the names of members, with the shaders compiled so far; with `all` of them, a buffer that none
+/// declares is a mistake too. `place` tells where a shader declares a name.
+pub(super) fn mistakes(
+    layouts: &Layouts<'_>,
+    all: bool,
+    place: impl Fn(&Declared<'_>, String) -> Diagnostic,
+) -> Vec<Diagnostic> {
+    let graph = layouts.graph;
+    let mut found = Vec::new();
+    let mut named: Vec<&Loc<Path>> = Vec::new();
+    let commands = graph.passes.iter().filter_map(|pass| pass.value.command());
+    for (command, words) in commands.filter(|(c, _)| c.offset.is_none()) {
+        found.extend(layouts.command(command, words).err());
+        named.push(&command.path);
+    }
+    for check in &graph.checks {
+        found.extend(layouts.check(&check.value).err());
+        named.extend(&check.value.field);
+    }
+    for table in &graph.tables {
+        found.extend(resolve(&table.value, layouts).err().into_iter().flatten());
+        named.extend(table.value.paths());
+    }
+    let mut buffers: BTreeSet<&str> = named.iter().map(|path| path.value.buffer.as_str()).collect();
+    for (name, buffer) in &graph.buffers {
+        if let BufferSize::Struct(count) = &buffer.value.size.value {
+            buffers.insert(name);
+            found.extend(layouts.struct_size(name, count.is_some()).err().map(|message| {
+                let help = count.is_none().then(|| String::from("say how many: Struct(of: \"...\")"));
+                graph.sources.error(buffer.value.size.at, message).help(help)
+            }));
+            if all && layouts.of(name).is_none() {
+                let message = format!("no shader declares '{name}', so its struct has no size");
+                found.push(graph.sources.error(buffer.value.size.at, message));
+            }
+        }
+    }
+    for path in named.iter().filter(|path| all && layouts.of(&path.value.buffer).is_none()) {
+        let message = format!("no shader declares '{}', so its members have no place", path.value.buffer);
+        found.push(graph.sources.error(path.at, message));
+    }
+    for (_, declared) in graph.buffers.iter().zip(&layouts.declared).filter(|(b, _)| buffers.contains(b.0.as_str())) {
+        let Some((first, others)) = declared.split_first() else { continue };
+        for other in others.iter().filter(|o| o.layout != first.layout) {
+            let there = place(first, String::new()).place;
+            let there = format!("{}:{}", there.file.display(), there.line);
+            let message = format!("'{}' is declared otherwise than in {there}", other.name);
+            let wrong = place(other, message).help(difference(first.layout, other.layout));
+            if !found.contains(&wrong) {
+                found.push(wrong);
+            }
+        }
+    }
+    found
+}
+
+/// The first member that differs, in words.
+fn difference(there: &Layout, here: &Layout) -> Option<String> {
+    let (there, here) = (there.members(), here.members());
+    let differs = there.iter().zip(here).find(|(a, b)| a != b);
+    Some(match differs {
+        Some((a, b)) => format!(
+            "here `{} {}` at byte {}, there `{} {}` at byte {}",
+            b.layout, b.name, b.offset, a.layout, a.name, a.offset
+        ),
+        None => format!("here it has {} members, there {}", here.len(), there.len()),
+    })
+}

@@ -1,0 +1,142 @@
+//! The files of a graph as one.
+
+use super::findings::Findings;
+use crate::diagnostics::{Entries, Items, Loc};
+use crate::graph::definition::{Alias, AliasCase};
+use crate::graph::file::{AliasDecl, Bind, GraphFile, NamedSampler, PassDecl, SamplerDecl, Size, TextureDecl};
+
+/// Adds a file's sections to those of the files before it.
+pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
+    // A parameter takes the place of an included file's value, and of the module that it has set once and for all.
+    let is_param = |name: &Loc<String>| file.params.0.iter().any(|p| p.value.name.value == name.value);
+    all.modules.0.retain(|(name, _)| !is_param(name));
+    all.values.0.retain(|(name, _)| !is_param(name));
+    replace(&mut all.modules, file.modules);
+    replace(&mut all.values, file.values);
+    for (name, title) in file.pinned.0 {
+        match all.pinned.0.iter_mut().find(|p| p.0.value == name.value) {
+            Some(known) => known.1 = title,
+            None => all.pinned.0.push((name, title)),
+        }
+    }
+    append(&mut all.params, file.params);
+    append(&mut all.outputs, file.outputs);
+    append(&mut all.checks, file.checks);
+    append(&mut all.refuse, file.refuse);
+    append(&mut all.tables, file.tables);
+    append(&mut all.compare, file.compare);
+    append(&mut all.views, file.views);
+    append(&mut all.ablation, file.ablation);
+    all.defaults.0.extend(file.defaults.0);
+    all.retired.0.extend(file.retired.0);
+    all.textures.0.extend(file.textures.0);
+    all.buffers.0.extend(file.buffers.0);
+    all.parts.0.extend(file.parts.0);
+    all.fit.0.extend(file.fit.0);
+    later(&mut all.output, file.output);
+    later(&mut all.hdr, file.hdr);
+    later(&mut all.scene, file.scene);
+    later(&mut all.caption, file.caption);
+    later(&mut all.pointer, file.pointer);
+    later(&mut all.voxels, file.voxels);
+}
+
+fn append<T>(all: &mut Items<T>, more: Items<T>) {
+    all.0.extend(more.0);
+}
+
+fn replace<T>(all: &mut Entries<T>, more: Entries<T>) {
+    all.0.retain(|(name, _)| !more.0.iter().any(|(other, _)| other.value == name.value));
+    all.0.extend(more.0);
+}
+
+fn later<T>(all: &mut Option<T>, more: Option<T>) {
+    if more.is_some() {
+        *all = more;
+    }
+}
+
+/// Adds a pass at the end, or after the one that it names.
+pub(super) fn insert_pass(passes: &mut Vec<Loc<PassDecl>>, pass: Loc<PassDecl>, found: &mut Findings) {
+    let Some(after) = &pass.value.after else { return passes.push(pass) };
+    match passes.iter().position(|p| p.value.name.value == after.value) {
+        Some(i) => passes.insert(i + 1, pass),
+        None if found.is_unknown(&after.value) => {
+            let known = passes.iter().map(|p| p.value.name.value.as_str());
+            let message = format!("no pass '{}' stands before this one", after.value);
+            found.unknown(after.at, &after.value, message, known);
+        }
+        None => passes.push(pass),
+    }
+}
+
+/// Gives the textures that are as large as another its size.
+pub(super) fn sizes_of_others(textures: &mut [(String, Loc<TextureDecl>)], found: &mut Findings) {
+    let sizes: Vec<(String, Size)> = textures.iter().map(|(name, t)| (name.clone(), t.value.size.clone())).collect();
+    let size_of = |name: &str| sizes.iter().find(|s| s.0 == name).map(|s| &s.1);
+    for (name, texture) in textures {
+        let mut at = texture.value.size.1.clone();
+        // As many steps as there are textures: more go in a circle.
+        for _ in 0..=sizes.len() {
+            let Some(size) = at.as_ref().and_then(|other| size_of(&other.value)) else { break };
+            texture.value.size.0.clone_from(&size.0);
+            at.clone_from(&size.1);
+        }
+        match at {
+            Some(other) if size_of(&other.value).is_some() => {
+                found.error(texture.at, format!("'{name}' is as large as itself"));
+            }
+            Some(other) => {
+                let message = format!("no texture is named '{}'", other.value);
+                found.unknown(other.at, &other.value, message, sizes.iter().map(|s| s.0.as_str()));
+            }
+            None => {}
+        }
+    }
+}
+
+/// Adds the aliases and samplers of a file to those of the files before it, whose names they replace.
+pub(super) fn add_aliases(
+    known: &mut Vec<Alias>,
+    aliases: Entries<Vec<Loc<AliasDecl>>>,
+    samplers: Entries<NamedSampler>,
+    found: &mut Findings,
+) {
+    let mut new: Vec<Alias> = Vec::new();
+    for (name, list) in aliases.0 {
+        let last = list.value.len().saturating_sub(1);
+        if list.value.is_empty() {
+            found.error(list.at, format!("alias '{}' stands for nothing", name.value));
+        }
+        for (i, case) in list.value.iter().enumerate() {
+            match (&case.value.when, i == last) {
+                (Some(when), true) => {
+                    let message = format!("the last case of '{}' has a condition: what if none holds?", name.value);
+                    found.error(when.at, message);
+                }
+                (None, false) => {
+                    let message = format!("a case of '{}' without `when` hides those behind it", name.value);
+                    found.error(case.at, message);
+                }
+                _ => {}
+            }
+        }
+        let cases = list.value.into_iter().map(|case| {
+            let AliasDecl { when, of, mip, layer, format, history, sampler } = case.value;
+            AliasCase { when, bind: Bind { of, mip, layer, format, history, sampler } }
+        });
+        new.push(Alias { name: name.value, at: name.at, cases: cases.collect() });
+    }
+    for (name, sampler) in samplers.0 {
+        if new.iter().any(|a| a.name == name.value) {
+            found.error(name.at, format!("'{}' is an alias and a sampler", name.value));
+            continue;
+        }
+        let NamedSampler { of, filter, mip_filter, address, compare } = sampler.value;
+        let sampler = Some(SamplerDecl { filter, mip_filter, address, compare });
+        let bind = Bind { of, mip: None, layer: None, format: None, history: false, sampler };
+        new.push(Alias { name: name.value, at: name.at, cases: vec![AliasCase { when: None, bind }] });
+    }
+    known.retain(|old| !new.iter().any(|a| a.name == old.name));
+    known.extend(new);
+}

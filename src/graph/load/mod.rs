@@ -1,0 +1,153 @@
+//! Reading a graph with its includes.
+
+mod check;
+mod check_pass;
+mod choices;
+mod findings;
+mod include;
+mod join;
+mod params;
+mod values;
+
+pub use include::Folders;
+pub use params::BUILTIN_VARIABLES;
+
+use super::definition::{Graph, LightPart};
+use super::file::{GraphFile, PartItem, ungrouped};
+use super::param::Params;
+use crate::diagnostics::{Diagnostic, Entries, Items, Loc, RawText, Severity, Sources};
+use check::Check;
+use findings::Findings;
+use std::path::Path;
+
+/// Reads `path` and what it includes.
+///
+/// # Errors
+/// All mistakes of all files.
+pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
+    let mut include = include::Include::new(folders);
+    include.file(path, None);
+    let (files, mut found) = (include.files, include.found);
+    let mut file = GraphFile::default();
+    let (mut aliases, mut passes) = (Vec::new(), Vec::new());
+    // Textures that are results of some file.
+    let mut results = Vec::new();
+    for mut more in files {
+        join::add_aliases(
+            &mut aliases,
+            std::mem::take(&mut more.aliases),
+            std::mem::take(&mut more.samplers),
+            &mut found,
+        );
+        for pass in ungrouped(std::mem::take(&mut more.passes)) {
+            join::insert_pass(&mut passes, pass, &mut found);
+        }
+        let parts = more.parts.0.iter().map(|(_, part)| &part.value.0.texture);
+        results.extend(more.output.iter().chain(&more.hdr).chain(&more.outputs.0).chain(parts).cloned());
+        join::add(&mut file, more);
+    }
+    let mut textures = by_name(file.textures);
+    join::sizes_of_others(&mut textures, &mut found);
+    let mut list = params::declared(&file.params.0, &mut found);
+    params::set_defaults(&mut list, &file.defaults, &mut found);
+    let pass_names = passes.iter().map(|p| p.value.name.value.clone()).collect();
+    let params = Params { retired: texts(&file.retired), passes: pass_names, ..Params::new(list) };
+    let mut graph = Graph {
+        name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
+        values: values::ordered(file.values.0, &params, &mut found),
+        params,
+        pinned: texts(&file.pinned),
+        modules: texts(&file.modules),
+        textures,
+        buffers: by_name(file.buffers),
+        aliases,
+        passes,
+        output: file.output.map(|name| name.value),
+        hdr: file.hdr.map(|name| name.value),
+        outputs: file.outputs.0.into_iter().map(|name| name.value).collect(),
+        parts: file.parts.0.into_iter().map(part).collect(),
+        scene: file.scene,
+        checks: file.checks.0,
+        refuse: file.refuse.0.into_iter().map(|r| r.value).collect(),
+        caption: file.caption,
+        pointer: file.pointer.as_ref().map(|name| name.value.clone()),
+        tables: file.tables.0,
+        compare: file.compare.0,
+        views: file.views.0,
+        fit: file.fit.0.iter().map(|(name, list)| (name.value.clone(), raw(&list.value))).collect(),
+        ablation: file.ablation.0,
+        voxels: file.voxels,
+        // They are needed for messages until the end.
+        sources: Sources::default(),
+    };
+    let mut check = Check::new(&graph, folders, found);
+    check.names();
+    check.pinned(&file.pinned);
+    check.exprs(graph.params.list.iter().flat_map(|p| p.when.iter().chain(&p.effective)));
+    check.modules(&file.modules);
+    check.named_values();
+    check.textures();
+    check.aliases();
+    for pass in &graph.passes {
+        check.pass(&pass.value, pass.at);
+    }
+    for name in &results {
+        check.texture_name(name);
+    }
+    for compare in &graph.compare {
+        check.settings(&compare.value.a);
+        check.settings(&compare.value.b);
+    }
+    for (name, list) in &file.fit.0 {
+        list.value.0.iter().for_each(|value| check.setting(name, value));
+    }
+    for view in graph.views.iter().chain(&graph.ablation) {
+        check.settings(&view.value.set);
+    }
+    if let Some(voxels) = &graph.voxels {
+        check.voxels(&voxels.value);
+    }
+    for item in &graph.checks {
+        check.check(&item.value, item.at);
+    }
+    check.exprs(graph.refuse.iter().map(|r| &r.when));
+    if let Some(name) = &file.pointer {
+        check.pointer(name);
+    }
+    if let Some(caption) = &graph.caption {
+        check.caption(caption);
+    }
+    check.tables(&graph.tables);
+    check.exprs(graph.scene_expressions());
+    let Findings { sources, mut errors, .. } = check.found;
+    graph.sources = sources;
+    if errors.iter().any(|e| e.severity == Severity::Error) {
+        errors.sort_by(|a, b| a.place.cmp(&b.place));
+        errors.dedup();
+        return Err(errors);
+    }
+    Ok(graph)
+}
+
+fn texts(list: &Entries<String>) -> Vec<(String, String)> {
+    list.0.iter().map(|(name, text)| (name.value.clone(), text.value.clone())).collect()
+}
+
+fn raw(list: &Items<RawText>) -> Vec<String> {
+    list.0.iter().map(|text| text.value.0.clone()).collect()
+}
+
+/// By name, each with its name's place.
+fn by_name<T>(list: Entries<T>) -> Vec<(String, Loc<T>)> {
+    list.0.into_iter().map(|(name, item)| (name.value, Loc { at: name.at, value: item.value })).collect()
+}
+
+fn part((name, Loc { value: PartItem(part), .. }): (Loc<String>, Loc<PartItem>)) -> LightPart {
+    LightPart {
+        texture: part.texture.value,
+        kind: part.kind,
+        title: part.title.unwrap_or_else(|| name.value.clone()),
+        focus: part.focus,
+        name: name.value,
+    }
+}

@@ -1,0 +1,251 @@
+//! What a parameter may hold, how that is written, and what it is called.
+
+use crate::diagnostics::{At, nearest, options};
+use crate::graph::expr::{Env, Ex, Var};
+use serde::Serialize;
+use std::fmt;
+
+/// What kind of value a parameter has.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// true or false.
+    Bool,
+    /// A whole number.
+    Int,
+    /// A number.
+    Float,
+    /// 2 to 4 numbers.
+    Vector(usize),
+    /// Linear RGB.
+    Colour,
+    /// One of some names.
+    Choice(Vec<String>),
+}
+
+impl Kind {
+    /// Numbers with names of their own in expressions; 0 where the whole has one name.
+    pub fn components(&self) -> usize {
+        match self {
+            Kind::Vector(n) => *n,
+            Kind::Colour => 3,
+            _ => 0,
+        }
+    }
+
+    /// The names of a choice; none of all others.
+    pub fn options(&self) -> &[String] {
+        match self {
+            Kind::Choice(options) => options,
+            _ => &[],
+        }
+    }
+}
+
+/// A parameter's value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// true or false.
+    Bool(bool),
+    /// A whole number.
+    Int(i64),
+    /// A number.
+    Float(f64),
+    /// Vectors and colours.
+    Vector(Vec<f64>),
+    /// The name of a choice's option.
+    Choice(String),
+}
+
+impl Value {
+    /// A whole or other number; nothing for other kinds.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Value::Int(v) => Some(*v as f64),
+            Value::Float(v) => Some(*v),
+            _ => None,
+        }
+    }
+
+    /// As RON, as experiments write it.
+    pub fn to_ron(&self) -> String {
+        match self {
+            Value::Choice(name) => format!("{name:?}"),
+            other => other.to_string(),
+        }
+    }
+
+    /// As shaders hold it, in 32-bit words: an option of a choice is its number.
+    pub(in crate::graph) fn words(&self, kind: &Kind) -> Vec<u32> {
+        match self {
+            Value::Bool(v) => vec![u32::from(*v)],
+            Value::Int(v) => vec![i32::try_from(*v).unwrap_or(0).cast_unsigned()],
+            Value::Float(v) => vec![(*v as f32).to_bits()],
+            Value::Vector(v) => v.iter().map(|x| (*x as f32).to_bits()).collect(),
+            Value::Choice(v) => {
+                let number = kind.options().iter().position(|o| o == v);
+                vec![number.and_then(|n| u32::try_from(n).ok()).unwrap_or(0)]
+            }
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Value::Bool(v) => write!(f, "{v}"),
+            Value::Int(v) => write!(f, "{v}"),
+            Value::Float(v) => write!(f, "{v:?}"),
+            Value::Vector(v) => {
+                let parts: Vec<String> = v.iter().map(|x| format!("{x:?}")).collect();
+                write!(f, "({})", parts.join(", "))
+            }
+            Value::Choice(v) => write!(f, "{v}"),
+        }
+    }
+}
+
+/// A declared parameter.
+#[derive(Clone, Debug)]
+pub struct Param {
+    /// Name in shaders and on the command line.
+    pub name: String,
+    /// Where it is declared.
+    pub at: At,
+    /// What it holds.
+    pub kind: Kind,
+    /// Value when nothing else is said.
+    pub default: Value,
+    /// Default where the parameter is declared; a graph that includes it may have another.
+    pub declared: Value,
+    /// Value of a plain or cheaper method, to tell what the parameter is worth.
+    pub plain: Option<Value>,
+    /// Least and greatest value, of each component of a vector.
+    pub range: Option<(f64, f64)>,
+    /// Distance of neighbouring settings, for sliders and sweeps.
+    pub step: Option<f64>,
+    /// Unit, for people.
+    pub unit: String,
+    /// Where the panel shows it.
+    pub group: String,
+    /// One line.
+    pub help: String,
+    /// Whether it is a specialisation constant.
+    pub constant: bool,
+    /// When it counts at all, where shaders decide that at run time.
+    pub when: Option<Ex>,
+    /// What shaders take in its place, where that is not the value itself.
+    pub effective: Option<Ex>,
+    /// Of a module: the shader file of each option; empty for all others.
+    pub files: Vec<String>,
+}
+
+impl Param {
+    /// Whether its options are shader files: then it stands in no shader itself.
+    pub fn is_module(&self) -> bool {
+        !self.files.is_empty()
+    }
+
+    /// Whether another value needs other shaders or pipelines, and is not just a number that shaders read.
+    pub fn is_compiled(&self) -> bool {
+        self.constant || self.is_module()
+    }
+
+    /// Its names in expressions: its own, or one for each component.
+    pub fn variables(&self) -> Vec<String> {
+        match self.kind.components() {
+            0 => vec![self.name.clone()],
+            n => ["x", "y", "z", "w"].iter().take(n).map(|c| format!("{}_{c}", self.name)).collect(),
+        }
+    }
+
+    /// How shaders name it, where it stands in them itself: a constant, or a member of the uniform block.
+    pub fn in_shaders(&self) -> String {
+        if self.constant { self.name.to_uppercase() } else { format!("params.{}", self.name) }
+    }
+
+    /// Gives its variables a value. The numbers of a choice's options are among the variables already.
+    pub(in crate::graph) fn put(&self, value: &Value, env: &mut Env) {
+        let var = match value {
+            Value::Bool(v) => Var::Bool(*v),
+            Value::Int(v) => Var::Number(*v as f64),
+            Value::Float(v) => Var::Number(*v),
+            Value::Choice(option) => match env.get(option) {
+                Some(number) => *number,
+                None => return,
+            },
+            Value::Vector(v) => {
+                return env.extend(self.variables().into_iter().zip(v.iter().map(|x| Var::Number(*x))));
+            }
+        };
+        env.insert(self.name.clone(), var);
+    }
+
+    /// Whether a value is of the right kind and in range; the error names the parameter and what was expected.
+    ///
+    /// # Errors
+    /// The text for the user.
+    pub fn check(&self, value: &Value) -> Result<(), String> {
+        let name = &self.name;
+        let numbers: Vec<f64> = match (&self.kind, value) {
+            (Kind::Bool, Value::Bool(_)) => vec![],
+            (Kind::Int, Value::Int(v)) => {
+                if i32::try_from(*v).is_err() {
+                    return Err(format!("'{name}': {v} does not fit 32 bits"));
+                }
+                vec![*v as f64]
+            }
+            (Kind::Float, Value::Float(v)) => vec![*v],
+            (kind, Value::Vector(v)) if kind.components() > 0 && v.len() == kind.components() => v.clone(),
+            (Kind::Choice(options), Value::Choice(v)) => {
+                if !options.contains(v) {
+                    let hint = nearest(v, options.iter().map(String::as_str)).unwrap_or_default();
+                    return Err(format!("'{name}' has no option '{v}' ({hint})"));
+                }
+                vec![]
+            }
+            _ => return Err(format!("'{name}': expected {}, got {value}", self.expected())),
+        };
+        if let Some(bad) = numbers.iter().find(|v| !v.is_finite()) {
+            return Err(format!("'{name}': {bad} is not a finite number"));
+        }
+        if let Some((low, high)) = self.range
+            && let Some(bad) = numbers.iter().find(|v| **v < low || **v > high)
+        {
+            return Err(format!("'{name}': {bad} is outside {low} to {high}"));
+        }
+        Ok(())
+    }
+
+    /// What its values look like, for people.
+    pub fn expected(&self) -> String {
+        match &self.kind {
+            Kind::Bool => "true or false".into(),
+            Kind::Int => "a whole number".into(),
+            Kind::Float => "a number".into(),
+            Kind::Vector(n) => format!("{n} numbers in parentheses"),
+            Kind::Colour => "a colour (r, g, b)".into(),
+            Kind::Choice(options) => format!("one of {}", options.join(", ")),
+        }
+    }
+
+    /// Reads a value from text (RON; a choice's option needs no quotes).
+    ///
+    /// # Errors
+    /// The text for the user.
+    pub fn parse(&self, text: &str) -> Result<Value, String> {
+        let (text, ron) = (text.trim(), options());
+        let value = match &self.kind {
+            Kind::Bool => ron.from_str(text).map(Value::Bool),
+            Kind::Int => ron.from_str(text).map(Value::Int),
+            Kind::Float => ron.from_str(text).map(Value::Float),
+            Kind::Vector(2) => ron.from_str::<[f64; 2]>(text).map(|v| Value::Vector(v.to_vec())),
+            Kind::Vector(4) => ron.from_str::<[f64; 4]>(text).map(|v| Value::Vector(v.to_vec())),
+            Kind::Vector(_) | Kind::Colour => ron.from_str::<[f64; 3]>(text).map(|v| Value::Vector(v.to_vec())),
+            Kind::Choice(_) => Ok(Value::Choice(ron.from_str::<String>(text).unwrap_or_else(|_| text.to_string()))),
+        };
+        let value = value.map_err(|_| format!("'{}': expected {}, got {text}", self.name, self.expected()))?;
+        self.check(&value)?;
+        Ok(value)
+    }
+}

@@ -1,0 +1,9 @@
+//! Parameters: declared once in a graph, read by shaders, `--set`, experiments, panels and sweeps.
+
+mod decl;
+mod kinds;
+mod params;
+
+pub use decl::Decl;
+pub use kinds::{Kind, Param, Value};
+pub use params::{OFF, Params};

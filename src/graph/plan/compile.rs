@@ -1,0 +1,143 @@
+//! A frame's plan, from sizes over steps to what is left of them.
+
+use super::data::{BufferPlan, Plan, Step, TexturePlan};
+use super::numbers::Numbers;
+use super::steps::Planner;
+use super::uses::Use;
+use super::{layout, live, needs, settle, sizes, transient};
+use crate::diagnostics::{Diagnostic, Place};
+use crate::graph::definition::Res;
+use crate::graph::evaluated::Evaluated;
+use crate::graph::expr::Var;
+use crate::graph::link::{Layouts, Linked};
+use crate::vulkan::DeviceInfo;
+use std::collections::BTreeMap;
+
+/// Plans a frame. `wanted` are resources that must hold their result at its end.
+///
+/// # Errors
+/// Sizes that make no sense or that the device cannot make, features that it lacks.
+pub fn plan(
+    set: &Evaluated<'_>,
+    linked: &[Linked],
+    wanted: &[String],
+    device: &DeviceInfo,
+) -> Result<Plan, Vec<Diagnostic>> {
+    if !set.errors.is_empty() {
+        return Err(set.errors.clone());
+    }
+    let graph = set.graph;
+    let layouts = Layouts::new(graph, linked);
+    let mut numbers = Numbers::new(set);
+    for refused in &graph.refuse {
+        if numbers.holds(&refused.when) {
+            numbers.error(refused.when.at, refused.message.clone());
+        }
+    }
+    let mut textures = sizes::textures(&mut numbers, wanted, device);
+    if !numbers.errors.is_empty() {
+        return Err(numbers.errors);
+    }
+    let mut buffers = sizes::buffers(&mut numbers, &layouts, wanted, device);
+    let (mut steps, mut dropped) = (Vec::new(), Vec::new());
+    let mut settles = BTreeMap::new();
+    // What passes write that are left out.
+    let mut missing: Vec<Res> = Vec::new();
+    let mut planner = Planner { numbers, layouts, device, textures: &textures, buffers: &buffers };
+    for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
+        if let Some(when) = pass.value.conditions().find(|when| !planner.numbers.holds(when)) {
+            dropped.push((number, format!("{} is false", when.value.text)));
+            continue;
+        }
+        let planned = planner.steps(number, &pass.value, link);
+        if set.params.off.contains(&pass.value.name.value) {
+            let uses = planned.into_iter().flat_map(|s| s.uses);
+            missing.extend(uses.filter(|u| u.write).map(|u| u.res));
+            dropped.push((number, "it is off".into()));
+            continue;
+        }
+        steps.extend(planned);
+        if let Some(ex) = &pass.value.settles {
+            settles.insert(number, (ex.at, planner.numbers.count(ex, 1, "settles")));
+        }
+    }
+    let mut numbers = planner.numbers;
+    for res in &missing {
+        match *res {
+            Res::Texture(t, _) => textures[t].transient = false,
+            Res::Buffer(b, _) => buffers[b].transient = false,
+        }
+        numbers.errors.extend(nobody_writes(set, wanted, &steps, *res));
+    }
+    written_anew(&textures, &buffers, &mut steps);
+    checks(&mut numbers, &buffers);
+    let max_edge = max_edge(&mut numbers);
+    if !numbers.errors.is_empty() {
+        return Err(numbers.errors);
+    }
+    let (settling, transients) = (Vec::new(), Vec::new());
+    let mut plan = Plan { textures, buffers, steps, settling, transients, missing, dropped, max_edge };
+    let mut errors = Vec::new();
+    live::prune(graph, linked, &mut plan, wanted);
+    layout::layouts(graph, &mut plan, &mut errors);
+    match settle::find(graph, &plan, &settles) {
+        Ok(settling) => plan.settling = settling,
+        Err(found) => errors.extend(found),
+    }
+    match transient::find(graph, &plan) {
+        Ok(transients) => plan.transients = transients,
+        Err(found) => errors.extend(found),
+    }
+    errors.extend(needs::check(set, linked, &plan, device));
+    if errors.is_empty() { Ok(plan) } else { Err(errors) }
+}
+
+/// What passes that are off would have begun anew holds zeros in their place, and the picture has to come from somewhere.
+fn nobody_writes(set: &Evaluated<'_>, wanted: &[String], steps: &[Step], res: Res) -> Option<Diagnostic> {
+    let name = set.graph.title_of(res);
+    let written = steps.iter().flat_map(|s| &s.uses).any(|u| u.write && u.res == res);
+    (!written && wanted.contains(&name)).then(|| {
+        let off = set.params.off.join(", ");
+        Diagnostic::error(Place::default(), format!("nothing writes '{name}' when these passes are off: {off}"))
+    })
+}
+
+/// In what has a history nothing is left of two frames ago, in what is transient nothing at all, by their declarations: who
+/// stores first replaces everything.
+fn written_anew(textures: &[TexturePlan], buffers: &[BufferPlan], steps: &mut [Step]) {
+    let begun = (0..buffers.len()).filter(|b| buffers[*b].history || buffers[*b].transient);
+    let buffers = begun.map(|b| (Res::Buffer(b, false), 0));
+    let kept = textures.iter().enumerate().filter(|(_, texture)| texture.history || texture.transient);
+    let mips = kept.flat_map(|(t, texture)| (0..texture.mips).map(move |mip| (Res::Texture(t, false), mip)));
+    for (res, mip) in buffers.chain(mips) {
+        let this = |u: &&mut Use| u.res == res && u.mips == (mip, 1);
+        if let Some(first) = steps.iter_mut().flat_map(|s| &mut s.uses).filter(this).find(|u| u.write) {
+            first.overwrite |= !first.read;
+        }
+    }
+}
+
+fn checks(numbers: &mut Numbers<'_>, buffers: &[BufferPlan]) {
+    let graph = numbers.set.graph;
+    for check in graph.checks.iter().map(|c| &c.value) {
+        let size = graph.buffer(check.buffer()).map_or(0, |b| buffers[b].size);
+        if let (Some(buffer), Some(word)) = (&check.buffer, check.word)
+            && (u64::from(word) + 1) * 4 > size
+        {
+            numbers.error(buffer.at, format!("'{}' has {size} bytes and no word {word}", buffer.value));
+        }
+    }
+}
+
+fn max_edge(numbers: &mut Numbers<'_>) -> Option<f64> {
+    let needs = &numbers.set.graph.scene.as_ref()?.value;
+    let empty = numbers.env.get("triangle_count") == Some(&Var::Number(0.0));
+    if empty || needs.when.as_ref().is_some_and(|when| !numbers.holds(when)) {
+        return None;
+    }
+    let edge = numbers.value(&needs.max_edge);
+    if edge <= 0.0 && numbers.errors.is_empty() {
+        numbers.error(needs.max_edge.at, format!("max_edge '{}' is {edge} m", needs.max_edge.value.text));
+    }
+    Some(edge)
+}

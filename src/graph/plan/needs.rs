@@ -1,0 +1,92 @@
+//! Features that passes need and devices may lack, told with what to choose instead.
+
+use super::data::Plan;
+use crate::diagnostics::Diagnostic;
+use crate::graph::evaluated::Evaluated;
+use crate::graph::file::PassDecl;
+use crate::graph::link::Linked;
+use crate::graph::param::{Params, Value};
+use crate::shader::Resource;
+use crate::vulkan::{DeviceInfo, Stage};
+
+const CLIP_DISTANCE: u32 = 32;
+const FLOAT64: u32 = 10;
+const INT64: u32 = 11;
+const INT64_ATOMICS: u32 = 12;
+
+/// One error for each feature that a pass of the plan needs and the device lacks.
+pub(super) fn check(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan, device: &DeviceInfo) -> Vec<Diagnostic> {
+    let have = &device.features;
+    let mut errors = Vec::new();
+    for number in plan.passes() {
+        let pass = &set.graph.passes[number].value;
+        let link = &linked[number];
+        let has = |stage: Stage| link.stages.iter().any(|s| s.stage == stage);
+        let stores = |fragment: bool| {
+            link.bound.iter().any(|b| {
+                b.stage != Stage::Compute
+                    && (b.stage == Stage::Fragment) == fragment
+                    && matches!(
+                        b.resource,
+                        Resource::Buffer { write: true, .. } | Resource::Storage { write: true, .. }
+                    )
+            })
+        };
+        let unformatted = link.bound.iter().any(|b| matches!(b.resource, Resource::Storage { format: None, .. }));
+        let uses = |capability: u32| link.stages.iter().any(|s| s.interface.capabilities.contains(&capability));
+        let needs = [
+            (
+                pass.raster.conservative.is_some(),
+                have.conservative_rasterization,
+                "conservative rasterisation (VK_EXT_conservative_rasterization)",
+            ),
+            (has(Stage::Geometry), have.geometry, "geometry shaders"),
+            (has(Stage::TessControl), have.tessellation, "tessellation"),
+            (stores(true), have.fragment_stores, "stores from fragment shaders"),
+            (stores(false), have.vertex_stores, "stores from vertex, tessellation or geometry shaders"),
+            (pass.raster.depth_clamp, have.depth_clamp, "depth clamping"),
+            (unformatted, have.write_without_format, "writing images without a format"),
+            (uses(CLIP_DISTANCE), have.clip_distance, "gl_ClipDistance"),
+            (uses(INT64) || uses(INT64_ATOMICS), have.int64_atomics, "64-bit atomics in buffers"),
+            // Not asked of any device: portable shaders do without.
+            (uses(FLOAT64), false, "64-bit floating point in shaders"),
+        ];
+        for (needed, available, what) in needs {
+            if needed && !available {
+                let message = format!(
+                    "pass '{}' needs {what}, which {} does not have{}",
+                    pass.name.value,
+                    device.name,
+                    because(pass, set.params)
+                );
+                errors.push(set.graph.sources.error(pass.name.at, message).help(instead(pass, set.params)));
+            }
+        }
+    }
+    errors
+}
+
+fn choices<'p>(pass: &'p PassDecl, params: &'p Params) -> impl Iterator<Item = (&'p str, &'p Value, &'p [String])> {
+    let variables = pass.conditions().flat_map(|ex| ex.value.variables());
+    variables.filter_map(|v| {
+        let i = params.index(v)?;
+        let options = params.list[i].kind.options();
+        (!options.is_empty()).then(|| (params.list[i].name.as_str(), &params.values[i], options))
+    })
+}
+
+fn because(pass: &PassDecl, params: &Params) -> String {
+    let list: Vec<String> = choices(pass, params).map(|(name, value, _)| format!("{name} is {value}")).collect();
+    if list.is_empty() { String::new() } else { format!(" (it runs because {})", list.join(" and ")) }
+}
+
+fn instead(pass: &PassDecl, params: &Params) -> Option<String> {
+    let list: Vec<String> = choices(pass, params)
+        .map(|(name, value, options)| {
+            let others: Vec<&str> =
+                options.iter().map(String::as_str).filter(|o| Value::Choice((*o).to_string()) != *value).collect();
+            format!("--set {name}={}", others.join("|"))
+        })
+        .collect();
+    (!list.is_empty()).then(|| format!("use {}", list.join(" or ")))
+}

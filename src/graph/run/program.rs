@@ -1,0 +1,433 @@
+//! A plan on a device: its resources, pipelines and descriptor sets, and frames of it.
+
+use super::bindings::{Offered, Sets, StepGpu};
+use super::parts::{Change, Parts};
+use super::pipelines::{Pipelines, make_pipelines};
+use super::record::Recorder;
+use super::resources::{self, Resources};
+use super::scene::SceneResources;
+use super::sleep::{Contents, Frame, Redo};
+use super::transfer::{relayout, send};
+use crate::graph::definition::Res;
+use crate::graph::evaluated::Evaluated;
+use crate::graph::link::Linked;
+use crate::graph::plan::{Plan, Schedule, schedule};
+use crate::vulkan::{Buffer, Commands, FrameSlot, Gpu, Recording, Result, vk};
+use gpu_allocator::MemoryLocation;
+use std::ops::Range;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A graph that is ready to run.
+pub struct Program {
+    gpu: Arc<Gpu>,
+    /// What it runs.
+    pub plan: Plan,
+    linked: Arc<Vec<Linked>>,
+    pub(super) schedule: Schedule,
+    scene: SceneResources,
+    pub(super) pipelines: Pipelines,
+    steps: Vec<StepGpu>,
+    /// What the steps refer to.
+    _sets: Sets,
+    names: Vec<String>,
+    pub(super) resources: Resources,
+    /// Layouts of all images between frames.
+    pub(super) resting: Vec<vk::ImageLayout>,
+    /// What was taken over from the program before.
+    pub change: Change,
+    params: Arc<Buffer>,
+    slots: Vec<Slot>,
+    pub(super) frame: u64,
+    /// Frames that this program has run; the one before it may have run others.
+    ran: u64,
+    /// The texture that frames are asked for.
+    pub(super) shown: Option<usize>,
+    /// Whether every frame copies it to the CPU.
+    pub(super) reads_back: bool,
+    /// Where the next frame copies it to on the device.
+    handed: Option<Arc<Buffer>>,
+    /// Steps where a pass begins.
+    starts: Vec<usize>,
+    /// What frames do.
+    redo: Redo,
+    /// What there is, where only what changes is done or something settles.
+    contents: Option<Contents>,
+}
+
+/// A frame in flight.
+struct Slot {
+    /// By parity, the commands of its last frame, and what they do. Dropped before the queries that they write.
+    recorded: [Option<(Recorded, Recording)>; 2],
+    commands: FrameSlot,
+    cpu_ms: f64,
+    /// Whether each of [`Program::starts`] has a timestamp.
+    stamped: Vec<bool>,
+    /// Where the shown texture is copied to on the CPU, and whether its last frame did.
+    readback: (Option<Buffer>, bool),
+    /// Where its last frame copied it to for another device.
+    handed: Option<Arc<Buffer>>,
+}
+
+/// All that decides which commands a frame has, but its parity.
+#[derive(PartialEq)]
+struct Recorded {
+    frame: Frame,
+    /// The first two frames begin with other layouts than all after them.
+    first: Option<u64>,
+}
+
+/// Times of one frame that has finished.
+#[derive(Clone, Debug, Default)]
+pub struct FrameTimes {
+    /// (pass number, milliseconds) on the GPU, in order; 0 for those that slept.
+    pub passes: Vec<(usize, f64)>,
+    /// Numbers of the passes that slept ([`Redo::Changed`]).
+    pub asleep: Vec<usize>,
+    /// First to last command of the frame on the GPU, ms.
+    pub gpu_ms: f64,
+    /// Recording and submitting on the CPU, ms.
+    pub cpu_ms: f64,
+    /// Texels of the texture chosen by [`Program::show`], mip 0 and layer 0, tightly packed.
+    pub picture: Option<Vec<u8>>,
+    /// The same in a buffer of the device that another device may take ([`Program::hand_over`]).
+    pub handed: Option<Arc<Buffer>>,
+}
+
+/// Frames recorded ahead of the GPU.
+const FRAMES_IN_FLIGHT: usize = 3;
+
+impl Program {
+    /// Makes everything that the plan needs, except what can be taken from the parts of a running program; see
+    /// [`Program::swap_in`].
+    ///
+    /// # Errors
+    /// Out of device memory, and what the driver refuses.
+    pub fn new(
+        gpu: &Arc<Gpu>,
+        set: &Evaluated<'_>,
+        linked: &Arc<Vec<Linked>>,
+        plan: Plan,
+        scene: &SceneResources,
+        parts: &Parts,
+    ) -> Result<Program> {
+        let Evaluated { graph, params, .. } = *set;
+        let schedule = schedule(&plan);
+        let mut change = Change::default();
+        let resources = resources::make(gpu, graph, &plan, parts, &mut change)?;
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        let size = params.uniform_bytes(&set.values).len() as u64;
+        let params_buffer = Arc::new(Buffer::new(gpu, "params", size, usage, MemoryLocation::GpuOnly)?);
+        let made = make_pipelines(gpu, graph, linked, &plan, params, &parts.pipelines)?;
+        change.built = made.built;
+        change.kept = made.pipelines.len() - made.built;
+        let offered = Offered { gpu, graph, linked, plan: &plan, resources: &resources, scene, params: &params_buffer };
+        let mut sets = Sets::new(gpu, &plan, linked)?;
+        let pipelines = made.keys.iter().map(|key| key.map(|k| made.pipelines[k].1.clone()));
+        let steps = plan.steps.iter().zip(pipelines).map(|(step, pipeline)| sets.step(&offered, step, pipeline));
+        let mut program = Program {
+            gpu: gpu.clone(),
+            steps: steps.collect::<Result<_>>()?,
+            _sets: sets,
+            names: graph.passes.iter().map(|p| p.value.name.value.clone()).collect(),
+            pipelines: made.pipelines,
+            resting: schedule.ends[1].clone(),
+            change,
+            shown: None,
+            reads_back: true,
+            handed: None,
+            starts: (0..plan.steps.len())
+                .filter(|i| *i == 0 || plan.steps[*i].pass != plan.steps[i - 1].pass)
+                .collect(),
+            plan,
+            linked: linked.clone(),
+            schedule,
+            scene: scene.clone(),
+            resources,
+            params: params_buffer,
+            slots: Vec::new(),
+            frame: 0,
+            ran: 0,
+            redo: Redo::All,
+            contents: None,
+        };
+        program.set_redo(Redo::All);
+        let timestamps = u32::try_from(program.starts.len() + 1).unwrap_or(u32::MAX);
+        for _ in 0..FRAMES_IN_FLIGHT {
+            program.slots.push(Slot {
+                commands: FrameSlot::new(gpu, timestamps)?,
+                recorded: [None, None],
+                cpu_ms: 0.0,
+                stamped: Vec::new(),
+                readback: (None, false),
+                handed: None,
+            });
+        }
+        program.initialise(parts)?;
+        Ok(program)
+    }
+
+    /// Gives every new image its first layout and zeroes what is new, so that first frames are like any other.
+    fn initialise(&mut self, parts: &Parts) -> Result<()> {
+        let dst = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        for layout in self.resting.iter_mut().filter(|l| **l == vk::ImageLayout::UNDEFINED) {
+            *layout = dst;
+        }
+        // What is transient is begun by every frame.
+        let buffers = self.resources.buffers.iter().zip(&self.plan.buffers).filter(|(_, plan)| !plan.transient);
+        let buffers: Vec<&Arc<Buffer>> =
+            buffers.flat_map(|(copies, _)| copies.iter().flatten()).filter(|b| !parts.holds_buffer(b)).collect();
+        let mut images = Vec::new();
+        for (t, copies) in self.resources.images.iter().enumerate().filter(|(t, _)| !self.plan.textures[*t].transient) {
+            for (c, image) in copies.iter().enumerate() {
+                let image = image.as_ref().filter(|i| !parts.holds_image(i));
+                images.extend(image.map(|image| (t, image, &self.resting[self.places_of(t, c)])));
+            }
+        }
+        // A submission waits for the frames that run: nothing is submitted for nothing.
+        if buffers.is_empty() && images.is_empty() {
+            return Ok(());
+        }
+        Commands::once(&self.gpu, |commands| {
+            for buffer in buffers {
+                commands.fill(buffer, 0);
+            }
+            for (t, image, layouts) in images {
+                commands.transition(image, vk::ImageLayout::UNDEFINED, dst);
+                if self.plan.textures[t].format.is_depth() {
+                    commands.clear_depth(image, dst, 1.0);
+                } else {
+                    commands.clear(image, dst, vk::ClearColorValue::default(), (0, vk::REMAINING_MIP_LEVELS));
+                }
+                let barriers: Vec<_> = (0u32..)
+                    .zip(layouts)
+                    .filter(|(_, layout)| **layout != dst)
+                    .map(|(mip, layout)| (&**image, relayout(image, dst, *layout, mip)))
+                    .collect();
+                commands.barrier(None, &barriers);
+            }
+            commands.full_barrier();
+        })
+    }
+
+    pub(super) fn gpu(&self) -> &Arc<Gpu> {
+        &self.gpu
+    }
+
+    /// The buffer that holds the parameters.
+    pub fn params_buffer(&self) -> Arc<Buffer> {
+        self.params.clone()
+    }
+
+    /// Records and submits a frame, after writing `updates` into uniform and scene buffers. Returns the times of the
+    /// frame that ran in the same slot before, if one did.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn run(&mut self, updates: &[(Arc<Buffer>, Vec<u8>)]) -> Result<Option<FrameTimes>> {
+        let slot = usize::try_from(self.frame % FRAMES_IN_FLIGHT as u64).unwrap_or(0);
+        let finished = self.finish(slot)?;
+        let parity = usize::try_from(self.frame % 2).unwrap_or(0);
+        let mut slots = std::mem::take(&mut self.slots);
+        let readback = self.readback(&mut slots[slot]);
+        slots[slot].handed = self.handed.take();
+        let start = Instant::now();
+        let frame = self.work(updates, parity == 1);
+        let result = readback.and_then(|()| self.submit(&mut slots[slot], frame, updates, parity));
+        slots[slot].cpu_ms = start.elapsed().as_secs_f64() * 1e3;
+        self.slots = slots;
+        if result.is_err() {
+            // Nobody knows what such a frame has done.
+            self.contents = None;
+            self.set_redo(self.redo);
+        }
+        result?;
+        self.frame += 1;
+        self.ran += 1;
+        self.rest(parity);
+        Ok(finished)
+    }
+
+    /// Sends what changed, and the commands of a frame behind it: those of the last one that did the same, if there is one.
+    /// Recording takes most of the time of a CPU's frame.
+    fn submit(&self, slot: &mut Slot, frame: Frame, updates: &[(Arc<Buffer>, Vec<u8>)], parity: usize) -> Result<()> {
+        slot.stamped = self.runs(&frame.awake);
+        let Slot { commands, recorded, stamped, readback, handed, .. } = slot;
+        let recorder = self.recorder();
+        let recorded = &mut recorded[parity];
+        let wanted = Recorded { frame, first: Some(self.ran).filter(|ran| *ran < 2) };
+        let recording = match recorded.take() {
+            Some((last, recording)) if last == wanted => recording,
+            _ => Recording::new(commands, |commands| {
+                recorder.record(commands, parity, &wanted.frame, stamped);
+            })?,
+        };
+        let to_host = readback.0.as_ref().filter(|_| readback.1);
+        let shown = self.shown.filter(|_| to_host.is_some() || handed.is_some());
+        let copy = shown.map(|texture| {
+            let recorder = &recorder;
+            move |commands: &mut Commands<'_>| {
+                recorder.copy_shown(commands, texture, parity, to_host, handed.as_deref())
+            }
+        });
+        commands.submit_again(&recording, |commands| send(commands, updates), copy)?;
+        *recorded = Some((wanted, recording));
+        Ok(())
+    }
+
+    /// Where all mips of a copy of a texture are among the places.
+    pub(super) fn places_of(&self, texture: usize, copy: usize) -> Range<usize> {
+        let mips = (0, self.plan.textures[texture].mips);
+        self.schedule.places.of_copy(Res::Texture(texture, false), mips, copy)
+    }
+
+    fn recorder(&self) -> Recorder<'_> {
+        Recorder {
+            plan: &self.plan,
+            schedule: &self.schedule,
+            resources: &self.resources,
+            steps: &self.steps,
+            names: &self.names,
+            starts: &self.starts,
+            geometry: &self.scene.geometry,
+            multi_draw: self.gpu.info.features.multi_draw_indirect,
+            resting: &self.resting,
+        }
+    }
+
+    /// From the next frame on, does all or what changes.
+    pub fn set_redo(&mut self, redo: Redo) {
+        self.redo = redo;
+        if redo == Redo::All && self.plan.settling.is_empty() {
+            self.contents = None;
+        } else if self.contents.is_none() {
+            self.contents = Some(Contents::new(&self.linked, &self.plan));
+        }
+    }
+
+    /// What frames do.
+    pub fn redo(&self) -> Redo {
+        self.redo
+    }
+
+    /// What the next frame does.
+    fn work(&mut self, updates: &[(Arc<Buffer>, Vec<u8>)], odd: bool) -> Frame {
+        let Some(contents) = &mut self.contents else {
+            return Frame { awake: vec![true; self.plan.steps.len()], keeping: Vec::new() };
+        };
+        for (buffer, bytes) in updates {
+            if Arc::ptr_eq(buffer, &self.params) {
+                contents.update("params", bytes);
+            }
+            for (name, _) in self.scene.buffers.iter().filter(|(_, b)| Arc::ptr_eq(b, buffer)) {
+                contents.update(name, bytes);
+            }
+        }
+        contents.frame(&self.plan, odd, self.redo)
+    }
+
+    /// Whether a step of each pass runs, in the order of `starts`.
+    fn runs(&self, awake: &[bool]) -> Vec<bool> {
+        let ends = self.starts.iter().skip(1).copied().chain([awake.len()]);
+        self.starts.iter().zip(ends).map(|(start, end)| awake[*start..end].contains(&true)).collect()
+    }
+
+    /// Whether frames copy the shown texture to the CPU, from the next one on; they do at first.
+    pub fn read_back(&mut self, reads_back: bool) {
+        self.reads_back = reads_back;
+    }
+
+    /// Where the next frame copies the shown texture to, for another device; what is too small for it is left alone.
+    pub fn hand_over(&mut self, to: Option<Arc<Buffer>>) {
+        let bytes = self.shown_bytes();
+        self.handed = to.filter(|b| bytes > 0 && b.size >= bytes);
+    }
+
+    /// Bytes of the shown texture; 0 without one.
+    pub fn shown_bytes(&self) -> u64 {
+        self.shown.map_or(0, |t| self.plan.textures[t].mip_bytes(0))
+    }
+
+    /// Copies this texture to the CPU with every frame from now on.
+    pub fn show(&mut self, texture: Option<usize>) {
+        self.shown = texture.filter(|t| {
+            let plan = &self.plan.textures[*t];
+            !plan.usage.is_empty() && !plan.transient
+        });
+    }
+
+    /// Gives a slot a host buffer for the shown texture, unless it has one that fits.
+    fn readback(&self, slot: &mut Slot) -> Result<()> {
+        let size = self.shown_bytes();
+        slot.readback.1 = self.reads_back && size > 0;
+        if slot.readback.1 && slot.readback.0.as_ref().is_none_or(|b| b.size != size.max(16).next_multiple_of(4)) {
+            let usage = vk::BufferUsageFlags::TRANSFER_DST;
+            slot.readback.0 = Some(Buffer::new(&self.gpu, "shown", size, usage, MemoryLocation::GpuToCpu)?);
+        }
+        Ok(())
+    }
+
+    /// Remembers the layouts that a frame of this parity leaves behind.
+    fn rest(&mut self, parity: usize) {
+        for (now, end) in self.resting.iter_mut().zip(&self.schedule.ends[parity]) {
+            if *end != vk::ImageLayout::UNDEFINED {
+                *now = *end;
+            }
+        }
+    }
+
+    /// Waits until at most so many frames are unfinished and returns the times of the others, in order.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn finish_to(&mut self, unfinished: u64) -> Result<Vec<FrameTimes>> {
+        let mut list = Vec::new();
+        for age in (unfinished + 1..=FRAMES_IN_FLIGHT as u64).rev() {
+            let Some(frame) = self.frame.checked_sub(age) else { continue };
+            list.extend(self.finish(usize::try_from(frame % FRAMES_IN_FLIGHT as u64).unwrap_or(0))?);
+        }
+        Ok(list)
+    }
+
+    /// Waits for all frames and returns their times in order.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn finish_all(&mut self) -> Result<Vec<FrameTimes>> {
+        self.finish_to(0)
+    }
+
+    fn finish(&mut self, slot: usize) -> Result<Option<FrameTimes>> {
+        let shown = usize::try_from(self.shown_bytes()).unwrap_or(0);
+        let Slot { commands, cpu_ms, stamped, readback, handed, .. } = &mut self.slots[slot];
+        let Some(ticks) = commands.wait()? else { return Ok(None) };
+        let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
+        let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass).zip(stamped.iter());
+        let mut spans = ticks.windows(2).map(|t| ms(t[0], t[1]));
+        // Devices without timestamps say nothing.
+        let timed = passes.clone().filter(|_| !ticks.is_empty());
+        Ok(Some(FrameTimes {
+            asleep: passes.filter(|p| !p.1).map(|p| p.0).collect(),
+            passes: timed.map(|(pass, ran)| (pass, if *ran { spans.next().unwrap_or(0.0) } else { 0.0 })).collect(),
+            gpu_ms: ticks.first().zip(ticks.last()).map_or(0.0, |(a, b)| ms(*a, *b)),
+            cpu_ms: *cpu_ms,
+            picture: readback
+                .0
+                .as_ref()
+                .filter(|_| readback.1)
+                .map(|b| b.bytes()[..shown.min(b.bytes().len())].to_vec()),
+            handed: handed.take(),
+        }))
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // All frames in flight end before anything that one of them uses is destroyed. Of a hung or lost device there is
+        // nothing to wait for.
+        for slot in &mut self.slots {
+            let _ = slot.commands.wait();
+        }
+        self.slots.clear();
+    }
+}

@@ -1,0 +1,64 @@
+//! Content between host and device, and layouts of single mips.
+
+use crate::vulkan::{Buffer, Commands, Image, vk};
+use std::sync::Arc;
+
+/// Writes new content into buffers, after all that reads the old one and before all that reads the new one.
+pub(super) fn send(commands: &mut Commands<'_>, updates: &[(Arc<Buffer>, Vec<u8>)]) {
+    use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
+    if !updates.is_empty() {
+        let barrier = |src, src_access, dst, dst_access| {
+            vk::MemoryBarrier2::default()
+                .src_stage_mask(src)
+                .src_access_mask(src_access)
+                .dst_stage_mask(dst)
+                .dst_access_mask(dst_access)
+        };
+        let (all, copy) = (Stages::ALL_COMMANDS, Stages::ALL_TRANSFER);
+        commands.barrier(Some(barrier(all, Access::empty(), copy, Access::TRANSFER_WRITE)), &[]);
+        for (buffer, bytes) in updates {
+            commands.update(buffer, bytes);
+        }
+        commands.barrier(Some(barrier(copy, Access::TRANSFER_WRITE, all, Access::MEMORY_READ)), &[]);
+    }
+}
+
+/// Copies a (mip, layer) of an image that rests in a layout, and leaves it there.
+pub(super) fn copy_out(
+    commands: &mut Commands<'_>,
+    image: &Image,
+    layout: vk::ImageLayout,
+    (mip, layer): (u32, u32),
+    part: Option<([u32; 3], [u32; 3])>,
+    to: &Buffer,
+) {
+    let src = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+    commands.barrier(None, &[(image, relayout(image, layout, src, mip))]);
+    commands.read_image(image, src, mip, layer, part, to);
+    commands.barrier(None, &[(image, relayout(image, src, layout, mip))]);
+    commands.full_barrier();
+}
+
+pub(super) fn relayout(
+    image: &Image,
+    from: vk::ImageLayout,
+    to: vk::ImageLayout,
+    mip: u32,
+) -> vk::ImageMemoryBarrier2<'static> {
+    let all = vk::PipelineStageFlags2::ALL_COMMANDS;
+    let access = vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE;
+    vk::ImageMemoryBarrier2::default()
+        .src_stage_mask(all)
+        .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
+        .dst_stage_mask(all)
+        .dst_access_mask(access)
+        .old_layout(from)
+        .new_layout(to)
+        .subresource_range(
+            vk::ImageSubresourceRange::default()
+                .aspect_mask(image.aspect())
+                .base_mip_level(mip)
+                .level_count(1)
+                .layer_count(vk::REMAINING_ARRAY_LAYERS),
+        )
+}
