@@ -3,6 +3,7 @@
 use crate::diagnostics::{Diagnostic, Items, Severity, Sources};
 use crate::experiment::ExperimentError;
 use crate::experiment::PlacedCamera;
+use crate::files::FileError;
 use glam::Vec3;
 use serde::Deserialize;
 use std::path::Path;
@@ -168,20 +169,19 @@ fn parse(sources: &Sources, file: u32) -> Result<CameraPath, Vec<Diagnostic>> {
 /// # Errors
 /// A file that exists (without `overwrite`), a path that cannot be read back, no permission.
 pub fn write(path: &CameraPath, file: &Path, overwrite: bool) -> Result<(), ExperimentError> {
-    let fail = |why: String| ExperimentError::Request(format!("cannot write '{}': {why}", file.display()));
     let text = text(path);
     let mut sources = Sources::default();
     let number = sources.add(file, text.clone());
     if parse(&sources, number).map_err(ExperimentError::Input)? != *path {
-        return Err(fail("it would not read back as it is".into()));
+        return Err(FileError::write(file, "it would not read back as it is").into());
     }
     let written = match overwrite {
         true => crate::files::write_whole(file, text.as_bytes()),
         false => crate::files::write_new(file, text.as_bytes()),
     };
-    written.map_err(|e| match e.kind() {
-        std::io::ErrorKind::AlreadyExists => fail("it exists; choose another name, or ask to overwrite it".into()),
-        _ => fail(e.to_string()),
+    written.map_err(|e| match e.is_there() {
+        true => FileError::write(file, "it exists; choose another name, or ask to overwrite it").into(),
+        false => e.into(),
     })
 }
 

@@ -32,6 +32,7 @@ mod view;
 mod voxels;
 
 use crate::diagnostics::excerpt::excerpt;
+use crate::files::FileError;
 use crate::lab::{Lab, LabError, Workspace};
 use crate::metrics::Metric;
 use crate::vulkan::{GpuOptions, list_devices};
@@ -240,22 +241,18 @@ fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
     }
     let ending = crate::files::ending(path);
     if !endings.contains(&ending.as_str()) {
-        let message = format!("'{}': give it a name that ends in .{}", path.display(), endings.join(" or ."));
-        return Err(LabError::Request(message));
+        let why = format!("give it a name that ends in .{}", endings.join(" or ."));
+        return Err(FileError::content(path, why).into());
     }
     let folder = match path.parent() {
         Some(p) if !p.as_os_str().is_empty() => p,
         _ => Path::new("."),
     };
     if path.is_dir() {
-        return Err(LabError::Request(format!("cannot write '{}': it is a folder", path.display())));
+        return Err(FileError::write(path, "it is a folder").into());
     }
     if folder.is_file() {
-        return Err(LabError::Request(format!(
-            "cannot write '{}': '{}' is no folder",
-            path.display(),
-            folder.display()
-        )));
+        return Err(FileError::write(path, format!("'{}' is no folder", folder.display())).into());
     }
     let try_folder = || {
         std::fs::create_dir_all(folder)?;
@@ -263,16 +260,13 @@ fn writable(path: &Path, endings: &[&str]) -> Result<String, LabError> {
     };
     match try_folder() {
         Ok(_) => Ok(ending),
-        Err(e) => Err(LabError::Request(format!("cannot write '{}': {e}", path.display()))),
+        Err(why) => Err(FileError::Write { path: path.into(), why }.into()),
     }
 }
 
 /// Every message of the validation layer is an error.
 fn validated(lab: &Lab) -> Result<(), LabError> {
-    match lab.gpu.messages().len() {
-        0 => Ok(()),
-        n => Err(LabError::Request(format!("the Vulkan validation layer had {n} messages (see above)"))),
-    }
+    LabError::of_messages(lab.gpu.messages().len())
 }
 
 fn scene(args: &SceneArgs) -> Result<(), LabError> {

@@ -2,13 +2,64 @@
 
 use sha2::{Digest, Sha256};
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// A file that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// It cannot be written.
+    #[error("cannot write '{}': {why}", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        why: std::io::Error,
+    },
+    /// It cannot be read.
+    #[error("cannot read '{}': {why}", .path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        why: String,
+    },
+    /// What stands in it, or its name, is not what it should be.
+    #[error("'{}': {why}", .path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        why: String,
+    },
+}
+
+impl FileError {
+    /// Of a file that cannot be written.
+    pub fn write(path: &Path, why: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> FileError {
+        FileError::Write { path: path.into(), why: std::io::Error::other(why) }
+    }
+
+    /// Of a file that cannot be read.
+    pub fn read(path: &Path, why: impl ToString) -> FileError {
+        FileError::Read { path: path.into(), why: why.to_string() }
+    }
+
+    /// Of a file that holds something else.
+    pub fn content(path: &Path, why: impl ToString) -> FileError {
+        FileError::Content { path: path.into(), why: why.to_string() }
+    }
+
+    /// Whether it could not be made because there is one.
+    pub fn is_there(&self) -> bool {
+        matches!(self, FileError::Write { why, .. } if why.kind() == std::io::ErrorKind::AlreadyExists)
+    }
+}
 
 /// Writes `bytes` to `path`: a reader sees the old file or the new one, never a part.
 ///
 /// # Errors
 /// The folder cannot be made or written to, or the disk is full; the old file is untouched then.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_with(path, |file| file.write_all(bytes))
 }
 
@@ -16,7 +67,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 ///
 /// # Errors
 /// As [`write_whole`].
-pub fn write_lasting(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub fn write_lasting(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_with(path, |file| {
         file.write_all(bytes)?;
         file.sync_all()
@@ -27,18 +78,19 @@ pub fn write_lasting(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
 ///
 /// # Errors
 /// As [`write_whole`], and those of the closure.
-pub fn write_with(path: &Path, write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> std::io::Result<()> {
-    temporary(path, write)?.persist(path).map_err(|e| e.error)?;
-    Ok(())
+fn write_with(path: &Path, write: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>) -> Result<(), FileError> {
+    let kept = temporary(path, write).and_then(|file| file.persist(path).map_err(|e| e.error));
+    kept.map(drop).map_err(|why| FileError::Write { path: path.into(), why })
 }
 
 /// Writes `bytes` to a file that must not exist, not even when another program makes it at this moment.
 ///
 /// # Errors
 /// As [`write_whole`], and `AlreadyExists`.
-pub fn write_new(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    temporary(path, |file| file.write_all(bytes))?.persist_noclobber(path).map_err(|e| e.error)?;
-    Ok(())
+pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    let written = temporary(path, |file| file.write_all(bytes));
+    let kept = written.and_then(|file| file.persist_noclobber(path).map_err(|e| e.error));
+    kept.map(drop).map_err(|why| FileError::Write { path: path.into(), why })
 }
 
 /// A finished file under a temporary name in the folder of `path`.
@@ -65,7 +117,7 @@ fn temporary(
 ///
 /// # Errors
 /// As [`write_whole`].
-pub fn write_checked(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+pub fn write_checked(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_with(path, |file| {
         file.write_all(&Sha256::digest(bytes))?;
         file.write_all(bytes)

@@ -1,6 +1,7 @@
 //! The workbench without a window system: painted into an image, worked by a script. It is the same interface as the
 //! window's, for pictures in documents and for measuring what the interface itself costs.
 
+use crate::files::FileError;
 use crate::lab::LabError;
 use crate::results::stats::{Spread, spread};
 use crate::vulkan::{Gpu, GpuOptions, Painter, Pixels};
@@ -122,10 +123,8 @@ pub fn take(options: Options, gpu: &GpuOptions, script: Script) -> Result<Shot, 
     let mut messages = workbench.close();
     drop(painter);
     messages.extend(gpu.messages());
-    match messages.len() {
-        0 => shot,
-        n => Err(LabError::Request(format!("the Vulkan validation layer had {n} messages (see above)"))),
-    }
+    LabError::of_messages(messages.len())?;
+    shot
 }
 
 impl Host {
@@ -212,8 +211,7 @@ impl Host {
 
     /// Saves a file again and again and waits for each picture; the file ends as it was.
     fn edits(&mut self, edit: &Edit) -> Result<Vec<f64>, LabError> {
-        let at = |e: std::io::Error| LabError::Request(format!("'{}': {e}", edit.file.display()));
-        let original = std::fs::read_to_string(&edit.file).map_err(at)?;
+        let original = std::fs::read_to_string(&edit.file).map_err(|e| FileError::content(&edit.file, e))?;
         if original.matches(&edit.from).count() != 1 {
             let message = format!("'{}' must stand once in '{}'", edit.from, edit.file.display());
             return Err(LabError::Request(message));
@@ -224,11 +222,11 @@ impl Host {
             self.settle()?;
             let before = self.workbench.shown_revision();
             let text = if i % 2 == 0 { &changed } else { &original };
-            crate::files::write_whole(&edit.file, text.as_bytes()).map_err(at)?;
+            crate::files::write_whole(&edit.file, text.as_bytes())?;
             let saved = Instant::now();
             while self.workbench.shown_revision() == before {
                 if saved.elapsed() > self.script.patience {
-                    crate::files::write_whole(&edit.file, original.as_bytes()).map_err(at)?;
+                    crate::files::write_whole(&edit.file, original.as_bytes())?;
                     return Err(LabError::Request("the edit led to no picture".into()));
                 }
                 self.frame(Vec::new())?;
@@ -236,7 +234,7 @@ impl Host {
             }
             times.push(saved.elapsed().as_secs_f64() * 1e3);
         }
-        crate::files::write_whole(&edit.file, original.as_bytes()).map_err(at)?;
+        crate::files::write_whole(&edit.file, original.as_bytes())?;
         Ok(times)
     }
 

@@ -71,10 +71,7 @@ pub fn run(options: Options, window: WindowOptions) -> Result<(), LabError> {
     if let Some(error) = app.error {
         return Err(error);
     }
-    match app.messages.len() {
-        0 => Ok(()),
-        n => Err(LabError::Request(format!("the Vulkan validation layer had {n} messages (see above)"))),
-    }
+    LabError::of_messages(app.messages.len())
 }
 
 impl App {

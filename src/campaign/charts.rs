@@ -62,7 +62,7 @@ pub fn drawn(
         Ok(area.present()?)
     };
     whole(&SVGBackend::with_string(&mut svg, size).into_drawing_area())
-        .map_err(|e: Failure| LabError::Request(format!("cannot draw '{title}': {e}")))?;
+        .map_err(|e: Failure| LabError::Make { what: format!("the chart '{title}'"), why: e.to_string() })?;
     Ok(svg)
 }
 

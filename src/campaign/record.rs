@@ -118,7 +118,7 @@ pub fn write_files(folder: &Path, files: &[File]) -> Result<(), LabError> {
 /// # Errors
 /// As [`write_lasting`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
-    write_lasting(path, bytes).map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))
+    Ok(write_lasting(path, bytes)?)
 }
 
 /// A value as JSON, for a file.
@@ -126,7 +126,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
 /// # Errors
 /// A value that JSON does not have.
 pub fn json(value: &impl Serialize) -> Result<Vec<u8>, LabError> {
-    let mut bytes = serde_json::to_vec_pretty(value).map_err(|e| LabError::Request(e.to_string()))?;
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(LabError::making("JSON"))?;
     bytes.push(b'\n');
     Ok(bytes)
 }

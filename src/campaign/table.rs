@@ -43,7 +43,7 @@ impl<'r, R> Table<'r, R> {
     /// # Errors
     /// Writing to memory gives none.
     pub fn csv(&self) -> Result<String, LabError> {
-        let failed = |e: String| LabError::Request(format!("cannot make the table: {e}"));
+        let failed = |e: String| LabError::Make { what: "the table".into(), why: e };
         let mut out = csv::Writer::from_writer(Vec::new());
         out.write_record(self.columns.iter().map(|c| &c.title)).map_err(|e| failed(e.to_string()))?;
         for i in 0..self.rows.len() {

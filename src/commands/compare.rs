@@ -124,8 +124,7 @@ fn write_maps(
     let letter = if picture == 0 { "a" } else { "b" };
     for file in files {
         let path = folder.join(format!("{letter}-{part}-{}", file.name));
-        crate::files::write_whole(&path, &file.bytes)
-            .map_err(|e| MetricError(format!("cannot write '{}': {e}", path.display())))?;
+        crate::files::write_whole(&path, &file.bytes).map_err(|e| MetricError(e.to_string()))?;
         written.push(format!("wrote {} ({})", path.display(), file.scale));
     }
     Ok(())

@@ -5,6 +5,7 @@ use super::adapt::{self, ExperimentArgs};
 use crate::campaign::fit::{self, Evaluator, Found, Goal, Limits, Step, Stop, Subject};
 use crate::campaign::settings::{Axis, axis};
 use crate::experiment::Experiment;
+use crate::files::FileError;
 use crate::lab::{Lab, LabError, Workspace, params_of};
 use crate::measure::Frames;
 use crate::measure::reference::{self, ALL_BOUNCES};
@@ -214,8 +215,7 @@ fn comment(
     best: &Experiment,
     defaults: &crate::graph::param::Params,
 ) -> Result<(), LabError> {
-    let failed = |e: &dyn std::fmt::Display| LabError::Request(format!("cannot write '{}': {e}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|e| failed(&e))?;
+    let text = std::fs::read_to_string(path).map_err(|e| FileError::write(path, e))?;
     let mut out = String::new();
     for line in lines {
         let _ = writeln!(out, "// {line}");
@@ -224,9 +224,9 @@ fn comment(
     out.extend(text.lines().skip_while(|l| l.starts_with("//")).map(|l| format!("{l}\n")));
     let same = Experiment::from_text(path, &out).map_err(LabError::Input)?.params_over(defaults)?;
     if same.values != best.params_over(defaults)?.values {
-        return Err(failed(&"it would not read back as it is"));
+        return Err(FileError::write(path, "it would not read back as it is").into());
     }
-    crate::files::write_whole(path, out.as_bytes()).map_err(|e| failed(&e))
+    Ok(crate::files::write_whole(path, out.as_bytes())?)
 }
 
 fn log(found: &Found, goal: Goal, subject: &Subject<'_>, summary: &[String], sizes: &[usize], noise: f64) -> Log {

@@ -55,13 +55,12 @@ pub fn is_json_output(path: &Path) -> bool {
 /// # Errors
 /// A file that cannot be written.
 pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), LabError> {
-    let text = serde_json::to_string_pretty(value).map_err(|e| LabError::Request(e.to_string()))?;
+    let text = serde_json::to_string_pretty(value).map_err(LabError::making("JSON"))?;
     if is_json_output(path) {
         keep(writeln!(std::io::stdout(), "{text}"));
         return Ok(());
     }
-    crate::files::write_whole(path, text.as_bytes())
-        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))?;
+    crate::files::write_whole(path, text.as_bytes())?;
     say!("wrote {}", path.display());
     Ok(())
 }

@@ -104,9 +104,8 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
     let mut file = Cursor::new(Vec::new());
     let [width, height] = shot.size;
     image::write_buffer_with_format(&mut file, &rgb, width, height, image::ColorType::Rgb8, format)
-        .map_err(|e| LabError::Request(format!("cannot make the picture: {e}")))?;
-    crate::files::write_whole(&args.output, file.get_ref())
-        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", args.output.display())))?;
+        .map_err(LabError::making("the picture"))?;
+    crate::files::write_whole(&args.output, file.get_ref())?;
     if args.measure > 0 || shot.pace.is_some() || shot.edit_ms.is_some() {
         let row = |name: &str, s: &crate::results::stats::Spread| {
             say!("{name:<28}{:>10.3}{:>10.3}{:>10.3}", s.min, s.median, s.p95);

@@ -12,6 +12,7 @@ pub(crate) use write::placed_text;
 pub use write::{resolved_text, write};
 
 use crate::diagnostics::{At, Diagnostic, Loc, Sources};
+use crate::files::FileError;
 use crate::graph::param::Params;
 use crate::scene::{Camera, MAX_COORDINATE, environment};
 use glam::Vec3;
@@ -23,6 +24,9 @@ pub enum ExperimentError {
     /// Mistakes in its file, with their places.
     #[error("{}", Diagnostic::joined(.0))]
     Input(Vec<Diagnostic>),
+    /// Its file.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// What was asked for and cannot be had.
     #[error("{0}")]
     Request(String),

@@ -5,6 +5,7 @@ use super::adapt::change_to;
 use super::spans::{self, Body, Edits};
 use super::{CameraChoice, EnvironmentChange, Experiment, FIELDS, LightChange, PlacedCamera};
 use crate::diagnostics::{At, Diagnostic, Loc};
+use crate::files::FileError;
 use crate::graph::param::Params;
 use crate::scene::Scene;
 use std::path::{Component, Path, PathBuf};
@@ -24,8 +25,7 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
     let params = experiment.params_over(defaults)?;
     // A scene file is named from this folder, and looked up from it when the text is read back.
     let folder = path.parent().unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)
-        .map_err(|e| ExperimentError::Request(format!("cannot write '{}': {e}", path.display())))?;
+    std::fs::create_dir_all(folder).map_err(|why| FileError::Write { path: path.into(), why })?;
     let unchanged: Vec<(String, String)> = defaults.texts().collect();
     let list = params.texts().filter(|text| !unchanged.contains(text)).collect();
     let wanted = Wanted { experiment, path, params: list, values: &params };
@@ -38,10 +38,7 @@ pub fn write(experiment: &Experiment, defaults: &Params, path: &Path, overwrite:
     } else {
         crate::files::write_new(path, text.as_bytes())
     };
-    written.map_err(|e| match e.kind() {
-        std::io::ErrorKind::AlreadyExists => exists(path),
-        _ => ExperimentError::Request(format!("cannot write '{}': {e}", path.display())),
-    })
+    written.map_err(|e| if e.is_there() { exists(path) } else { e.into() })
 }
 
 /// The text of an experiment that depends on no defaults: every parameter, the camera, the sky and the lights are

@@ -21,6 +21,7 @@ pub use workspace::{Loaded, Workspace};
 
 use crate::diagnostics::{Diagnostic, nearest};
 use crate::experiment::{CameraChoice, Experiment, ExperimentError, PlacedCamera};
+use crate::files::FileError;
 use crate::graph::expr::Env;
 use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
 use crate::graph::link::{Layouts, Linked, Target, runs, table};
@@ -52,6 +53,20 @@ pub enum LabError {
     /// Pictures that cannot be compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
+    /// A file.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// What cannot be put into its form, by a fault of the program: a picture, a table, JSON.
+    #[error("cannot make {what}: {why}")]
+    Make {
+        /// What.
+        what: String,
+        /// Why not.
+        why: String,
+    },
+    /// The validation layer had so many messages.
+    #[error("the Vulkan validation layer had {0} messages (see above)")]
+    Validation(usize),
     /// Anything else that the user asked for and cannot have.
     #[error("{0}")]
     Request(String),
@@ -61,8 +76,25 @@ impl From<ExperimentError> for LabError {
     fn from(error: ExperimentError) -> LabError {
         match error {
             ExperimentError::Input(list) => LabError::Input(list),
+            ExperimentError::File(error) => LabError::File(error),
             ExperimentError::Request(text) => LabError::Request(text),
         }
+    }
+}
+
+impl LabError {
+    /// The error of making something, for what an encoder says.
+    pub fn making<E: std::fmt::Display>(what: impl Into<String>) -> impl FnOnce(E) -> LabError {
+        let what = what.into();
+        move |why| LabError::Make { what, why: why.to_string() }
+    }
+
+    /// An error where the validation layer had messages.
+    ///
+    /// # Errors
+    /// More than none.
+    pub fn of_messages(count: usize) -> Result<(), LabError> {
+        if count == 0 { Ok(()) } else { Err(LabError::Validation(count)) }
     }
 }
 

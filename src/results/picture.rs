@@ -1,7 +1,7 @@
 //! Results as files: PNG for what is display-encoded, EXR for what is linear.
 
 use crate::experiment::MAX_SIZE;
-use crate::files::{check_input, ending};
+use crate::files::{FileError, check_input, ending};
 use crate::lab::{LabError, Texels};
 use crate::metrics::colour::srgb_to_linear;
 use crate::metrics::{Kind, Linear, MAX_PIXELS};
@@ -26,12 +26,10 @@ pub fn write(path: &Path, texels: &Texels) -> Result<(), LabError> {
         "png" => png(texels)?,
         "exr" => exr(texels)?,
         _ => {
-            let message = format!("'{}': give the output a name that ends in .png or .exr", path.display());
-            return Err(LabError::Request(message));
+            return Err(FileError::content(path, "give the output a name that ends in .png or .exr").into());
         }
     };
-    crate::files::write_whole(path, &bytes)
-        .map_err(|e| LabError::Request(format!("cannot write '{}': {e}", path.display())))
+    Ok(crate::files::write_whole(path, &bytes)?)
 }
 
 /// What a PNG of these texels holds: three bytes a texel.
@@ -54,7 +52,7 @@ pub fn png(texels: &Texels) -> Result<Vec<u8>, LabError> {
     let rgb = rgb8(texels);
     let mut out = Cursor::new(Vec::new());
     image::write_buffer_with_format(&mut out, &rgb, width, height, image::ColorType::Rgb8, image::ImageFormat::Png)
-        .map_err(|e| LabError::Request(format!("cannot make the PNG: {e}")))?;
+        .map_err(LabError::making("the PNG"))?;
     Ok(out.into_inner())
 }
 
@@ -86,10 +84,7 @@ pub fn exr(texels: &Texels) -> Result<Vec<u8>, LabError> {
     let size = (width as usize, height as usize);
     let layer = Layer::new(size, LayerAttributes::default(), exr::prelude::Encoding::SMALL_LOSSLESS, channels);
     let mut out = Cursor::new(Vec::new());
-    ExrImage::from_layer(layer)
-        .write()
-        .to_buffered(&mut out)
-        .map_err(|e| LabError::Request(format!("cannot make the EXR: {e}")))?;
+    ExrImage::from_layer(layer).write().to_buffered(&mut out).map_err(LabError::making("the EXR"))?;
     Ok(out.into_inner())
 }
 
@@ -148,13 +143,13 @@ fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {
 /// # Errors
 /// Another ending, no such file, too large, damaged.
 pub fn read_linear(path: &Path) -> Result<Linear, LabError> {
-    let failed = |why: String| LabError::Request(format!("cannot read '{}': {why}", path.display()));
+    let failed = |why: String| LabError::from(FileError::read(path, why));
     check_input(path, MAX_BYTES).map_err(|e| failed(e.to_string()))?;
     caught(|| decode_linear(path)).map_err(failed).flatten()
 }
 
 fn decode_linear(path: &Path) -> Result<Linear, LabError> {
-    let failed = |why: String| LabError::Request(format!("cannot read '{}': {why}", path.display()));
+    let failed = |why: String| LabError::from(FileError::read(path, why));
     let fits = |w: usize, h: usize| match w.saturating_mul(h) as u64 {
         1..=MAX_PIXELS if w <= MAX_SIZE as usize && h <= MAX_SIZE as usize => Ok((w as u32, h as u32)),
         _ => Err(failed(format!("its size is {w}x{h}; at most {MAX_SIZE} a side and {MAX_PIXELS} pixels can be read"))),

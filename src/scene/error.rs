@@ -1,5 +1,6 @@
 //! What can go wrong with a scene, and what its user can do about it.
 
+use crate::files::FileError;
 use std::path::PathBuf;
 
 /// An error that ends the opening or writing of a scene.
@@ -28,8 +29,8 @@ pub enum SceneError {
     #[error("{message}")]
     Environment { message: String },
     /// A file could not be written.
-    #[error("cannot write {}: {message}. Check that the folder exists, is writable and has space", path.display())]
-    Write { path: PathBuf, message: String },
+    #[error("{0}. Check that the folder exists, is writable and has space")]
+    Write(#[from] FileError),
     /// The export has an extension that no exporter knows.
     #[error("cannot export to {}: the extension must be .obj, .gltf or .glb", path.display())]
     ExportFormat { path: PathBuf },

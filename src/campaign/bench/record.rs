@@ -8,6 +8,7 @@ use crate::campaign::runner::Mistakes;
 use crate::campaign::settings::{apply, lines};
 use crate::diagnostics::Diagnostic;
 use crate::experiment::{Experiment, FIELDS};
+use crate::files::FileError;
 use crate::lab::{LabError, Workspace};
 use crate::measure::{Frames, Warm};
 use crate::results::stats::DeviceStats;
@@ -114,7 +115,7 @@ impl Record {
     /// # Errors
     /// No such file, or not what `conelab bench --record` writes.
     pub fn read(path: &Path) -> Result<Record, LabError> {
-        let wrong = |why: String| LabError::Request(format!("'{}': {why}", path.display()));
+        let wrong = |why: String| LabError::from(FileError::content(path, why));
         let record: Record = read_json(path, MAX_BYTES)
             .map_err(|e| wrong(format!("{e}; give a file that `conelab bench ... --record FILE` wrote")))?;
         record.check().map_err(wrong)?;

@@ -72,7 +72,7 @@ pub fn page(
         dots: dots.collect(),
     };
     // Nothing in a string can end the element that the data stands in.
-    let json = serde_json::to_string(&shown).map_err(|e| LabError::Request(e.to_string()))?.replace('<', "\\u003c");
+    let json = serde_json::to_string(&shown).map_err(LabError::making("JSON"))?.replace('<', "\\u003c");
     let title = data.sweeps.join(", ");
     let body = html! {
         h1 { (title) }

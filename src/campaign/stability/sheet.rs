@@ -3,6 +3,7 @@
 
 use super::record::{CaseRecord, Report, Worst, picture};
 use crate::campaign::table::short;
+use crate::files::FileError;
 use crate::lab::LabError;
 use crate::metrics::{RELMSE, within_noise};
 use egui::epaint::text::{FontDefinitions, Fonts, TextOptions};
@@ -108,8 +109,9 @@ pub fn sheet(list: &[Failure], folder: &Path) -> Result<Vec<u8>, LabError> {
     for (width, quality) in TRIALS {
         let sheet = draw(list, &rows, width);
         bytes.clear();
-        let failed = |e: image::ImageError| LabError::Request(format!("cannot make the sheet: {e}"));
-        JpegEncoder::new_with_quality(&mut bytes, quality).encode_image(&sheet).map_err(failed)?;
+        JpegEncoder::new_with_quality(&mut bytes, quality)
+            .encode_image(&sheet)
+            .map_err(LabError::making("the sheet"))?;
         if bytes.len() <= MAX_BYTES {
             break;
         }
@@ -120,7 +122,7 @@ pub fn sheet(list: &[Failure], folder: &Path) -> Result<Vec<u8>, LabError> {
 /// The frame, the reference (white without one) and the difference of a result's picture.
 fn panels(failure: &Failure, folder: &Path) -> Result<[RgbImage; 3], LabError> {
     let path = folder.join(picture(&failure.id));
-    let read = image::open(&path).map_err(|e| LabError::Request(format!("cannot read '{}': {e}", path.display())))?;
+    let read = image::open(&path).map_err(|e| FileError::read(&path, e))?;
     let picture = read.to_rgb8();
     let names = &failure.worst.panels;
     let count = u32::try_from(names.len()).unwrap_or(1).max(1);

@@ -3,7 +3,7 @@
 
 use crate::campaign::points::{DIGITS, Subject, SweepPoint};
 use crate::campaign::record::{Folder, Record, json, read_json, write_file};
-use crate::files::{content_id, read_input};
+use crate::files::{FileError, content_id, read_input};
 use crate::lab::LabError;
 use crate::measure::{Frames, Point};
 use indexmap::{IndexMap, IndexSet};
@@ -97,7 +97,7 @@ impl Manifest {
 
     fn read(folder: &Path) -> Result<Manifest, LabError> {
         let file = Manifest::file(folder);
-        let wrong = |why: String| LabError::Request(format!("'{}': {why}", file.display()));
+        let wrong = |why: String| LabError::from(FileError::content(&file, why));
         let manifest: Manifest = read_json(&file, MAX_MANIFEST)
             .map_err(|e| wrong(format!("{e}; give the folder that `conelab sweep` wrote")))?;
         if manifest.schema != MANIFEST_SCHEMA {

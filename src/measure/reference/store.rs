@@ -127,7 +127,7 @@ pub(super) fn write(folder: &Path, sums: &Sums, traced: &Experiment, device: &De
     let name = format!("sums-{}.exr", sums.samples);
     let file = folder.join(&name);
     let bytes = encode(sums).map_err(|e| failed(&file, e))?;
-    crate::files::write_whole(&file, &bytes).map_err(|e| failed(&file, e))?;
+    crate::files::write_whole(&file, &bytes)?;
     let noise = sums.parts.keys().map(|p| Ok((p.clone(), sums.noise(p)?))).collect::<Result<_, LabError>>()?;
     let record = Record {
         schema: SCHEMA.into(),
@@ -144,7 +144,7 @@ pub(super) fn write(folder: &Path, sums: &Sums, traced: &Experiment, device: &De
     };
     let json = folder.join("reference.json");
     let text = serde_json::to_vec_pretty(&record).map_err(|e| failed(&json, e))?;
-    crate::files::write_whole(&json, &text).map_err(|e| failed(&json, e))?;
+    crate::files::write_whole(&json, &text)?;
     // Earlier sums count no longer. What cannot be deleted only takes room.
     for entry in std::fs::read_dir(folder).map_err(|e| failed(folder, e))?.flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();

@@ -15,6 +15,7 @@ pub use scene_hash::scene_hash;
 pub use take::{Resource, What, free_name, take};
 
 use crate::experiment::Experiment;
+use crate::files::FileError;
 use crate::graph::Graph;
 use crate::lab::{Lab, LabError, Texels, Workspace};
 use crate::results::stats::{self, Stats};
@@ -30,7 +31,7 @@ const EXPERIMENT: &str = "experiment.ron";
 const MANIFEST: &str = "capture.json";
 
 fn failed(path: &Path, error: impl std::fmt::Display) -> LabError {
-    LabError::Request(format!("'{}': {error}", path.display()))
+    FileError::content(path, error).into()
 }
 
 /// A capture's experiment, which runs from the capture's own sources.

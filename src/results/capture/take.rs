@@ -143,13 +143,13 @@ fn exists(target: &Path) -> LabError {
 }
 
 fn json(value: &impl serde::Serialize) -> Result<Vec<u8>, LabError> {
-    let mut bytes = serde_json::to_vec_pretty(value).map_err(|e| LabError::Request(e.to_string()))?;
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(LabError::making("JSON"))?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
-    crate::files::write_whole(path, bytes).map_err(|e| failed(path, e))
+    Ok(crate::files::write_whole(path, bytes)?)
 }
 
 /// Temporary folders are private to their owner; captures are as readable as any other folder.

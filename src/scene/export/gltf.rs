@@ -1,5 +1,6 @@
 //! glTF 2.0 with one buffer: vertices interleaved as they are in memory, then indices, motion and PNG images.
 
+use crate::files::FileError;
 use std::path::Path;
 
 use glam::{Mat3, Quat, Vec3};
@@ -88,10 +89,8 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
 }
 
 fn save(mut root: Value, bytes: Vec<u8>, path: &Path, binary: bool) -> Result<(), SceneError> {
-    let length = u32::try_from(bytes.len()).map_err(|_| SceneError::Write {
-        path: path.into(),
-        message: "a glTF buffer cannot be larger than 4 GiB; export as .obj".into(),
-    })?;
+    let length = u32::try_from(bytes.len())
+        .map_err(|_| FileError::write(path, "a glTF buffer cannot be larger than 4 GiB; export as .obj"))?;
     if !binary {
         let side = path.with_extension("bin");
         let name = side.file_name().unwrap_or_default().to_string_lossy().replace('%', "%25").replace(' ', "%20");

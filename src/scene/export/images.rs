@@ -1,5 +1,6 @@
 //! Textures as PNG, pictures of the sky as EXR.
 
+use crate::files::FileError;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -31,15 +32,13 @@ pub(super) fn sky_exr(sky: &Environment, factor: Vec3, target: &Path) -> Result<
     let mut exr = Cursor::new(Vec::new());
     OpenExrEncoder::new(&mut exr)
         .write_image(bytemuck::cast_slice(&texels), width, height, ExtendedColorType::Rgb32F)
-        .map_err(|error| SceneError::Write { path: target.into(), message: error.to_string() })?;
+        .map_err(|error| FileError::write(target, error))?;
     Ok(exr.into_inner())
 }
 
 fn texels(texture: &Texture, target: &Path) -> Result<Vec<u8>, SceneError> {
-    let fail = |problem: String| SceneError::Write {
-        path: target.into(),
-        message: format!("texture {} cannot be decoded: {problem}", texture.name),
-    };
+    let fail =
+        |problem: String| FileError::write(target, format!("texture {} cannot be decoded: {problem}", texture.name));
     let mut rgba = first_level_rgba(texture).map_err(fail)?.into_owned();
     if texture.format == TextureFormat::Bc5Unorm {
         // BC5 stores the x and y of normals; z follows from their unit length.
@@ -56,6 +55,6 @@ fn encode(bytes: &[u8], texture: &Texture, color: ExtendedColorType, target: &Pa
     let mut png = Vec::new();
     PngEncoder::new_with_quality(&mut png, CompressionType::Fast, FilterType::Adaptive)
         .write_image(bytes, texture.width, texture.height, color)
-        .map_err(|error| SceneError::Write { path: target.into(), message: error.to_string() })?;
+        .map_err(|error| FileError::write(target, error))?;
     Ok(png)
 }

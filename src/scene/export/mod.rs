@@ -32,7 +32,7 @@ impl Scene {
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
-    files::write_whole(path, bytes).map_err(|error| SceneError::Write { path: path.into(), message: error.to_string() })
+    Ok(files::write_whole(path, bytes)?)
 }
 
 /// The pose that a motion starts with.

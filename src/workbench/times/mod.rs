@@ -6,6 +6,7 @@ mod history;
 
 use super::report::{GraphInfo, PassUses, PictureReport};
 use super::{Tab, Workbench};
+use crate::files::FileError;
 use crate::graph::run::Redo;
 use crate::results::stats::spread;
 use crate::timers;
@@ -183,7 +184,8 @@ impl Workbench {
 
     /// Writes what was made into `captures/`, and says so.
     pub(super) fn export(&mut self, name: &str, ending: &str, bytes: std::io::Result<Vec<u8>>) {
-        let written = bytes.and_then(|b| write_free(&self.root, name, ending, &b));
+        let written = bytes.map_err(|e| FileError::content(name.as_ref(), e));
+        let written = written.and_then(|b| write_free(&self.root, name, ending, &b));
         let ok = written.is_ok();
         let text = match written {
             Ok(path) => format!("wrote {}", path.display()),
@@ -222,17 +224,17 @@ impl Workbench {
 }
 
 /// Writes `captures/NAME.ENDING` under `root`, or with a number behind the name when that exists.
-fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> std::io::Result<PathBuf> {
+fn write_free(root: &Path, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, FileError> {
     let stem: String = name.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '_' }).collect();
     for n in 1..10_000 {
         let number = if n == 1 { String::new() } else { format!("-{n}") };
         let path = root.join("captures").join(format!("{stem}{number}.{ending}"));
         match crate::files::write_new(&path, bytes) {
-            Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => {}
+            Err(e) if e.is_there() => {}
             other => return other.map(|()| path),
         }
     }
-    Err(std::io::Error::other("too many files of that name"))
+    Err(FileError::write(&root.join("captures").join(stem), "too many files of that name"))
 }
 
 /// Right edges of the columns of numbers, as shares of the width.
