@@ -20,6 +20,19 @@ const FLOORS: [&[&str]; 11] = [
     &["workbench", "window", "screenshot"],
 ];
 
+/// The rooms of `src/graph`, likewise: what a graph is, how it is read, linked, planned, run.
+const GRAPH: [&[&str]; 9] = [
+    &["expr", "externals", "host"],
+    &["param"],
+    &["file"],
+    &["table", "definition"],
+    &["load", "evaluated"],
+    &["link"],
+    &["plan"],
+    &["effect", "report", "outline"],
+    &["run"],
+];
+
 /// On top of all.
 const TOP: [&str; 3] = ["commands", "main", "lib"];
 
@@ -96,6 +109,24 @@ fn no_module_knows_what_stands_above_it() {
         }
         // Every module has a floor, also one that names no other.
         floor(room);
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn no_room_of_the_graph_knows_what_stands_above_it() {
+    let mut list = Vec::new();
+    sources(&common::root().join("src/graph"), "", &mut list);
+    let floor = |room: &str| GRAPH.iter().position(|rooms| rooms.contains(&room));
+    let mut wrong = Vec::new();
+    for (file, text) in list.iter().filter(|(file, _)| file != "mod.rs") {
+        let room = file.split('/').next().unwrap().trim_end_matches(".rs");
+        let own = floor(room).unwrap_or_else(|| panic!("src/graph/{room} has no floor"));
+        // Of a file that stands in no folder, its parent is the graph.
+        let text = if file.contains('/') { text.clone() } else { text.replace("super::", "crate::graph::") };
+        for other in named(&text.replace("crate::graph::", "crate::")).iter().filter(|o| o.as_str() != room) {
+            wrong.extend(floor(other).filter(|f| *f > own).map(|_| format!("src/graph/{file} names {other}")));
+        }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

@@ -12,7 +12,7 @@ use crate::graph::definition::Res;
 use crate::graph::evaluated::Evaluated;
 use crate::graph::link::Linked;
 use crate::graph::plan::{Plan, Schedule, schedule};
-use crate::vulkan::{Buffer, Commands, FrameSlot, Gpu, Recording, Result, vk};
+use crate::vulkan::{Buffer, Commands, FrameSlot, Gpu, Image, Recording, Result, vk};
 use gpu_allocator::MemoryLocation;
 use std::ops::Range;
 use std::sync::Arc;
@@ -177,13 +177,8 @@ impl Program {
         let buffers = self.resources.buffers.iter().zip(&self.plan.buffers).filter(|(_, plan)| !plan.transient);
         let buffers: Vec<&Arc<Buffer>> =
             buffers.flat_map(|(copies, _)| copies.iter().flatten()).filter(|b| !parts.holds_buffer(b)).collect();
-        let mut images = Vec::new();
-        for (t, copies) in self.resources.images.iter().enumerate().filter(|(t, _)| !self.plan.textures[*t].transient) {
-            for (c, image) in copies.iter().enumerate() {
-                let image = image.as_ref().filter(|i| !parts.holds_image(i));
-                images.extend(image.map(|image| (t, image, &self.resting[self.places_of(t, c)])));
-            }
-        }
+        let is_new = |image: &Arc<Image>, t: usize| !self.plan.textures[t].transient && !parts.holds_image(image);
+        let images: Vec<_> = self.images().filter(|(t, image, _)| is_new(image, *t)).collect();
         // A submission waits for the frames that run: nothing is submitted for nothing.
         if buffers.is_empty() && images.is_empty() {
             return Ok(());
@@ -192,7 +187,7 @@ impl Program {
             for buffer in buffers {
                 commands.fill(buffer, 0);
             }
-            for (t, image, layouts) in images {
+            for (t, image, places) in images {
                 commands.transition(image, vk::ImageLayout::UNDEFINED, dst);
                 if self.plan.textures[t].format.is_depth() {
                     commands.clear_depth(image, dst, 1.0);
@@ -200,7 +195,7 @@ impl Program {
                     commands.clear(image, dst, vk::ClearColorValue::default(), (0, vk::REMAINING_MIP_LEVELS));
                 }
                 let barriers: Vec<_> = (0u32..)
-                    .zip(layouts)
+                    .zip(&self.resting[places])
                     .filter(|(_, layout)| **layout != dst)
                     .map(|(mip, layout)| (&**image, relayout(image, dst, *layout, mip)))
                     .collect();
@@ -275,10 +270,13 @@ impl Program {
         Ok(())
     }
 
-    /// Where all mips of a copy of a texture are among the places.
-    pub(super) fn places_of(&self, texture: usize, copy: usize) -> Range<usize> {
-        let mips = (0, self.plan.textures[texture].mips);
-        self.schedule.places.of_copy(Res::Texture(texture, false), mips, copy)
+    /// All images, with their textures' numbers and where their mips are among the places.
+    pub(super) fn images(&self) -> impl Iterator<Item = (usize, &Arc<Image>, Range<usize>)> {
+        self.resources.images.iter().enumerate().flat_map(move |(t, copies)| {
+            let mips = (0, self.plan.textures[t].mips);
+            let places = move |copy| self.schedule.places.of_copy(Res::Texture(t, false), mips, copy);
+            copies.iter().enumerate().filter_map(move |(c, image)| Some((t, image.as_ref()?, places(c))))
+        })
     }
 
     fn recorder(&self) -> Recorder<'_> {

@@ -5,7 +5,7 @@ use super::pipelines::clear_value;
 use super::resources::Resources;
 use super::scene::Geometry;
 use super::sleep::Frame;
-use super::transfer::{copy_out, relayout};
+use super::transfer::{copy_out, image_barrier, relayout};
 use crate::graph::definition::Res;
 use crate::graph::file::Which;
 use crate::graph::plan::{Barrier, Plan, Schedule, Step, Work};
@@ -143,21 +143,7 @@ impl Recorder<'_> {
                 }
                 Res::Texture(t, copy) => {
                     let Some(image) = &self.resources.images[t][usize::from(copy)] else { continue };
-                    let barrier = vk::ImageMemoryBarrier2::default()
-                        .src_stage_mask(b.src.0)
-                        .src_access_mask(b.src.1)
-                        .dst_stage_mask(b.dst.0)
-                        .dst_access_mask(b.dst.1)
-                        .old_layout(b.layouts.0)
-                        .new_layout(b.layouts.1)
-                        .subresource_range(
-                            vk::ImageSubresourceRange::default()
-                                .aspect_mask(self.plan.textures[t].format.aspect())
-                                .base_mip_level(b.mips.0)
-                                .level_count(b.mips.1)
-                                .layer_count(vk::REMAINING_ARRAY_LAYERS),
-                        );
-                    images.push((&**image, barrier));
+                    images.push((&**image, image_barrier(image, b.mips, b.src, b.dst, b.layouts)));
                 }
             }
         }

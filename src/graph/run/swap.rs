@@ -35,18 +35,14 @@ impl Program {
         let before = usize::try_from((self.frame + 1) % 2).unwrap_or(0);
         let mut wanted = self.schedule.ends[before].clone();
         let mut barriers = Vec::new();
-        for (t, copies) in self.resources.images.iter().enumerate() {
-            for (c, image) in copies.iter().enumerate() {
-                // What is transient is taken out of any layout where it begins.
-                let Some(image) = image.as_ref().filter(|_| !self.plan.textures[t].transient) else { continue };
-                let places = self.places_of(t, c);
-                let from = old.layouts_of(image).unwrap_or(&self.resting[places.clone()]);
-                for (mip, (from, to)) in (0u32..).zip(from.iter().zip(&mut wanted[places])) {
-                    if *to == vk::ImageLayout::UNDEFINED {
-                        *to = *from;
-                    } else if to != from {
-                        barriers.push((&**image, relayout(image, *from, *to, mip)));
-                    }
+        // What is transient is taken out of any layout where it begins.
+        for (_, image, places) in self.images().filter(|(t, ..)| !self.plan.textures[*t].transient) {
+            let from = old.layouts_of(image).unwrap_or(&self.resting[places.clone()]);
+            for (mip, (from, to)) in (0u32..).zip(from.iter().zip(&mut wanted[places])) {
+                if *to == vk::ImageLayout::UNDEFINED {
+                    *to = *from;
+                } else if to != from {
+                    barriers.push((&**image, relayout(image, *from, *to, mip)));
                 }
             }
         }
@@ -62,9 +58,6 @@ impl Program {
 
     /// The layouts in which an image of this program rests, by mip.
     fn layouts_of(&self, image: &Arc<Image>) -> Option<&[vk::ImageLayout]> {
-        let copies = self.resources.images.iter().enumerate();
-        let mut copies = copies.flat_map(|(t, copies)| copies.iter().enumerate().map(move |(c, image)| (t, c, image)));
-        let (t, c, _) = copies.find(|(.., i)| i.as_ref().is_some_and(|i| Arc::ptr_eq(i, image)))?;
-        Some(&self.resting[self.places_of(t, c)])
+        self.images().find(|(_, i, _)| Arc::ptr_eq(i, image)).map(|(.., places)| &self.resting[places])
     }
 }

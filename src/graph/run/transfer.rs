@@ -2,10 +2,10 @@
 
 use crate::vulkan::{Buffer, Commands, Image, vk};
 use std::sync::Arc;
+use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
 
 /// Writes new content into buffers, after all that reads the old one and before all that reads the new one.
 pub(super) fn send(commands: &mut Commands<'_>, updates: &[(Arc<Buffer>, Vec<u8>)]) {
-    use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
     if !updates.is_empty() {
         let barrier = |src, src_access, dst, dst_access| {
             vk::MemoryBarrier2::default()
@@ -39,26 +39,36 @@ pub(super) fn copy_out(
     commands.full_barrier();
 }
 
+/// A barrier for mips of an image between (stages, accesses).
+pub(super) fn image_barrier(
+    image: &Image,
+    mips: (u32, u32),
+    src: (Stages, Access),
+    dst: (Stages, Access),
+    layouts: (vk::ImageLayout, vk::ImageLayout),
+) -> vk::ImageMemoryBarrier2<'static> {
+    let range = vk::ImageSubresourceRange::default()
+        .aspect_mask(image.aspect())
+        .base_mip_level(mips.0)
+        .level_count(mips.1)
+        .layer_count(vk::REMAINING_ARRAY_LAYERS);
+    vk::ImageMemoryBarrier2::default()
+        .src_stage_mask(src.0)
+        .src_access_mask(src.1)
+        .dst_stage_mask(dst.0)
+        .dst_access_mask(dst.1)
+        .old_layout(layouts.0)
+        .new_layout(layouts.1)
+        .subresource_range(range)
+}
+
+/// A barrier that waits for all and takes a mip to another layout.
 pub(super) fn relayout(
     image: &Image,
     from: vk::ImageLayout,
     to: vk::ImageLayout,
     mip: u32,
 ) -> vk::ImageMemoryBarrier2<'static> {
-    let all = vk::PipelineStageFlags2::ALL_COMMANDS;
-    let access = vk::AccessFlags2::MEMORY_READ | vk::AccessFlags2::MEMORY_WRITE;
-    vk::ImageMemoryBarrier2::default()
-        .src_stage_mask(all)
-        .src_access_mask(vk::AccessFlags2::MEMORY_WRITE)
-        .dst_stage_mask(all)
-        .dst_access_mask(access)
-        .old_layout(from)
-        .new_layout(to)
-        .subresource_range(
-            vk::ImageSubresourceRange::default()
-                .aspect_mask(image.aspect())
-                .base_mip_level(mip)
-                .level_count(1)
-                .layer_count(vk::REMAINING_ARRAY_LAYERS),
-        )
+    let (src, dst) = (Access::MEMORY_WRITE, Access::MEMORY_READ | Access::MEMORY_WRITE);
+    image_barrier(image, (mip, 1), (Stages::ALL_COMMANDS, src), (Stages::ALL_COMMANDS, dst), (from, to))
 }
