@@ -52,7 +52,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     if driver.texts().iter().any(|t| t == "cancel") {
         driver.click("Button", "cancel");
     }
-    let gathered = driver.wait_at_most(Duration::from_secs(60), mark, "gathered", |e| e["event"] == "gathered");
+    let gathered = driver.wait_at_most(Duration::from_secs(300), mark, "gathered", |e| e["event"] == "gathered");
     let samples = number(&gathered, "samples");
     assert!((32.0..=256.0).contains(&samples) && samples % 32.0 == 0.0, "{gathered}");
     let own = error(&mut driver, mark, "an error", |_| true);

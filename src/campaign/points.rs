@@ -43,6 +43,18 @@ pub struct Subject {
     pub time: String,
 }
 
+impl Subject {
+    /// What an experiment looks at in a scene of that content.
+    ///
+    /// # Errors
+    /// A camera that the scene does not have.
+    pub fn of(experiment: &Experiment, scene: &Scene, sha256: String) -> Result<Subject, LabError> {
+        let camera = placed_text(&camera_of(experiment, scene)?);
+        let (size, time) = (experiment.size, format!("{:?}", experiment.time));
+        Ok(Subject { scene: scene.name.clone(), sha256, camera, size, time })
+    }
+}
+
 /// A point that is to be measured.
 #[derive(Clone)]
 pub struct SweepPoint {
@@ -95,15 +107,8 @@ impl<'a> PointBuilder<'a> {
         let graph = self.graphs.entry(experiment.graph.clone()).or_insert_with(|| graph_hash(loaded)).clone();
         let params = experiment.params_over(&loaded.graph.params)?;
         let (scene, sha256) = self.scene(&experiment)?;
-        let camera = camera_of(&experiment, &scene)?;
         let values = params.list.iter().zip(&params.values).map(|(p, v)| format!("{}={v}", p.name));
-        let subject = Subject {
-            scene: scene.name.clone(),
-            sha256,
-            camera: placed_text(&camera),
-            size: experiment.size,
-            time: format!("{:?}", experiment.time),
-        };
+        let subject = Subject::of(&experiment, &scene, sha256)?;
         let facts = [
             format!("conelab {}", env!("CARGO_PKG_VERSION")),
             graph,

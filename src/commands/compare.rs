@@ -30,7 +30,7 @@ pub struct CompareArgs {
     /// Bounces of the cached reference: all that matter unless given; then it must be there.
     #[arg(long)]
     bounces: Option<u32>,
-    /// Compare only this part (total, direct, diffuse, specular, occlusion); may be given many times.
+    /// Compare only this part; may be given many times.
     #[arg(long)]
     part: Vec<String>,
     /// Score the light pixels of this picture apart; may be given many times.

@@ -27,7 +27,7 @@ pub struct ReferenceArgs {
     /// Write the mean of a part to this file too (.exr).
     #[arg(short, long)]
     output: Option<PathBuf>,
-    /// Part for --output: total, direct, diffuse, specular or occlusion.
+    /// Part for --output.
     #[arg(long, default_value = "total")]
     part: String,
     #[command(flatten)]

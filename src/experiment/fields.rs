@@ -20,7 +20,7 @@ pub struct Field {
 }
 
 /// All of them; every other setting is a parameter's.
-pub static FIELDS: [Field; 7] = [
+pub static FIELDS: &[Field] = &[
     Field {
         name: "graph",
         set: |e, v| v.read("the name of a graph").map(|graph| e.graph = graph),

@@ -223,7 +223,7 @@ impl Wanted<'_> {
 
 fn fresh(wanted: &Wanted) -> String {
     let mut out = String::from("(\n");
-    for field in &FIELDS {
+    for field in FIELDS {
         // Camera and size are always said, so that nobody has to look up what they are.
         if !(field.absent)(wanted.experiment) || ["camera", "size"].contains(&field.name) {
             out += &format!("    {}: {},\n", field.name, field.text(wanted.experiment, wanted.path));
@@ -254,7 +254,7 @@ fn edited(wanted: &Wanted, defaults: &Params) -> Option<String> {
     let mut edits = Edits::new();
     let mut lines = Vec::new();
     let mut keeps_last = true;
-    for field in &FIELDS {
+    for field in FIELDS {
         let (name, new) = (field.name, field.text(wanted.experiment, wanted.path));
         match body.entries.iter().enumerate().find(|(_, e)| e.key == name) {
             Some(_) if (field.same)(&old, wanted.experiment) => {}

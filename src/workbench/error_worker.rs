@@ -5,8 +5,8 @@ use super::guard::guarded;
 use super::report::Report;
 use super::request::LightState;
 use crate::campaign::sweep::Subject;
-use crate::experiment::{Experiment, placed_text};
-use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, camera_of};
+use crate::experiment::Experiment;
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
 use crate::measure::reference::Reference;
 use crate::measure::{Wanted, Warm};
 use crate::metrics::{Compared, Linear, Metric, Noise};
@@ -143,13 +143,7 @@ impl Cache {
                 hash
             }
         };
-        Ok(Subject {
-            scene: request.scene.name.clone(),
-            sha256,
-            camera: placed_text(&camera_of(&request.experiment, &request.scene)?),
-            size: request.experiment.size,
-            time: format!("{:?}", request.experiment.time),
-        })
+        Subject::of(&request.experiment, &request.scene, sha256)
     }
 
     /// The cached reference, read once for everything that it does not depend on.

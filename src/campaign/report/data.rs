@@ -74,6 +74,7 @@ pub struct Scored {
 }
 
 /// Everything that is shown.
+#[derive(Default)]
 pub struct Data {
     pub sweeps: Vec<String>,
     pub names: Vec<String>,
@@ -106,20 +107,8 @@ impl Dot {
 
 impl Data {
     pub fn new(collected: &Collected) -> Data {
-        let mut data = Data {
-            sweeps: collected.sweeps.clone(),
-            names: collected.names.clone(),
-            dots: Vec::new(),
-            subjects: Vec::new(),
-            keys: Vec::new(),
-            bounces: Vec::new(),
-            samples: Vec::new(),
-            settings: Vec::new(),
-            parts: Vec::new(),
-            references: Vec::new(),
-            failed: Vec::new(),
-            left: 0,
-        };
+        let (sweeps, names) = (collected.sweeps.clone(), collected.names.clone());
+        let mut data = Data { sweeps, names, ..Data::default() };
         let mut keys = Vec::new();
         let mut room = MAX_PICTURES;
         for (planned, record) in &collected.points {
