@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# Measures again what docs/results.md has tables of, on this machine's device, and puts the figures into docs/recorded.
+# Then `CONELAB_BLESS=1 cargo test --release --test results` writes the tables.
+#
+#   scripts/record.sh [NAME...]      all that is below when none is named
+#
+# CONELAB: the program (target/release/conelab). COMMIT: what it was built from (git's HEAD). OUT: where the figures go.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+conelab=${CONELAB:-target/release/conelab}
+commit=${COMMIT:-$(git rev-parse --short HEAD)}
+out=${OUT:-docs/recorded}
+sponza=configs/scenes/sponza.ron
+work=captures/recorded
+mkdir -p "$out" "$work"
+
+# keep NAME JSON CSV COMMAND...: the figures in the file CSV, under the command and the device that is named in the file JSON.
+keep() {
+    local name=$1 json=$2 csv=$3 device driver
+    shift 3
+    device=$(grep -m1 -o '"name": *"[^"]*"' "$json" | cut -d'"' -f4)
+    driver=$(grep -m1 -o '"driver": *"[^"]*"' "$json" | cut -d'"' -f4)
+    { printf '# conelab %s\n# %s, %s\n# %s\n' "$*" "$device" "$driver" "$commit" && cat "$csv"; } >"$out/$name.csv"
+}
+
+# keep_json NAME JSON COMMAND...: the same of figures that are JSON, with their device in them.
+keep_json() {
+    local name=$1 json=$2
+    shift 2
+    { printf '{"command": "conelab %s", "commit": "%s", "record":\n' "$*" "$commit" && cat "$json" && echo '}'; } >"$out/$name.json"
+}
+
+# What the program is asked for, as one would type it.
+run() {
+    printf '%s: conelab %s\n' "$name" "$*" >&2
+    "$conelab" "$@" >/dev/null
+}
+
+bench() {
+    run bench "$@" -o "$work/$name"
+    keep "$name" "$work/$name/bench.json" "$work/$name/bench.csv" bench "$@"
+}
+
+sweep() {
+    run sweep "$@" -o "$work/$name"
+    keep "$name" "$(find "$work/$name/points" -name '*.json' | sort | head -n 1)" "$work/$name/sweep.csv" sweep "$@"
+}
+
+# A scene with four suns more.
+five_suns() {
+    sed "s|^    lights: \[|&$(printf '\\n        Directional(name: \"%s\", color: (2, 2, 2), direction: (%s), shadow: true),' \
+        two '0.3, -0.9, 0.2' three '-0.2, -0.9, -0.3' four '0.1, -0.9, 0.35' five '-0.4, -0.9, -0.1')|; \
+        s|file: \"|&$(realpath "${CONELAB_SCENES:-configs/scenes}")/|" "$sponza" >"$work/five-suns.ron"
+}
+
+record() {
+    local name=$1 threads=(configs/default.ron configs/raster.ron)
+    case $name in
+        thesis) bench configs/thesis.ron --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=64,128,256 \
+            --axis voxelizer=raster,tessellated --rounds 3 --frames 20 ;;
+        default) bench "${threads[@]}" --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=160,256 --rounds 3 ;;
+        pixels) bench configs/default.ron --scene "$sponza" --sizes 1920x1080,3840x2160 --set voxel_dim=256 --rounds 3 ;;
+        cells) bench configs/default.ron --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=256,512 \
+            --set voxel_capacity=1750000 --set fragment_capacity=2850000 --rounds 3 ;;
+        rooms) bench "${threads[@]}" --sizes 1920x1080 --set voxel_dim=256 --rounds 2 --frames 20 \
+            --axis scene=configs/scenes/living-room.ron,atrium,vases,foliage ;;
+        suns)
+            five_suns
+            bench "${threads[@]}" --sizes 1920x1080 --set voxel_dim=256 --rounds 2 --frames 20 \
+                --axis "scene=$sponza,$work/five-suns.ron"
+            ;;
+        moving)
+            local way=(render configs/default.ron --scene "$sponza" --size 1920x1080 --set voxel_dim=256 --redo changed
+                --path configs/paths/sponza.ron --step 0.0166667 --warmup 600 --frames 300)
+            run "${way[@]}" --json "$work/moving.json" -o "$work/moving.png"
+            keep_json moving "$work/moving.json" "${way[@]}"
+            ;;
+        scenes) sweep configs/sweeps/scenes.ron --reference 1024 ;;
+        lamps) sweep configs/sweeps/lamps.ron --reference 512 ;;
+        sponza)
+            sweep configs/sweeps/sponza.ron --reference 4096
+            run report "$work/sponza"
+            cp "$work"/sponza/report/total-relmse*.svg docs/sponza.svg
+            ;;
+        voxels)
+            local ways=(voxels configs/default.ron --scene "$sponza" --set voxel_dim=128 --all)
+            run "${ways[@]}" --json "$work/voxels.json"
+            keep_json voxels "$work/voxels.json" "${ways[@]}"
+            ;;
+        *) printf 'no record "%s"\n' "$name" >&2 && return 1 ;;
+    esac
+}
+
+[[ $# -gt 0 ]] || set -- thesis default pixels cells rooms suns moving scenes lamps sponza voxels
+for name; do record "$name"; done
