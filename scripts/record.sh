@@ -46,13 +46,6 @@ sweep() {
     keep "$name" "$(find "$work/$name/points" -name '*.json' | sort | head -n 1)" "$work/$name/sweep.csv" sweep "$@"
 }
 
-# A scene with four suns more.
-five_suns() {
-    sed "s|^    lights: \[|&$(printf '\\n        Directional(name: \"%s\", color: (2, 2, 2), direction: (%s), shadow: true),' \
-        two '0.3, -0.9, 0.2' three '-0.2, -0.9, -0.3' four '0.1, -0.9, 0.35' five '-0.4, -0.9, -0.1')|; \
-        s|file: \"|&$(realpath "${CONELAB_SCENES:-configs/scenes}")/|" "$sponza" >"$work/five-suns.ron"
-}
-
 record() {
     local name=$1 threads=(configs/default.ron configs/raster.ron)
     case $name in
@@ -62,13 +55,6 @@ record() {
         pixels) bench configs/default.ron --scene "$sponza" --sizes 1920x1080,3840x2160 --set voxel_dim=256 --rounds 3 ;;
         cells) bench configs/default.ron --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=256,512 \
             --set voxel_capacity=1750000 --set fragment_capacity=2850000 --rounds 3 ;;
-        rooms) bench "${threads[@]}" --sizes 1920x1080 --set voxel_dim=256 --rounds 2 --frames 20 \
-            --axis scene=configs/scenes/living-room.ron,atrium,vases,foliage ;;
-        suns)
-            five_suns
-            bench "${threads[@]}" --sizes 1920x1080 --set voxel_dim=256 --rounds 2 --frames 20 \
-                --axis "scene=$sponza,$work/five-suns.ron"
-            ;;
         moving)
             local way=(render configs/default.ron --scene "$sponza" --size 1920x1080 --set voxel_dim=256 --redo changed
                 --path configs/paths/sponza.ron --step 0.0166667 --warmup 600 --frames 300)
@@ -91,5 +77,5 @@ record() {
     esac
 }
 
-[[ $# -gt 0 ]] || set -- thesis default pixels cells rooms suns moving scenes lamps sponza voxels
+[[ $# -gt 0 ]] || set -- thesis default pixels cells moving scenes lamps sponza voxels
 for name; do record "$name"; done

@@ -1,0 +1,359 @@
+//! The tables of docs/results.md say what docs/recorded holds, which `scripts/record.sh` measured, and what the graphs
+//! declare: no number in them is typed by hand. `CONELAB_BLESS=1 cargo test --release --test results` writes them anew.
+
+mod common;
+
+use common::root;
+use conelab::graph::load::load;
+use conelab::lab::Workspace;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// A record: command, device, commit, and lines by the names of their columns.
+struct Record {
+    said: String,
+    lines: Vec<BTreeMap<String, String>>,
+}
+
+fn record(name: &str) -> Record {
+    let path = root().join("docs/recorded").join(name).with_extension("csv");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let head: Vec<&str> = text.lines().map_while(|l| l.strip_prefix("# ")).collect();
+    let [command, device, commit] = head[..] else { panic!("{}: no command, device and commit", path.display()) };
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
+    let names: Vec<String> = reader.headers().unwrap().iter().map(str::to_string).collect();
+    // Of two columns of one name the later holds what was measured.
+    let line = |r: csv::StringRecord| names.iter().cloned().zip(r.iter().map(str::to_string)).collect();
+    let lines = reader.records().map(|r| line(r.unwrap())).collect();
+    Record { said: format!("{device}, {commit}: `{command}`"), lines }
+}
+
+/// A table in Markdown: the head, and lines of cells.
+fn table(head: &[&str], lines: &[Vec<String>]) -> String {
+    let mut out = format!("| {} |\n|{}\n", head.join(" | "), "---|".repeat(head.len()));
+    for line in lines {
+        let _ = writeln!(out, "| {} |", line.join(" | "));
+    }
+    out
+}
+
+fn number(line: &BTreeMap<String, String>, column: &str) -> f64 {
+    line.get(column).and_then(|v| v.parse().ok()).unwrap_or(f64::NAN)
+}
+
+/// A path as its file's stem, all else as it is.
+fn short(value: &str) -> String {
+    let stem = value.trim_matches('"').rsplit('/').next().unwrap_or(value);
+    stem.strip_suffix(".ron").unwrap_or(stem).to_string()
+}
+
+/// A benchmark: a line for each stage, a column for each configuration; medians, ms.
+fn times(name: &str) -> String {
+    let record = record(name);
+    let known = ["experiment", "width", "height", "kind", "name", "min ms", "median ms", "p95 ms", "error"];
+    let axes: Vec<&String> = record.lines[0].keys().filter(|k| !known.contains(&k.as_str())).collect();
+    let differs = |column: &str| record.lines.iter().any(|l| l[column] != record.lines[0][column]);
+    let title = |line: &BTreeMap<String, String>| {
+        let mut parts: Vec<String> = axes.iter().map(|a| short(&line[*a])).collect();
+        if differs("experiment") {
+            parts.insert(0, line["experiment"].clone());
+        }
+        if differs("width") {
+            parts.push(format!("{}x{}", line["width"], line["height"]));
+        }
+        parts.join(" ")
+    };
+    let (mut columns, mut rows): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut cells: BTreeMap<(String, String), f64> = BTreeMap::new();
+    for line in record.lines.iter().filter(|l| l["kind"] != "pass") {
+        let (column, row) = (title(line), line["name"].clone());
+        if !columns.contains(&column) {
+            columns.push(column.clone());
+        }
+        if !rows.contains(&row) {
+            rows.push(row.clone());
+        }
+        cells.insert((row, column), number(line, "median ms"));
+    }
+    // Stages of a few hundredths in all columns, one by one, say nothing.
+    let weighs =
+        |row: &&String| columns.iter().any(|c| cells.get(&((*row).clone(), c.clone())).is_some_and(|ms| *ms >= 0.05));
+    rows.retain(|row| row != "total");
+    let mut lines: Vec<Vec<String>> = Vec::new();
+    let shown = |row: &String| {
+        let cell = |c: &String| cells.get(&(row.clone(), c.clone())).map_or(String::new(), |ms| format!("{ms:.2}"));
+        std::iter::once(row.clone()).chain(columns.iter().map(cell)).collect()
+    };
+    lines.extend(rows.iter().filter(weighs).map(shown));
+    let small = rows.iter().filter(|r| !weighs(r)).count();
+    let rest = |c: &String| -> f64 {
+        rows.iter().filter(|r| !weighs(r)).filter_map(|r| cells.get(&(r.clone(), c.clone()))).sum()
+    };
+    if small > 0 {
+        let sums = columns.iter().map(|c| format!("{:.2}", rest(c)));
+        lines.push(std::iter::once(format!("{small} more")).chain(sums).collect());
+    }
+    lines.push(shown(&"total".to_string()));
+    let head: Vec<&str> = std::iter::once("ms").chain(columns.iter().map(String::as_str)).collect();
+    format!("*{}*\n\n{}", record.said, table(&head, &lines))
+}
+
+/// A record that is JSON, and what is said above its table.
+fn json(name: &str) -> (String, serde_json::Value) {
+    let path = root().join("docs/recorded").join(name).with_extension("json");
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let all: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let (command, commit) = (all["command"].as_str().unwrap(), all["commit"].as_str().unwrap());
+    let record = all["record"].clone();
+    let device = match &record["device"] {
+        serde_json::Value::String(name) => name.clone(),
+        device => format!("{}, {}", device["name"].as_str().unwrap(), device["driver"].as_str().unwrap()),
+    };
+    (format!("*{device}, {commit}: `{command}`*"), record)
+}
+
+/// A camera in motion: what the passes that run take, by stage.
+fn moving() -> String {
+    let (said, record) = json("moving");
+    let (mut stages, mut asleep): (Vec<(String, f64)>, usize) = (Vec::new(), 0);
+    for pass in record["passes"].as_array().unwrap() {
+        let (stage, ms) = (pass["stage"].as_str().unwrap(), pass["gpu_ms"]["median"].as_f64().unwrap());
+        asleep += usize::from(pass["slept"].as_u64() == pass["frames"].as_u64());
+        match stages.iter_mut().find(|s| s.0 == stage) {
+            Some(of) => of.1 += ms,
+            None => stages.push((stage.into(), ms)),
+        }
+    }
+    let total = record["total_gpu_ms"]["median"].as_f64().unwrap();
+    let small: f64 = stages.iter().filter(|s| s.1 < 0.03).map(|s| s.1).sum();
+    stages.retain(|s| s.1 >= 0.03);
+    stages.extend([("what takes less than 0.03".into(), small), ("total".into(), total)]);
+    let lines: Vec<Vec<String>> = stages.iter().map(|(stage, ms)| vec![stage.clone(), format!("{ms:.2}")]).collect();
+    let passes = record["passes"].as_array().unwrap().len();
+    format!(
+        "{said}\n\n{}\n{asleep} of {passes} passes sleep in all of these frames.\n",
+        table(&["stage", "ms"], &lines)
+    )
+}
+
+/// Both presets in every scene, worst first.
+fn scenes() -> String {
+    let record = record("scenes");
+    let done = |experiment: &str| -> BTreeMap<String, &BTreeMap<String, String>> {
+        let lines = record.lines.iter().filter(|l| l["outcome"] == "done" && l["experiment"] == experiment);
+        lines.map(|l| (l["scene"].clone(), l)).collect()
+    };
+    let (default, thesis) = (done("default"), done("thesis"));
+    let mut names: Vec<&String> = default.keys().collect();
+    names.sort_by(|a, b| number(default[*b], "total flip").total_cmp(&number(default[*a], "total flip")));
+    let columns: [(&str, usize); 5] = [
+        ("total energy_ratio", 2),
+        ("diffuse energy_ratio", 2),
+        ("total relmse", 4),
+        ("total flip", 3),
+        ("total structure", 3),
+    ];
+    let line = |name: &&String| {
+        let cell = |(column, digits): (&str, usize)| {
+            let (a, b) = (number(default[*name], column), thesis.get(*name).map_or(f64::NAN, |l| number(l, column)));
+            format!("{a:.digits$} ({b:.digits$})")
+        };
+        std::iter::once((*name).clone()).chain(columns.map(cell)).collect()
+    };
+    let lines: Vec<Vec<String>> = names.iter().map(line).collect();
+    format!("*{}*\n\n{}", record.said, table(&["scene", "energy", "diffuse", "relMSE", "FLIP", "structure"], &lines))
+}
+
+/// Rays to emitters: what they bring and cost.
+fn lamps() -> String {
+    let record = record("lamps");
+    let mut names: Vec<String> = Vec::new();
+    for line in &record.lines {
+        if !names.contains(&line["scene"]) {
+            names.push(line["scene"].clone());
+        }
+    }
+    let settings = [("0", "0"), ("2", "4"), ("8", "4")];
+    let line = |name: &String| {
+        let of = |(pixel, voxel): (&str, &str)| {
+            let fits = |l: &&BTreeMap<String, String>| {
+                l["scene"] == *name && l["emitter_rays"] == pixel && l["bounce_emitter_rays"] == voxel
+            };
+            record.lines.iter().find(fits).unwrap()
+        };
+        let cell = |(column, digits): (&str, usize)| {
+            settings.map(|s| format!("{:.digits$}", number(of(s), column))).join(", ")
+        };
+        let cells =
+            [("total median ms", 2), ("total relmse", 4), ("total flip", 3), ("total energy_ratio", 2)].map(cell);
+        std::iter::once(name.clone()).chain(cells).collect()
+    };
+    let lines: Vec<Vec<String>> = names.iter().map(line).collect();
+    format!("*{}*\n\n{}", record.said, table(&["scene", "ms", "relMSE", "FLIP", "energy"], &lines))
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// The front of error against time in Sponza, and what settings with all bounces, two and one have.
+fn front() -> String {
+    let record = record("sponza");
+    let done: Vec<&BTreeMap<String, String>> = record.lines.iter().filter(|l| l["outcome"] == "done").collect();
+    let cost = |l: &BTreeMap<String, String>| (number(l, "total median ms"), number(l, "total relmse"));
+    let beaten = |l: &&&BTreeMap<String, String>| {
+        let (ms, error) = cost(l);
+        done.iter().any(|o| cost(o) != (ms, error) && cost(o).0 <= ms && cost(o).1 <= error)
+    };
+    let mut front: Vec<_> = done.iter().filter(|l| !beaten(l)).collect();
+    front.sort_by(|a, b| cost(a).0.total_cmp(&cost(b).0));
+    let names = ["voxel_dim", "shadow_dim", "trace", "bounces", "pixel_cones", "ray_pixels", "gather_frames"];
+    let lines: Vec<Vec<String>> = front
+        .iter()
+        .map(|l| {
+            let (ms, error) = cost(l);
+            let numbers = [format!("{ms:.2}"), format!("{error:.4}"), format!("{:.3}", number(l, "total flip"))];
+            numbers.into_iter().chain(["experiment"].iter().chain(&names).map(|n| l[*n].clone())).collect()
+        })
+        .collect();
+    let head: Vec<&str> = ["ms", "relMSE", "FLIP", "experiment"].into_iter().chain(names).collect();
+    let mut out = format!("*{}*\n\n{}\n", record.said, table(&head, &lines));
+    let by = |bounces: &str| median(done.iter().filter(|l| l["bounces"] == bounces).map(|l| cost(l).1).collect());
+    let _ = writeln!(
+        out,
+        "The median setting with all bounces has relMSE {:.3}, with two {:.3}, with one {:.3}.",
+        by("all"),
+        by("two"),
+        by("one")
+    );
+    let mut ratios = Vec::new();
+    let sampled: Vec<&str> = record.lines[0].keys().map(String::as_str).filter(|k| is_setting(k)).collect();
+    for a in done.iter().filter(|l| l["experiment"] == "default") {
+        let same =
+            |b: &&&BTreeMap<String, String>| b["experiment"] == "raster" && sampled.iter().all(|k| a[*k] == b[*k]);
+        ratios.extend(done.iter().find(same).map(|b| cost(b).0 / cost(a).0));
+    }
+    let faster = ratios.iter().filter(|r| **r < 1.0).count();
+    let _ = writeln!(
+        out,
+        "Of {} pairs {faster} are faster by the rasteriser; the median takes {:.1} times as long.",
+        ratios.len(),
+        median(ratios)
+    );
+    out
+}
+
+/// Whether a column of the sweep in Sponza is a setting that was drawn.
+fn is_setting(column: &str) -> bool {
+    let measured = [
+        "id",
+        "outcome",
+        "experiment",
+        "scene",
+        "graph",
+        "width",
+        "height",
+        "device",
+        "driver",
+        "bytes",
+        "warnings",
+        "error",
+    ];
+    !column.contains(' ') && !measured.contains(&column)
+}
+
+/// Voxels of Sponza against the exact test.
+fn voxels() -> String {
+    let (said, record) = json("voxels");
+    let mut lines = Vec::new();
+    for mode in record["modes"].as_array().unwrap() {
+        let score = &mode["score"];
+        let Some(recall) = score["recall"].as_f64() else { continue };
+        let whole = |name: &str| score[name].as_u64().unwrap().to_string();
+        lines.push(vec![
+            mode["title"].as_str().unwrap().to_string(),
+            format!("{recall:.3}"),
+            whole("holes"),
+            whole("extras"),
+            whole("leaked_6"),
+            whole("leaked_26"),
+        ]);
+    }
+    let first = &record["modes"][0]["score"];
+    let head = [
+        "",
+        "touched cells that are set",
+        "missing",
+        "set and not touched",
+        "enclosed cells that a flood reaches through faces",
+        "through corners too",
+    ];
+    format!(
+        "{said}\n\n{} cells are touched, {} lie enclosed.\n\n{}",
+        first["exact"],
+        first["enclosed"],
+        table(&head, &lines)
+    )
+}
+
+/// Defaults of the parameters that both methods have and declare differently, and what one has alone.
+fn presets() -> String {
+    let home = Workspace { root: root().to_path_buf(), cache: None };
+    let params = |graph: &str| load(&home.graph_path(graph), &home.folders()).unwrap().params.list;
+    let (ours, thesis) = (params("vct.ron"), params("thesis.ron"));
+    let mut lines = Vec::new();
+    for p in &ours {
+        if let Some(t) = thesis.iter().find(|t| t.name == p.name && t.default != p.default) {
+            lines.push(vec![format!("`{}`", p.name), p.default.to_string(), t.default.to_string()]);
+        }
+    }
+    let alone = |a: &[conelab::graph::param::Param], b: &[conelab::graph::param::Param]| {
+        let names = a.iter().filter(|p| b.iter().all(|o| o.name != p.name)).map(|p| format!("`{}`", p.name));
+        names.collect::<Vec<_>>().join(", ")
+    };
+    format!(
+        "{}\nOnly `vct.ron` has {}; only `thesis.ron` has {}.\n",
+        table(&["parameter", "`vct.ron`", "`thesis.ron`"], &lines),
+        alone(&ours, &thesis),
+        alone(&thesis, &ours)
+    )
+}
+
+fn block(name: &str) -> String {
+    match name {
+        "moving" => moving(),
+        "scenes" => scenes(),
+        "lamps" => lamps(),
+        "front" => front(),
+        "voxels" => voxels(),
+        "presets" => presets(),
+        times_of => times(times_of),
+    }
+}
+
+#[test]
+fn tables_say_what_was_recorded() {
+    let path = root().join("docs/results.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (mut out, mut skips, mut blocks) = (String::new(), false, 0);
+    for line in text.lines() {
+        if line == "<!-- end -->" {
+            skips = false;
+        }
+        if !skips {
+            let _ = writeln!(out, "{line}");
+        }
+        if let Some(name) = line.strip_prefix("<!-- recorded: ").and_then(|l| l.strip_suffix(" -->")) {
+            let _ = write!(out, "\n{}\n", block(name));
+            (skips, blocks) = (true, blocks + 1);
+        }
+    }
+    assert!(!skips, "a table has no end");
+    assert!(blocks > 7, "docs/results.md has {blocks} tables");
+    if std::env::var_os("CONELAB_BLESS").is_some() {
+        std::fs::write(&path, out).unwrap();
+    } else {
+        assert!(out == text, "docs/results.md does not say what docs/recorded holds: CONELAB_BLESS=1 writes it anew");
+    }
+}
