@@ -149,6 +149,31 @@ fn few_pixels_gather_for_all() {
 
 /// A camera that moves by half a pixel a frame: what is kept stays on its surface and grows no older than all turns, and rays are as many as
 /// the turns ask for, but for what comes into sight. Each frame's light is as noisy as its few rays; over many it is right.
+/// What `gather_rest` is for: while the camera alone moves, settled light is gathered again by fewer pixels.
+#[test]
+fn settled_light_is_gathered_again_by_fewer_pixels() {
+    let lab = lab(root());
+    let cornell = scene("cornell");
+    let gatherers = |rest: &str| {
+        let settings = [("gather_frames", "4"), ("bounce_frames", "1"), ("gather_rest", rest)];
+        let mut session = session(&lab, &cornell, &settings);
+        gathered(&lab, &mut session, 24);
+        let mut pixels = 0;
+        for step in 0..16 {
+            let x = 2.5 + 0.004 * step as f32;
+            session.place_camera(&PlacedCamera::new((x, 2.5, 9.2), (x, 2.5, 0.0), 40.0));
+            gathered(&lab, &mut session, 1);
+            let counter = session.buffer("gatherCounter").unwrap();
+            pixels += u32::from_le_bytes(counter[..4].try_into().unwrap());
+        }
+        pixels
+    };
+    let (always, rarely) = (gatherers("1"), gatherers("4"));
+    println!("{always} pixels gather, {rarely} where light has settled");
+    assert!(f64::from(rarely) < 0.5 * f64::from(always), "{rarely} of {always}");
+    assert!(f64::from(rarely) > 0.2 * f64::from(always), "{rarely} of {always}: each still gathers in its turn");
+}
+
 #[test]
 fn a_moving_camera_keeps_light_where_it_belongs() {
     let lab = lab(root());
