@@ -67,7 +67,7 @@ check: ## Check formatting, lints, graphs, shaders and experiments
 	@cargo clippy --release --locked --all-targets -- -D warnings
 	@$(CONELAB) check
 
-record: ## Measure again what docs/results.md has tables of, and write them (an hour of a GPU)
+record: ## Measure again what docs/results.md has tables of, and write them (half an hour of a GPU)
 	@scripts/setup.sh build run
 	@cargo build --release --locked
 	@scripts/record.sh

@@ -192,77 +192,6 @@ fn lamps() -> String {
     format!("*{}*\n\n{}", record.said, table(&["scene", "ms", "relMSE", "FLIP", "energy"], &lines))
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
-/// The front of error against time in Sponza, and what settings with all bounces, two and one have.
-fn front() -> String {
-    let record = record("sponza");
-    let done: Vec<&BTreeMap<String, String>> = record.lines.iter().filter(|l| l["outcome"] == "done").collect();
-    let cost = |l: &BTreeMap<String, String>| (number(l, "total median ms"), number(l, "total relmse"));
-    let beaten = |l: &&&BTreeMap<String, String>| {
-        let (ms, error) = cost(l);
-        done.iter().any(|o| cost(o) != (ms, error) && cost(o).0 <= ms && cost(o).1 <= error)
-    };
-    let mut front: Vec<_> = done.iter().filter(|l| !beaten(l)).collect();
-    front.sort_by(|a, b| cost(a).0.total_cmp(&cost(b).0));
-    let names = ["voxel_dim", "shadow_dim", "trace", "bounces", "pixel_cones", "ray_pixels", "gather_frames"];
-    let lines: Vec<Vec<String>> = front
-        .iter()
-        .map(|l| {
-            let (ms, error) = cost(l);
-            let numbers = [format!("{ms:.2}"), format!("{error:.4}"), format!("{:.3}", number(l, "total flip"))];
-            numbers.into_iter().chain(["experiment"].iter().chain(&names).map(|n| l[*n].clone())).collect()
-        })
-        .collect();
-    let head: Vec<&str> = ["ms", "relMSE", "FLIP", "experiment"].into_iter().chain(names).collect();
-    let mut out = format!("*{}*\n\n{}\n", record.said, table(&head, &lines));
-    let by = |bounces: &str| median(done.iter().filter(|l| l["bounces"] == bounces).map(|l| cost(l).1).collect());
-    let _ = writeln!(
-        out,
-        "The median setting with all bounces has relMSE {:.3}, with two {:.3}, with one {:.3}.",
-        by("all"),
-        by("two"),
-        by("one")
-    );
-    let mut ratios = Vec::new();
-    let sampled: Vec<&str> = record.lines[0].keys().map(String::as_str).filter(|k| is_setting(k)).collect();
-    for a in done.iter().filter(|l| l["experiment"] == "default") {
-        let same =
-            |b: &&&BTreeMap<String, String>| b["experiment"] == "raster" && sampled.iter().all(|k| a[*k] == b[*k]);
-        ratios.extend(done.iter().find(same).map(|b| cost(b).0 / cost(a).0));
-    }
-    let faster = ratios.iter().filter(|r| **r < 1.0).count();
-    let _ = writeln!(
-        out,
-        "Of {} pairs {faster} are faster by the rasteriser; the median takes {:.1} times as long.",
-        ratios.len(),
-        median(ratios)
-    );
-    out
-}
-
-/// Whether a column of the sweep in Sponza is a setting that was drawn.
-fn is_setting(column: &str) -> bool {
-    let measured = [
-        "id",
-        "outcome",
-        "experiment",
-        "scene",
-        "graph",
-        "width",
-        "height",
-        "device",
-        "driver",
-        "bytes",
-        "warnings",
-        "error",
-    ];
-    !column.contains(' ') && !measured.contains(&column)
-}
-
 /// Voxels of Sponza against the exact test.
 fn voxels() -> String {
     let (said, record) = json("voxels");
@@ -325,7 +254,6 @@ fn block(name: &str) -> String {
         "moving" => moving(),
         "scenes" => scenes(),
         "lamps" => lamps(),
-        "front" => front(),
         "voxels" => voxels(),
         "presets" => presets(),
         times_of => times(times_of),

@@ -1,4 +1,5 @@
-//! The pass graph: parameters, textures, buffers and passes, read from RON. It knows no voxels.
+//! The pass graph: parameters, textures, buffers and passes, read from RON. Of voxels and of tools it knows what graphs
+//! declare for them, and no more.
 
 mod definition;
 pub mod effect;
