@@ -101,7 +101,7 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
         painter.text(at.right_center(), Align2::RIGHT_CENTER, format!("{ms:.3}"), numbers.clone(), color);
     };
     let total = line(timers.title.len() as f32);
-    painter.text(total.left_center(), Align2::LEFT_CENTER, "GPU ms", font.clone(), Color32::WHITE);
+    painter.text(total.left_center(), Align2::LEFT_CENTER, "GPU ms, median", font.clone(), Color32::WHITE);
     number(total, timers.total, Color32::WHITE);
     for (i, (name, ms)) in rows.iter().enumerate() {
         let at = line(lines + i as f32);

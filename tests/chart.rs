@@ -46,7 +46,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
 
     // 256 samples take long on a software device: it is stopped, and what there is by then is kept.
     let mark = driver.now();
-    driver.click("Button", "gather");
+    driver.click("Button", "gather the reference");
     driver.event(mark, "gathering");
     driver.texts_until("a reference in the making, or made", |t| t.iter().any(|t| t == "cancel" || t == "gather more"));
     if driver.texts().iter().any(|t| t == "cancel") {

@@ -42,6 +42,7 @@ fn what_changes_nothing_is_told_with_the_choice_that_it_waits_for() {
         assert!(needs(name).contains(&("trace".into(), "cones".into())), "{name}: {:?}", idle.get(name));
     }
     assert_eq!(idle["volume_center"].text, "where volume == box");
+    assert_eq!(idle["shadow_format"].text, "where shadow_map is raster");
     for name in ["exposure", "voxel_dim", "trace", "pixel_cones", "volume", "tone_map", "bounces"] {
         assert!(!idle.contains_key(name), "{name}: {:?}", idle.get(name));
     }
@@ -73,11 +74,12 @@ fn a_warps_parameters_wait_for_the_warp() {
 #[test]
 fn the_default_graphs_pin_what_was_asked_for_in_that_order() {
     let home = Workspace { root: common::root().to_path_buf(), cache: None };
-    let asked = ["cone_count", "diffuse_aperture", "diffuse_steps", "bias", "lod_offset", "warp_alpha", "warp"];
+    let asked =
+        ["trace", "cone_count", "diffuse_aperture", "diffuse_steps", "bias", "lod_offset", "warp_alpha", "warp"];
     for graph in ["vct.ron", "warps.ron", "temporal.ron"] {
         let graph = conelab::graph::load::load(&home.graph_path(graph), &home.folders()).unwrap();
         assert_eq!(graph.pinned.iter().map(|p| p.0.as_str()).collect::<Vec<_>>(), asked);
         let titles: Vec<&str> = graph.pinned.iter().map(|p| p.1.as_str()).collect();
-        assert_eq!(titles[..3], ["Cone count", "Aperture", "Steps"]);
+        assert_eq!(titles[..4], ["Light by", "Cone count", "Aperture", "Steps"]);
     }
 }

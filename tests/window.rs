@@ -639,6 +639,38 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.keys(&[CONTROL, u32::from(b'z')]);
     driver.picture(mark, 0, &first);
 
+    // A pass that does not run is found, says why, and what would make it run.
+    driver.click("TextInput", "find a pass, a texture");
+    driver.text("cones");
+    driver.click("Button", "find pass cones");
+    driver.texts_until("why it does not run", |texts| texts.iter().any(|t| t == "does not run: pattern == 1 is false"));
+    driver.find("Button", "trace = cones");
+
+    // What is empty because a pass is off is said, and who reads it.
+    driver.click("TextInput", "find a pass, a texture");
+    driver.text("inj");
+    driver.click("Button", "find pass inject");
+    driver.click("", "on");
+    driver.texts_until("what is empty", |texts| texts.iter().any(|t| t.starts_with("sideRadiance is zeros now: ")));
+    let mark = driver.now();
+    driver.click("Button", "all passes on");
+    driver.picture(mark, 0, &first);
+
+    // With and without a filter: B reads what the filter would have read.
+    driver.click("TextInput", "find a pass, a texture");
+    driver.text("smoo");
+    driver.click("Button", "find pass smooth");
+    let mark = driver.now();
+    driver.click("Button", "with | without");
+    driver.wait(mark, "B built", |e| e["event"] == "built" && e["side"] == 1);
+    let rough = driver.other_picture(mark, 1, &first);
+    assert_ne!(rough, dark);
+    driver.texts_until("nothing is empty", |texts| !texts.iter().any(|t| t.contains("is zeros now")));
+    driver.click("", "A | B");
+    driver.texts_until("A alone", |texts| !texts.iter().any(|t| t == "FLIP"));
+    driver.click("", "picture");
+    driver.click("Button", "all");
+
     // What a pass writes is inspected by a click.
     driver.click("Button", "shadow map writes shadowMap");
     driver.texts_until("the inspected texture", |texts| texts.iter().any(|t| t.contains("shadowMap")));

@@ -23,15 +23,22 @@ Likeness likenessOf(GBufferSurface seen) {
     return Likeness(0.5 * step - zoom, step, mat3(camera.view) * seen.face, dot(off, seen.face), 200.0 / length(off), seen.surface.normal);
 }
 
+// What other pixels see: a normal, and how far it is [m]; 0 beyond the picture and where they see the sky.
+vec4 seenAt(ivec2 at) {
+    if (any(greaterThanEqual(uvec2(at), uvec2(camera.size)))) return vec4(0.0);
+    return vec4(unpackNormal(texelFetch(gbufferNormals, at, 0).xy), texelFetch(gbufferDistance, at, 0).r);
+}
+
 // How much of another pixel's light a surface takes: 1 where both see one surface.
-float likeness(ivec2 at, Likeness like) {
-    if (any(greaterThanEqual(uvec2(at), uvec2(camera.size)))) return 0.0;
-    float other = texelFetch(gbufferDistance, at, 0).r;
-    if (other <= 0.0) return 0.0;
-    vec3 normal = unpackNormal(texelFetch(gbufferNormals, at, 0).xy);
+float likeness(ivec2 at, vec4 other, Likeness like) {
+    if (other.w <= 0.0) return 0.0;
     vec2 ray = like.origin + vec2(at) * like.step;
-    float off = abs(other * inversesqrt(dot(ray, ray) + 1.0) * (dot(ray, like.plane.xy) - like.plane.z) - like.away);
-    return clamp(5.0 * abs(dot(normal, like.normal)) - 3.8, 0.0, 1.0) * clamp(2.0 - like.scale * off, 0.0, 1.0);
+    float off = abs(other.w * inversesqrt(dot(ray, ray) + 1.0) * (dot(ray, like.plane.xy) - like.plane.z) - like.away);
+    return clamp(5.0 * abs(dot(other.xyz, like.normal)) - 3.8, 0.0, 1.0) * clamp(2.0 - like.scale * off, 0.0, 1.0);
+}
+
+float likeness(ivec2 at, Likeness like) {
+    return likeness(at, seenAt(at), like);
 }
 
 // How far a surface's reflection may blur: a mirror's picture must not.

@@ -5,6 +5,7 @@
 use super::evaluated::Evaluated;
 use super::expr::{Env, Ex, Var};
 use super::externals::EXTERNALS;
+use super::file::PassDecl;
 use super::link::{Linked, Target, generated, has_word};
 use super::param::{Kind, Param, Params, Value};
 use crate::shader::{ShaderCompiler, module_include};
@@ -46,6 +47,17 @@ pub fn idle(running: &Running<'_>, compiler: &ShaderCompiler) -> BTreeMap<String
     }
     let texts = Texts::new(running, compiler);
     silent.into_iter().map(|p| (p.name.clone(), trial.reason(p, &texts))).collect()
+}
+
+/// Passes that a condition leaves out, by name, with the condition and what it waits for.
+pub fn resting(set: &Evaluated<'_>) -> BTreeMap<String, Reason> {
+    let (read, written) = (BTreeSet::new(), BTreeSet::new());
+    let running = Running { set, linked: &[], passes: &[], written };
+    let trial = Trial::new(&running, &read);
+    let failing = |pass: &PassDecl| pass.conditions().find(|when| when.value.eval(&trial.env) == Ok(0.0)).cloned();
+    let passes = set.graph.passes.iter().filter_map(|pass| Some((&pass.value, failing(&pass.value)?)));
+    let reason = |when: &Ex| Reason { text: when.value.text.clone(), needs: trial.needs_of(when) };
+    passes.map(|(pass, when)| (pass.name.value.clone(), reason(&when))).collect()
 }
 
 /// What shaders take in a parameter's place, where that is a number and another than its value.
@@ -168,8 +180,7 @@ impl<'a> Trial<'a> {
         let modules = self.params.list.iter().filter(|m| m.is_module() && m.name != param.name);
         for module in modules.filter(|m| self.read.contains(&m.name)) {
             let naming = |o: &&OptionFiles| !o.is_chosen && o.module == module.name && !o.files.is_disjoint(&files);
-            let options: Vec<&OptionFiles> = texts.options.iter().filter(naming).collect();
-            let names: Vec<&str> = options.iter().map(|o| o.option.as_str()).collect();
+            let names: Vec<&str> = texts.options.iter().filter(naming).map(|o| o.option.as_str()).collect();
             if names.is_empty() {
                 continue;
             }
@@ -277,8 +288,13 @@ fn others(param: &Param, now: &Value) -> Vec<Value> {
     };
     list.extend(param.plain.clone());
     list.push(param.default.clone());
-    list.retain(|v| v != now);
-    list
+    let mut once: Vec<Value> = Vec::new();
+    for value in list.into_iter().filter(|v| v != now) {
+        if !once.contains(&value) {
+            once.push(value);
+        }
+    }
+    once
 }
 
 /// The shader files of a module's option.

@@ -1,5 +1,6 @@
 //! The bar at the top: experiments, scenes, undo, comparisons; and the line at the foot.
 
+use super::control::CHANGED;
 use super::engine::Order;
 use super::{Workbench, edit, ron_files, short, side_of};
 use crate::diagnostics::{Entries, RawText};
@@ -25,11 +26,15 @@ impl Workbench {
             let mut compare = self.desired.sides[1].is_some();
             if ui
                 .toggle_value(&mut compare, "A | B")
-                .on_hover_text("Put a second experiment beside the first")
+                .on_hover_text(
+                    "A second experiment beside the first; off, A is again what it was, unless it was edited",
+                )
                 .clicked()
             {
-                self.desired.sides[1] = if compare { self.desired.sides[0].clone() } else { None };
-                self.panel_side = usize::from(compare);
+                match compare {
+                    true => self.compare_sides([self.desired.sides[0].clone(), self.desired.sides[0].clone()]),
+                    false => self.end_comparison(),
+                }
             }
             self.comparisons(ui);
             if self.desired.sides[1].is_some() {
@@ -75,7 +80,7 @@ impl Workbench {
                     }
                     side
                 };
-                self.desired.sides = [Some(make(&compare.value.a)), Some(make(&compare.value.b))];
+                self.compare_sides([Some(make(&compare.value.a)), Some(make(&compare.value.b))]);
             }
         }
     }
@@ -101,7 +106,7 @@ impl Workbench {
         let Some((path, side)) = chosen else { return };
         match Experiment::read(&path) {
             Ok(experiment) if side == 0 => self.open(&experiment),
-            Ok(experiment) => self.desired.sides[1] = Some(side_of(&experiment)),
+            Ok(experiment) => self.compare_sides([self.desired.sides[0].clone(), Some(side_of(&experiment))]),
             Err(errors) => self.sides[side].errors = errors,
         }
     }
@@ -147,10 +152,14 @@ impl Workbench {
             }
             if let Some(p) = &self.sides[0].picture {
                 ui.weak(format!("{}x{}", p.size[0], p.size[1]));
-                ui.weak(format!("{:.2} ms", p.gpu_ms));
+                ui.weak(format!("last frame {:.2} ms", p.gpu_ms))
+                    .on_hover_text("On the GPU, from first to last command");
                 if p.preview {
                     ui.weak("preview, while the passes are built");
                 }
+            }
+            if let Some(what) = self.pending(ui.ctx()) {
+                ui.colored_label(CHANGED, what);
             }
             ui.label(&self.status);
         });

@@ -3,7 +3,7 @@
 use super::Workbench;
 use super::report::GraphInfo;
 use crate::graph::Evaluated;
-use crate::graph::effect::{Reason, Running, effective, idle};
+use crate::graph::effect::{Reason, Running, effective, idle, resting};
 use crate::shader::ShaderCompiler;
 use crossbeam_channel::{Receiver, Sender, unbounded};
 use egui::Ui;
@@ -18,6 +18,8 @@ pub struct Found {
     pub idle: BTreeMap<String, Reason>,
     /// What shaders take in place of a value.
     pub effective: BTreeMap<String, f64>,
+    /// Passes that a condition leaves out.
+    pub resting: BTreeMap<String, Reason>,
 }
 
 /// What they were found for: the graph as it runs, and the parameters that are set.
@@ -106,5 +108,5 @@ fn find((info, set): &Of, compiler: &ShaderCompiler) -> Found {
     };
     let taken = |name: &str| effective(&set, params.param(name)?);
     let effective = params.list.iter().filter_map(|p| Some((p.name.clone(), taken(&p.name)?))).collect();
-    Found { idle: idle(&running, compiler), effective }
+    Found { idle: idle(&running, compiler), effective, resting: resting(&set) }
 }

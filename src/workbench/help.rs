@@ -29,7 +29,11 @@ const NONE: Modifiers = Modifiers::NONE;
 /// In the order in which they are explained.
 const KEYS: [(Action, KeyboardShortcut, &str); 17] = [
     (Action::Help, KeyboardShortcut::new(NONE, Key::F1), "these keys"),
-    (Action::Undo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Z), "undo the last edit of parameters or lights"),
+    (
+        Action::Undo,
+        KeyboardShortcut::new(Modifiers::COMMAND, Key::Z),
+        "undo the last edit: parameters, passes, lights, scene, what was opened",
+    ),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z), "redo"),
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Y), "redo"),
     (Action::Open, KeyboardShortcut::new(Modifiers::COMMAND, Key::O), "open a scene, a model or an experiment"),
@@ -59,7 +63,15 @@ const MOUSE: [(&str, &str); 8] = [
     ("Ctrl wheel", "zoom into the picture; the camera stays"),
     ("Ctrl drag", "move the picture when zoomed; a double click shows all of it"),
     ("W A S D Q E", "move; with Shift faster"),
-    ("click", "show what the graph shows of that point"),
+    ("click", "of that point, what the graph shows: the cones of a pixel, where cones are traced"),
+];
+
+const BUTTONS: [(&str, &str); 5] = [
+    ("A | B", "two experiments side by side; each has its parameters, picked at the left"),
+    ("Time", "what each pass takes, and memory"),
+    ("Chart", "error against the path-traced reference, over time; it can be gathered there"),
+    ("Graph", "the passes; with and without one of them"),
+    ("Inspect", "any texture of the graph, any slice of a volume"),
 ];
 
 /// Actions whose keys were pressed; keys without Ctrl do nothing while text is typed.
@@ -85,7 +97,7 @@ impl Workbench {
                     ui.label(*text);
                     ui.end_row();
                 }
-                for (mouse, text) in MOUSE {
+                for (mouse, text) in MOUSE.into_iter().chain(BUTTONS) {
                     ui.monospace(mouse);
                     ui.label(text);
                     ui.end_row();

@@ -30,12 +30,14 @@ mod opening;
 mod overlay;
 mod panel;
 mod paths;
+mod pending;
 mod poll;
 mod renderdoc;
 pub mod report;
 pub mod request;
 mod save;
 mod sequence;
+mod sides;
 mod surroundings;
 mod tables;
 mod times;
@@ -158,8 +160,10 @@ pub struct Workbench {
     /// The request that the engine was sent last, and how many it was sent.
     sent: RenderRequest,
     sent_number: u64,
+    sent_at: Instant,
     name: String,
     sides: [Side; 2],
+    alone: sides::Alone,
     scene: Option<Arc<Scene>>,
     /// Name of the loaded scene, its sky's picture, and how it was seen before another was asked for.
     loaded_scene: Option<(String, String)>,
@@ -248,9 +252,11 @@ impl Workbench {
             watch,
             sent: RenderRequest::default(),
             sent_number: 0,
+            sent_at: Instant::now(),
             desired,
             name: experiment.name.clone(),
             sides: Default::default(),
+            alone: None,
             scene: None,
             loaded_scene: None,
             before_loading: None,
@@ -349,6 +355,7 @@ impl Workbench {
         if self.desired != self.sent {
             self.sent = self.desired.clone();
             self.sent_number += 1;
+            self.sent_at = Instant::now();
             self.engine.request(self.sent_number, self.sent.clone());
         }
     }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// The model files of a menu, and the dialog.
 pub struct Models {
     /// Files found, once they were looked for.
-    found: Option<Vec<PathBuf>>,
+    found: Option<Vec<(PathBuf, u64)>>,
     dialog: FileDialog,
 }
 
@@ -43,11 +43,15 @@ impl Models {
         if !found.is_empty() {
             ui.weak("models in CONELAB_SCENES");
             egui::ScrollArea::vertical().max_height(200.0).show(ui, |ui| {
-                for path in found {
+                for (path, bytes) in found {
                     let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
-                    if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                        chosen = Some(path.to_string_lossy().into_owned());
-                    }
+                    ui.horizontal(|ui| {
+                        if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                            chosen = Some(path.to_string_lossy().into_owned());
+                        }
+                        ui.weak(format!("{:.1} MB", *bytes as f64 / 1e6))
+                            .on_hover_text("The file alone, without its pictures");
+                    });
                 }
             });
         }
@@ -82,7 +86,7 @@ impl Models {
 }
 
 /// Model files of a folder and those in it.
-fn look(folder: &Path, deep: usize, list: &mut Vec<PathBuf>) {
+fn look(folder: &Path, deep: usize, list: &mut Vec<(PathBuf, u64)>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if list.len() >= MOST {
@@ -94,7 +98,7 @@ fn look(folder: &Path, deep: usize, list: &mut Vec<PathBuf>) {
                 look(&path, deep - 1, list);
             }
         } else if ending != "ron" && ENDINGS.contains(&ending.as_str()) {
-            list.push(path);
+            list.push((path, entry.metadata().map_or(0, |m| m.len())));
         }
     }
 }

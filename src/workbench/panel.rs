@@ -142,7 +142,7 @@ impl Shown<'_> {
         let Some(param) = self.graph.params.param(name) else { return };
         let Ok(value) = param.parse(option) else { return };
         ui.horizontal(|ui| {
-            ui.weak("what is dimmed counts with");
+            ui.weak("dimmed: without effect unless");
             if ui.small_button(format!("{name} = {option}")).on_hover_text(&param.help).clicked() {
                 edit::set(side, param, &value);
             }
@@ -214,7 +214,7 @@ fn groups(graph: &Graph) -> Vec<&str> {
 }
 
 /// A text to be compared without regard to case, spaces and underscores.
-fn folded(text: &str) -> String {
+pub(super) fn folded(text: &str) -> String {
     text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 

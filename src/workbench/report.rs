@@ -58,6 +58,10 @@ pub struct GraphInfo {
     pub passes: Vec<usize>,
     /// What the passes that run read and write, in order.
     pub uses: Vec<PassUses>,
+    /// Passes that do not run, and why.
+    pub left_out: Vec<(usize, String)>,
+    /// Resources that passes which are off would write, and nobody else does.
+    pub empty: Vec<String>,
     /// Findings that are no errors.
     pub warnings: Vec<Diagnostic>,
 }

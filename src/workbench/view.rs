@@ -6,7 +6,7 @@ use super::motion;
 use super::zoom::{Zoom, foot, pixel_at, pixel_text};
 use super::{COMPARISON, Workbench};
 use crate::timers::Rows;
-use egui::{Color32, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};
 
 /// State of the viewport.
 pub struct View {
@@ -105,9 +105,9 @@ impl Workbench {
         let Some(a) = self.sides[0].picture.as_ref().map(|p| p.size) else {
             painter.text(
                 area.center(),
-                egui::Align2::CENTER_CENTER,
+                Align2::CENTER_CENTER,
                 self.waiting_text(),
-                egui::FontId::proportional(16.0),
+                FontId::proportional(16.0),
                 Color32::GRAY,
             );
             return;
@@ -119,6 +119,8 @@ impl Workbench {
         let draw = |number: usize, rect: Rect, clip: Rect| {
             painter.with_clip_rect(clip.intersect(area)).image(textures[number], rect, WHOLE, Color32::WHITE);
         };
+        let [a_differs, b_differs] = self.sides_in_words();
+        let names = [format!("A  {a_differs}"), format!("B  {b_differs}")].map(|n| n.trim_end().to_string());
         match self.view.mode {
             _ if !both => draw(0, shown, area),
             Mode::Split => {
@@ -126,21 +128,25 @@ impl Workbench {
                 draw(0, shown, Rect::from_min_max(area.min, Pos2::new(x, area.max.y)));
                 draw(1, shown, Rect::from_min_max(Pos2::new(x, area.min.y), area.max));
                 painter.vline(x, shown.y_range(), Stroke::new(1.5, Color32::WHITE));
-                badge(&painter, Pos2::new(x - 14.0, shown.top() + 10.0), "A");
-                badge(&painter, Pos2::new(x + 14.0, shown.top() + 10.0), "B");
+                badge(&painter, Pos2::new(x - 4.0, shown.top() + 4.0), Align2::RIGHT_TOP, &names[0]);
+                badge(&painter, Pos2::new(x + 4.0, shown.top() + 4.0), Align2::LEFT_TOP, &names[1]);
             }
             Mode::Flip => {
                 draw(usize::from(self.view.flipped), shown, area);
-                let name = if self.view.flipped { "B" } else { "A" };
-                badge(&painter, shown.left_top() + Vec2::new(14.0, 10.0), name);
+                badge(
+                    &painter,
+                    right_top(shown.intersect(area)),
+                    Align2::RIGHT_TOP,
+                    &names[usize::from(self.view.flipped)],
+                );
             }
             Mode::Side => {
                 let (left, right) = area.split_left_right_at_fraction(0.5);
                 shown = fit(left);
                 draw(0, shown, left);
                 draw(1, fit(right), right);
-                badge(&painter, shown.left_top() + Vec2::new(14.0, 10.0), "A");
-                badge(&painter, fit(right).left_top() + Vec2::new(14.0, 10.0), "B");
+                badge(&painter, right_top(shown.intersect(left)), Align2::RIGHT_TOP, &names[0]);
+                badge(&painter, right_top(fit(right).intersect(right)), Align2::RIGHT_TOP, &names[1]);
             }
             Mode::Difference | Mode::Perceived => {
                 if self.comparison.as_ref().is_some_and(|(mode, _)| *mode == self.view.mode) {
@@ -152,6 +158,10 @@ impl Workbench {
         }
         if self.stale() {
             painter.rect_stroke(shown, 0.0, Stroke::new(2.0, Color32::from_rgb(220, 80, 60)), egui::StrokeKind::Inside);
+        }
+        if let Some(what) = self.pending(ui.ctx()) {
+            let foot = area.intersect(shown).center_bottom() - Vec2::new(0.0, 6.0);
+            badge(&painter, foot, Align2::CENTER_BOTTOM, &what);
         }
         let b = match self.view.mode {
             Mode::Side => fit(area.split_left_right_at_fraction(0.5).1),
@@ -215,8 +225,14 @@ impl Workbench {
     }
 }
 
-fn badge(painter: &egui::Painter, at: Pos2, text: &str) {
-    let rect = Rect::from_center_size(at, Vec2::splat(16.0));
+/// Where a picture's name is: its times are at the left.
+fn right_top(picture: Rect) -> Pos2 {
+    picture.right_top() + Vec2::new(-4.0, 4.0)
+}
+
+fn badge(painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str) {
+    let galley = painter.layout_no_wrap(text.to_string(), FontId::proportional(12.0), Color32::WHITE);
+    let rect = anchor.anchor_size(at, galley.size() + Vec2::new(8.0, 2.0));
     painter.rect_filled(rect, 3.0, Color32::from_black_alpha(160));
-    painter.text(at, egui::Align2::CENTER_CENTER, text, egui::FontId::proportional(12.0), Color32::WHITE);
+    painter.galley(rect.min + Vec2::new(4.0, 1.0), galley, Color32::WHITE);
 }

@@ -120,6 +120,9 @@ pub struct PassDecl {
     pub value: Option<(f64, f64, f64, f64)>,
     /// A copy.
     pub copy: Option<Loc<CopyDecl>>,
+    /// Textures that are read in place of those it writes while it is off, where both have the same shape: a filter's input.
+    #[serde(default)]
+    pub instead: Entries<Loc<String>>,
     /// A note to readers.
     pub comment: Option<String>,
 }

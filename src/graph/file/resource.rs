@@ -27,6 +27,9 @@ pub struct TextureDecl {
     /// Nothing is left in it from frame to frame; memory is shared.
     #[serde(default)]
     pub transient: bool,
+    /// What its texels are, for people.
+    #[serde(default)]
+    pub help: String,
 }
 
 impl TextureDecl {

@@ -46,6 +46,10 @@ impl Check<'_> {
                 None => self.bind(&bind.value),
             }
         }
+        for (written, read) in &pass.instead.0 {
+            self.texture_name(written);
+            self.texture_name(&read.value);
+        }
         self.attachments(pass, at);
         if let Some(target) = &pass.clear
             && self.graph.buffer(&target.value).is_none()

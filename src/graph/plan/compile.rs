@@ -3,7 +3,7 @@
 use super::data::{BufferPlan, Plan, Step, TexturePlan};
 use super::numbers::Numbers;
 use super::steps::Planner;
-use super::uses::Use;
+use super::uses::{Use, UseKind, merge};
 use super::{layout, live, needs, settle, sizes, transient};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::graph::definition::Res;
@@ -43,6 +43,7 @@ pub fn plan(
     let mut settles = BTreeMap::new();
     // What passes write that are left out.
     let mut missing: Vec<Res> = Vec::new();
+    let mut instead: Vec<(usize, usize)> = Vec::new();
     let mut planner = Planner { numbers, layouts, device, textures: &textures, buffers: &buffers };
     for (number, (pass, link)) in graph.passes.iter().zip(linked).enumerate() {
         if let Some(when) = pass.value.conditions().find(|when| !planner.numbers.holds(when)) {
@@ -53,6 +54,9 @@ pub fn plan(
         if set.params.off.contains(&pass.value.name.value) {
             let uses = planned.into_iter().flat_map(|s| s.uses);
             missing.extend(uses.filter(|u| u.write).map(|u| u.res));
+            let texture = |name: &str| graph.texture(name);
+            let pairs = pass.value.instead.0.iter();
+            instead.extend(pairs.filter_map(|(of, read)| Some((texture(&of.value)?, texture(&read.value.value)?))));
             dropped.push((number, "it is off".into()));
             continue;
         }
@@ -62,6 +66,9 @@ pub fn plan(
         }
     }
     let mut numbers = planner.numbers;
+    for (of, read) in instead {
+        read_instead(&textures, &mut steps, of, read);
+    }
     for res in &missing {
         match *res {
             Res::Texture(t, _) => textures[t].transient = false,
@@ -100,6 +107,29 @@ fn nobody_writes(set: &Evaluated<'_>, wanted: &[String], steps: &[Step], res: Re
         let off = set.params.off.join(", ");
         Diagnostic::error(Place::default(), format!("nothing writes '{name}' when these passes are off: {off}"))
     })
+}
+
+/// Has steps read one texture in place of another, if it can be bound where that one is.
+fn read_instead(textures: &[TexturePlan], steps: &mut [Step], of: usize, read: usize) {
+    let shape = |t: usize| (textures[t].extent, textures[t].layers, textures[t].mips, textures[t].format.name);
+    if shape(of) != shape(read) || textures[of].volume != textures[read].volume {
+        return;
+    }
+    let (of, by) = (Res::Texture(of, false), read);
+    for step in steps {
+        let plain = |u: &Use| !u.write && matches!(u.kind, UseKind::Sampled | UseKind::Storage);
+        // Who adds to it goes on with what there is.
+        if step.uses.iter().any(|u| u.res == of && !plain(u)) {
+            continue;
+        }
+        for binding in step.bindings.iter_mut().filter(|b| Res::Texture(b.texture, b.history) == of) {
+            binding.texture = by;
+        }
+        for u in step.uses.iter_mut().filter(|u| u.res == of) {
+            u.res = Res::Texture(by, false);
+        }
+        step.uses = merge(std::mem::take(&mut step.uses));
+    }
 }
 
 /// In what has a history nothing is left of two frames ago, in what is transient nothing at all, by their declarations: who

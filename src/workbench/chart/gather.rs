@@ -31,6 +31,8 @@ pub struct Job {
 pub struct Gather {
     /// How far it is; nothing before the first samples.
     pub state: Option<Gathered>,
+    /// How far it was when that was first told, and when.
+    first: Option<(u64, Instant)>,
     /// Whether it was asked to stop.
     pub cancelled: bool,
     cancel: Arc<AtomicBool>,
@@ -60,7 +62,7 @@ impl Gather {
             wake();
             messages
         });
-        Gather { state: None, cancelled: false, cancel, messages, thread: Some(thread) }
+        Gather { state: None, first: None, cancelled: false, cancel, messages, thread: Some(thread) }
     }
 
     /// Tells it to stop after the block of samples in work; what was gathered is kept.
@@ -69,11 +71,21 @@ impl Gather {
         self.cancel.store(true, Ordering::Relaxed);
     }
 
+    /// How long it takes yet, at the pace so far.
+    pub fn left(&self) -> Option<Duration> {
+        let (now, (first, since)) = (self.state?, self.first?);
+        let done = now.samples.checked_sub(first).filter(|done| *done > 0)?;
+        Some(since.elapsed().mul_f64(now.goal.saturating_sub(now.samples) as f64 / done as f64))
+    }
+
     /// Takes in the messages; the samples, or what went wrong, once it has ended.
     pub fn take(&mut self) -> Option<Result<u64, LabError>> {
         for message in self.messages.try_iter() {
             match message {
-                Message::Progress(now) => self.state = Some(now),
+                Message::Progress(now) => {
+                    self.first.get_or_insert((now.samples, Instant::now()));
+                    self.state = Some(now);
+                }
                 Message::Done(result) => return Some(result),
             }
         }

@@ -82,7 +82,7 @@ impl State {
 
     /// Whether the error worker has not answered yet.
     pub fn awaits(&self) -> bool {
-        self.sides.iter().any(|s| s.asked.as_ref().is_some_and(|a| !s.answers(a)))
+        self.sides.iter().any(Side::is_asked)
     }
 
     /// Where a side is; nothing as long as its error or time is not known.
@@ -95,6 +95,11 @@ impl State {
 }
 
 impl Side {
+    /// Whether the error worker has it in hand.
+    pub(super) fn is_asked(&self) -> bool {
+        self.asked.as_ref().is_some_and(|a| !self.answers(a))
+    }
+
     fn answers(&self, asked: &(u64, ErrorQuery)) -> bool {
         self.error.as_ref().is_some_and(|j| j.request >= asked.0 && j.query == asked.1)
     }

@@ -50,6 +50,7 @@ pub struct Chart {
 impl Workbench {
     /// The tab.
     pub(super) fn chart_tab(&mut self, ui: &mut Ui) {
+        ui.weak("How far pictures are from the path-traced truth, and what they take: a sweep's, and the one shown.");
         self.folder_row(ui);
         let data = self.chart.chosen.refresh(self.chart.folder.as_ref(), &self.chart.choice);
         self.choice_row(ui, data.as_deref());

@@ -4,6 +4,7 @@ use super::super::Workbench;
 use super::super::control::spin;
 use super::plot::{LIVE, Live};
 use egui::{Button, DragValue, ProgressBar, Ui};
+use std::time::Duration;
 
 impl Workbench {
     /// What is known of A and B, and what can be done about what is not.
@@ -16,7 +17,8 @@ impl Workbench {
                 None if self.desired.clock.playing => {
                     drop(ui.weak(format!("{name}: its error is measured when time stands still")))
                 }
-                None => drop(ui.weak(format!("{name}: its error is not measured yet"))),
+                None if state.is_asked() => drop(ui.weak(format!("{name}: its error is being measured"))),
+                None => drop(ui.weak(format!("{name}: its error is measured once the picture stands still"))),
                 Some((_, Err(why))) => drop(ui.weak(format!("{name}: {why}"))),
                 Some((query, Ok(measured))) => match (&measured.error, live) {
                     (Some(error), Some(live)) => {
@@ -38,7 +40,7 @@ impl Workbench {
                         missing = true;
                         let (w, h) = measured.subject.size;
                         ui.label(format!(
-                            "{name}: no reference of this picture ({}, {w}x{h}, {})",
+                            "{name}: no reference of this picture yet ({}, {w}x{h}, {})",
                             measured.subject.scene,
                             bounces(query.bounces)
                         ));
@@ -56,7 +58,8 @@ impl Workbench {
                 let (done, of) = gather.state.map_or((0, 0), |g| (g.samples, g.goal));
                 let part = if of == 0 { 0.0 } else { done as f32 / of as f32 };
                 let text = if of == 0 { "opening a device".into() } else { format!("{done} of {of} samples") };
-                ui.add(ProgressBar::new(part).desired_width(180.0).text(text));
+                let left = gather.left().map_or(String::new(), |left| format!(", {}", minutes(left)));
+                ui.add(ProgressBar::new(part).desired_width(230.0).text(format!("{text}{left}")));
                 let cancel = Button::new(if gather.cancelled { "stopping" } else { "cancel" }).small();
                 let about = "Stops after the block of samples in work; what was gathered is kept";
                 if ui.add_enabled(!gather.cancelled, cancel).on_hover_text(about).clicked() {
@@ -70,12 +73,15 @@ impl Workbench {
         }
         let mut start = false;
         ui.horizontal(|ui| {
-            let about = "Traces the reference of A's picture on a device of its own and keeps it. The picture keeps its \
-                         present size from then on: a reference fits no other";
-            let text = if missing { "gather" } else { "gather more" };
+            let about = "Traces paths through A's picture until every pixel has so many samples: the truth that \
+                         errors are measured against. It takes minutes on a GPU and much longer without one, goes on \
+                         beside the window, can be cancelled and is kept. The picture keeps its present size from then \
+                         on: a reference fits no other";
+            let text = if missing { "gather the reference" } else { "gather more" };
             start = ui.button(text).on_hover_text(about).clicked();
             let samples = DragValue::new(&mut self.chart.live.samples).range(32..=1 << 24).speed(32).suffix(" samples");
-            spin(ui, samples, "samples of the reference").on_hover_text("Of every pixel, in all; the error of the reference falls with their root");
+            spin(ui, samples, "samples of the reference")
+                .on_hover_text("Of every pixel, in all; the error of the reference falls with their root");
         });
         if start {
             self.start_gathering();
@@ -100,6 +106,14 @@ impl Workbench {
                 self.fixed_size = None;
             }
         });
+    }
+}
+
+/// A time, to be read at a glance.
+fn minutes(time: Duration) -> String {
+    match time.as_secs() {
+        s @ 0..90 => format!("{s} s left"),
+        s => format!("{} min left", s.div_ceil(60)),
     }
 }
 

@@ -187,6 +187,10 @@ fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
             }
         }
     }
+    let written = |name: &String| uses.iter().any(|u| u.writes.contains(name));
+    let mut empty: Vec<String> = plan.missing.iter().map(|r| session.graph.name_of(*r).to_string()).collect();
+    empty.retain(|name| !written(name));
+    empty.dedup();
     GraphInfo {
         graph: loaded.graph.clone(),
         linked: session.linked.clone(),
@@ -196,6 +200,8 @@ fn info(session: &Session, loaded: &Loaded) -> GraphInfo {
         memory: session.program.memory(&session.graph),
         scene_bytes: session.scene_bytes(),
         passes: uses.iter().map(|u| u.pass).collect(),
+        left_out: plan.dropped.clone(),
+        empty,
         uses,
         warnings: loaded.warnings.clone(),
     }

@@ -177,6 +177,10 @@ impl Workbench {
         }
         let target = &mut self.inspector.target;
         let index = info.graph.texture(&target.texture)?;
+        let help = &info.graph.textures[index].1.value.help;
+        if !help.is_empty() {
+            ui.weak(help);
+        }
         let plan = info.textures.get(index)?.clone();
         let last = |n: u32| n.saturating_sub(1);
         target.mip = target.mip.min(last(plan.mips));

@@ -10,6 +10,8 @@ pub const ROW: f32 = 15.0;
 /// Height of a column's title.
 pub const TITLE: f32 = 34.0;
 const GAP: Vec2 = Vec2::new(64.0, 12.0);
+/// Between two lines of columns.
+const BREAK: f32 = 28.0;
 
 /// A pass.
 pub struct Node {
@@ -59,8 +61,8 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Lays out the passes that run and those that are off.
-    pub fn new(info: &GraphInfo) -> Layout {
+    /// Lays out the passes that run and those that are off, to fill an area of that size.
+    pub fn new(info: &GraphInfo, area: Vec2) -> Layout {
         let mut layout = Layout::default();
         for (number, pass) in info.graph.passes.iter().enumerate() {
             let name = &pass.value.name.value;
@@ -87,7 +89,32 @@ impl Layout {
             layout.nodes.push(Node { pass: number, name: name.clone(), reads, writes, runs: used.is_some(), rect });
         }
         layout.edges = edges(&layout.nodes);
+        layout.wrap(area);
         layout
+    }
+
+    /// Breaks the line of columns into as many as let it be drawn largest.
+    fn wrap(&mut self, area: Vec2) {
+        let heights: Vec<f32> = self.columns.iter().map(|c| c.rect.height()).collect();
+        let pitch = WIDTH + GAP.x;
+        let size = |across: usize| {
+            let rows = heights.chunks(across).map(|row| row.iter().copied().fold(0.0, f32::max) + BREAK);
+            Vec2::new(across as f32 * pitch, rows.sum())
+        };
+        let zoom = |across: usize| (area / size(across)).min_elem();
+        let Some(across) = (1..=heights.len()).max_by(|a, b| zoom(*a).total_cmp(&zoom(*b))) else { return };
+        let mut top = 0.0;
+        for (row, columns) in self.columns.chunks_mut(across).enumerate() {
+            let left = (row * across) as f32 * pitch;
+            for column in columns.iter_mut() {
+                let by = Vec2::new(-left, top);
+                column.rect = column.rect.translate(by);
+                for node in self.nodes.iter_mut().filter(|n| column.passes.contains(&n.pass)) {
+                    node.rect = node.rect.translate(by);
+                }
+            }
+            top += columns.iter().map(|c| c.rect.height()).fold(0.0, f32::max) + BREAK;
+        }
     }
 
     /// All of it.
@@ -132,12 +159,32 @@ fn edges(nodes: &[Node]) -> Vec<Edge> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Layout, Node, edges};
-    use egui::Rect;
+    use super::{Column, GAP, Layout, Node, WIDTH, edges};
+    use egui::{Pos2, Rect, Vec2};
 
     fn node(name: &str, reads: &[&str], writes: &[&str]) -> Node {
         let texts = |list: &[&str]| list.iter().map(ToString::to_string).collect();
         Node { pass: 0, name: name.into(), reads: texts(reads), writes: texts(writes), runs: true, rect: Rect::NOTHING }
+    }
+
+    #[test]
+    fn columns_fill_the_area() {
+        let column = |i: usize| Column {
+            stage: String::new(),
+            rect: Rect::from_min_size(Pos2::new(i as f32 * (WIDTH + GAP.x), 0.0), Vec2::new(WIDTH, 200.0)),
+            passes: vec![i],
+        };
+        let at = |i: usize| Node { pass: i, rect: column(i).rect, ..node("", &[], &[]) };
+        for (area, lines) in [(Vec2::new(9000.0, 300.0), 1), (Vec2::new(900.0, 900.0), 2), (Vec2::new(300.0, 900.0), 8)]
+        {
+            let columns = (0..8).map(column).collect();
+            let mut layout = Layout { nodes: (0..8).map(at).collect(), edges: Vec::new(), columns };
+            layout.wrap(area);
+            let mut tops: Vec<f32> = layout.columns.iter().map(|c| c.rect.top()).collect();
+            assert!(layout.nodes.iter().zip(&layout.columns).all(|(n, c)| n.rect == c.rect));
+            tops.dedup();
+            assert_eq!(tops.len(), lines, "{area}");
+        }
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 mod layout;
 
+use super::control::named;
+use super::panel::folded;
 use super::report::GraphInfo;
 use super::{Tab, Workbench, edit};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, epaint::CubicBezierShape};
@@ -9,7 +11,10 @@ use layout::{Layout, ROW, TITLE, WIDTH};
 use std::sync::Arc;
 
 pub(super) const TAB: Tab = Tab {
-    middle: |workbench, ui, _| workbench.graph_view(ui),
+    middle: |workbench, ui, textures| match workbench.nodes.beside {
+        true => workbench.picture(ui, textures),
+        false => workbench.graph_view(ui),
+    },
     ..Tab::new("Graph", |workbench, ui, _| workbench.graph_tab(ui))
 };
 
@@ -19,9 +24,17 @@ pub struct Nodes {
     side: usize,
     /// Name of the pass that was clicked on.
     chosen: Option<String>,
-    /// The part of the layout that is seen; its beginning, large enough to be read, when absent.
+    /// Whether it is to be brought to the middle.
+    go: bool,
+    /// Text that names of passes, or of what they write, must hold.
+    search: String,
+    /// Whether the picture is in the middle, and not the graph.
+    beside: bool,
+    /// The part of the layout that is seen; all when absent.
     seen: Option<Seen>,
-    made: Option<(Arc<GraphInfo>, Layout)>,
+    /// Where it is drawn, points.
+    area: Vec2,
+    made: Option<(Arc<GraphInfo>, Vec2, Layout)>,
 }
 
 /// A part of the layout.
@@ -42,8 +55,14 @@ enum Asked {
 impl Nodes {
     /// The layout of a graph, made once.
     fn layout(&mut self, info: &Arc<GraphInfo>) -> &Layout {
-        self.made.take_if(|(of, _)| !Arc::ptr_eq(of, info));
-        &self.made.get_or_insert_with(|| (info.clone(), Layout::new(info))).1
+        let area = self.area;
+        self.made.take_if(|(of, size, _)| !Arc::ptr_eq(of, info) || *size != area);
+        &self.made.get_or_insert_with(|| (info.clone(), area, Layout::new(info, area))).2
+    }
+
+    /// Chooses a pass, and brings it to the middle.
+    pub fn find(&mut self, side: usize, name: &str) {
+        (self.side, self.chosen, self.go) = (side, Some(name.to_string()), true);
     }
 }
 
@@ -60,11 +79,19 @@ impl Workbench {
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
         ui.painter().rect_filled(area, 0.0, Color32::from_gray(12));
-        let mut seen = self.nodes.seen;
+        self.nodes.area = area.size();
+        let (mut seen, go) = (self.nodes.seen, std::mem::take(&mut self.nodes.go));
         let layout = self.nodes.layout(&info);
         let bounds = layout.bounds();
         let fit = (area.width() / bounds.width()).min(area.height() / bounds.height());
-        let mut now = seen.unwrap_or(Seen { zoom: stepped(fit).clamp(0.8, 1.0), corner: bounds.min });
+        let whole = Seen { zoom: fit.clamp(0.1, 1.0), corner: bounds.min };
+        let mut now = seen.unwrap_or(whole);
+        if let Some(node) = layout.nodes.iter().find(|n| go && chosen.as_ref() == Some(&n.name)) {
+            // Large enough to be read.
+            now.zoom = now.zoom.max(0.8);
+            now.corner = node.rect.center() - 0.5 * area.size() / now.zoom;
+            seen = Some(now);
+        }
         if response.dragged() {
             now.corner -= response.drag_delta() / now.zoom;
             seen = Some(now);
@@ -77,8 +104,7 @@ impl Workbench {
             seen = Some(now);
         }
         if response.double_clicked() {
-            now = Seen { zoom: fit.clamp(0.1, 1.0), corner: bounds.min };
-            seen = Some(now);
+            (now, seen) = (whole, None);
         }
         let mut canvas = Canvas { ui, area, seen: now, asked: None };
         canvas.draw(&info, layout, &times.passes, chosen.as_deref());
@@ -106,37 +132,108 @@ impl Workbench {
             self.nodes.side = 0;
         }
         let side = self.nodes.side;
-        let (Some(info), Some(mut desired)) = (self.sides[side].info.clone(), self.desired.sides[side].clone()) else {
-            return;
-        };
-        ui.weak(
-            "Columns are stages, boxes are passes with what they write. Click on a pass or on what it writes; drag and \
-                 turn the wheel to move, double click to see all.",
-        );
-        let mut off = edit::off(&desired, &info.params);
+        let (Some(info), Some(desired)) = (self.sides[side].info.clone(), &self.desired.sides[side]) else { return };
+        let mut off = edit::off(desired, &info.params);
         let before = off.clone();
+        self.graph_bar(ui);
         if !off.is_empty() {
-            ui.separator();
             ui.colored_label(ui.visuals().warn_fg_color, format!("off: {}", off.join(", ")));
+            for (name, readers) in zeros(&info) {
+                ui.colored_label(ui.visuals().warn_fg_color, format!("{name} is zeros now: {readers} read it"));
+            }
             if ui.button("all passes on").clicked() {
                 off.clear();
             }
         }
         ui.separator();
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match self.nodes.chosen.clone() {
-            Some(name) => self.chosen_pass(ui, side, &info, &name, &mut off),
-            None => drop(ui.weak("No pass is chosen")),
+        let mut needed = None;
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let name = self.nodes.chosen.clone().filter(|_| self.nodes.search.is_empty());
+            match name {
+                Some(name) => needed = self.chosen_pass(ui, side, &info, &name, &mut off),
+                None => self.pass_list(ui, side, &info),
+            }
         });
+        let Some(desired) = &mut self.desired.sides[side] else { return };
+        if let Some((name, option)) = needed
+            && let Some(param) = info.graph.params.param(&name)
+            && let Ok(value) = param.parse(&option)
+        {
+            edit::set(desired, param, &value);
+        }
         if off != before {
-            edit::set_off(&mut desired, &off);
-            self.desired.sides[side] = Some(desired);
+            edit::set_off(desired, &off);
         }
     }
 
-    fn chosen_pass(&mut self, ui: &mut Ui, side: usize, info: &Arc<GraphInfo>, name: &str, off: &mut Vec<String>) {
+    /// What of the graph is seen.
+    fn graph_bar(&mut self, ui: &mut Ui) {
+        let nodes = &mut self.nodes;
+        ui.horizontal(|ui| {
+            let width = ui.available_width() - 150.0;
+            let field = egui::TextEdit::singleline(&mut nodes.search).hint_text("find a pass, a texture");
+            let field = ui.add(field.desired_width(width.max(60.0)));
+            named(&field, egui::WidgetType::TextEdit, "find a pass, a texture");
+            if ui.add_enabled(nodes.chosen.is_some(), egui::Button::new("list").small()).clicked() {
+                nodes.chosen = None;
+            }
+            if ui.small_button("all").on_hover_text("The whole graph; or a double click").clicked() {
+                nodes.seen = None;
+            }
+            let about = "The picture in the middle, not the graph";
+            ui.toggle_value(&mut nodes.beside, egui::RichText::new("picture").small()).on_hover_text(about);
+        });
+        let about = "Columns are stages, boxes are passes and what they write, warmer the longer they take. Drag and wheel \
+             move; a click on a pass or a texture opens it.";
+        if !nodes.beside {
+            ui.weak(about);
+        }
+    }
+
+    /// All passes, or those that are searched for: what runs with its time, the others with why not.
+    fn pass_list(&mut self, ui: &mut Ui, side: usize, info: &Arc<GraphInfo>) {
+        let needle = folded(&self.nodes.search);
+        let times = self.times.medians(ui.ctx(), side);
+        let mut found = None;
+        for (number, pass) in info.graph.passes.iter().enumerate() {
+            let name = &pass.value.name.value;
+            let writes = info.uses.iter().find(|u| u.pass == number).map_or(&[][..], |u| &u.writes);
+            if !folded(name).contains(&needle) && !writes.iter().any(|w| folded(w).contains(&needle)) {
+                continue;
+            }
+            let ms = times.passes.iter().find(|t| t.0 == number).map(|t| t.1);
+            let why = || info.left_out.iter().find(|(pass, _)| *pass == number).map_or("not built yet", |l| &l.1);
+            let runs = info.passes.contains(&number);
+            let text = match ms.filter(|_| runs) {
+                Some(ms) => format!("{name}  {ms:.3} ms"),
+                None if runs => name.clone(),
+                None => format!("{name}  ({})", why()),
+            };
+            let text = if runs { egui::RichText::new(text) } else { egui::RichText::new(text).weak() };
+            let row = ui.add(egui::Button::new(text).small().frame(false));
+            row.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("find pass {name}")));
+            if row.clicked() {
+                found = Some(name.clone());
+            }
+        }
+        if let Some(name) = found {
+            self.nodes.search.clear();
+            self.nodes.find(side, &name);
+        }
+    }
+
+    /// Says of a pass what it is and does; the choice with which one that waits for a condition would run, once asked for.
+    fn chosen_pass(
+        &mut self,
+        ui: &mut Ui,
+        side: usize,
+        info: &Arc<GraphInfo>,
+        name: &str,
+        off: &mut Vec<String>,
+    ) -> Option<(String, String)> {
         let Some(number) = info.graph.passes.iter().position(|p| p.value.name.value == name) else {
             ui.weak(format!("The graph has no pass '{name}' any more"));
-            return;
+            return None;
         };
         let pass = &info.graph.passes[number].value;
         ui.strong(name);
@@ -144,21 +241,38 @@ impl Workbench {
         if let Some((_, ms)) = self.times.medians(ui.ctx(), side).passes.iter().find(|t| t.0 == number) {
             ui.label(format!("{ms:.3} ms (median)"));
         }
+        let mut needed = None;
+        if let Some((_, why)) = info.left_out.iter().find(|(pass, _)| *pass == number) {
+            ui.colored_label(ui.visuals().warn_fg_color, format!("does not run: {why}"));
+            let needs = self.effects.of(side).and_then(|f| f.resting.get(name)).map_or(&[][..], |r| &r.needs);
+            ui.horizontal_wrapped(|ui| {
+                for (param, option) in needs {
+                    if ui.small_button(format!("{param} = {option}")).on_hover_text("It runs with this").clicked() {
+                        needed = Some((param.clone(), option.clone()));
+                    }
+                }
+            });
+        }
         ui.horizontal(|ui| {
             let mut on = !off.iter().any(|o| o == name);
-            let about = "What only a pass that is off would write is zeros. It is saved with the experiment";
+            let about =
+                "Off, what it alone would write is what it says `instead`, or zeros. It is saved with the experiment";
             if ui.checkbox(&mut on, "on").on_hover_text(about).changed() {
                 match on {
                     true => off.retain(|o| o != name),
                     false => off.push(name.to_string()),
                 }
             }
+            let about = "A with this pass, B without it, over the picture";
+            if ui.button("with | without").on_hover_text(about).clicked() {
+                self.with_and_without(side, info, name);
+            }
             let about = "Only this pass and what it needs; its first texture is shown in Inspect";
             if ui.button("solo").on_hover_text(about).clicked() {
                 self.solo(side, info, name, off);
             }
         });
-        let Some(uses) = info.uses.iter().find(|u| u.pass == number) else { return };
+        let Some(uses) = info.uses.iter().find(|u| u.pass == number) else { return needed };
         for (title, list) in [("reads", &uses.reads), ("writes", &uses.writes)] {
             ui.add_space(4.0);
             ui.label(title);
@@ -171,6 +285,21 @@ impl Workbench {
                 }
             }
         }
+        needed
+    }
+
+    /// Puts what is shown beside itself without a pass.
+    fn with_and_without(&mut self, side: usize, info: &GraphInfo, name: &str) {
+        let Some(base) = self.desired.sides[side].clone() else { return };
+        let mut off = edit::off(&base, &info.params);
+        off.retain(|o| o != name);
+        let sides = [off.clone(), [off, vec![name.to_string()]].concat()].map(|off| {
+            let mut side = base.clone();
+            edit::set_off(&mut side, &off);
+            Some(side)
+        });
+        self.compare_sides(sides);
+        self.nodes.beside = true;
     }
 
     /// Leaves out every pass that a pass does not need, but those that make the picture, and shows what it writes.
@@ -188,6 +317,16 @@ impl Workbench {
             self.inspector.open(side, texture);
         }
     }
+}
+
+/// What passes that are off would have written, and who reads it.
+fn zeros(info: &GraphInfo) -> Vec<(&str, String)> {
+    let of = |name: &String| {
+        let reads = info.uses.iter().filter(|u| u.reads.contains(name));
+        let names: Vec<&str> = reads.map(|u| info.graph.pass_name(u.pass)).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    info.empty.iter().filter_map(|name| Some((name.as_str(), of(name)?))).collect()
 }
 
 /// A texture's format and size.
