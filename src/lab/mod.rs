@@ -598,6 +598,7 @@ impl Session {
 pub fn any_device() -> DeviceInfo {
     let all = Features {
         shares_memory: true,
+        portability: false,
         conservative_rasterization: true,
         geometry: true,
         tessellation: true,

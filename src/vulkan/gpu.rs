@@ -84,6 +84,8 @@ pub struct Features {
     pub int64_atomics: bool,
     /// Buffers can be shared with another device of the same physical one.
     pub shares_memory: bool,
+    /// It does less than Vulkan asks, and says what: MoltenVK. Such devices open with VK_KHR_portability_subset alone.
+    pub portability: bool,
 }
 
 /// What a device is.
@@ -202,10 +204,16 @@ fn create_instance(
         }
         let extensions =
             entry.enumerate_instance_extension_properties(None).map_err(VulkanError::at("list extensions"))?;
-        let debug_utils =
-            extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(ext::debug_utils::NAME)) || validation;
+        let debug_utils = has(&extensions, ext::debug_utils::NAME) || validation;
+        // Where all devices are such, the loader hides them unless it is asked.
+        let portability = cfg!(target_os = "macos") && has(&extensions, khr::portability_enumeration::NAME);
         let layer_names = if validation { vec![VALIDATION.as_ptr()] } else { vec![] };
         let mut extension_names = if debug_utils { vec![ext::debug_utils::NAME.as_ptr()] } else { vec![] };
+        let mut flags = vk::InstanceCreateFlags::empty();
+        if portability {
+            extension_names.push(khr::portability_enumeration::NAME.as_ptr());
+            flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
+        }
         if let Some(display) = display {
             let needed = ash_window::enumerate_required_extensions(display)
                 .map_err(VulkanError::at("present to this window"))?;
@@ -217,6 +225,7 @@ fn create_instance(
         let mut messenger = messenger_info(messages);
         let mut info = vk::InstanceCreateInfo::default()
             .application_info(&app)
+            .flags(flags)
             .enabled_layer_names(&layer_names)
             .enabled_extension_names(&extension_names);
         if validation {
@@ -225,6 +234,11 @@ fn create_instance(
         let instance = entry.create_instance(&info, None).map_err(VulkanError::at("create an instance"))?;
         Ok((instance, debug_utils))
     }
+}
+
+/// Whether a list of extensions has this one.
+pub(super) fn has(extensions: &[vk::ExtensionProperties], name: &std::ffi::CStr) -> bool {
+    extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(name))
 }
 
 fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInfo {
@@ -277,9 +291,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
             limits: core.limits,
             heap,
             features: Features {
-                conservative_rasterization: extensions
-                    .iter()
-                    .any(|e| e.extension_name_as_c_str() == Ok(ext::conservative_rasterization::NAME)),
+                conservative_rasterization: has(&extensions, ext::conservative_rasterization::NAME),
                 geometry: have.geometry_shader == vk::TRUE,
                 tessellation: have.tessellation_shader == vk::TRUE,
                 fragment_stores: have.fragment_stores_and_atomics == vk::TRUE,
@@ -296,6 +308,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 full_index: have.full_draw_index_uint32 == vk::TRUE,
                 int64_atomics: have.shader_int64 == vk::TRUE && have12.shader_buffer_int64_atomics == vk::TRUE,
                 shares_memory: super::share::is_supported(instance, physical, &extensions),
+                portability: has(&extensions, khr::portability_subset::NAME),
             },
             id: DeviceId { device: ids.device_uuid, driver: ids.driver_uuid },
             cache_key: format!(
@@ -560,6 +573,7 @@ fn create_device(
         .into_iter()
         .chain(present.then(|| khr::swapchain::NAME.as_ptr()))
         .chain(have.shares_memory.then(|| khr::external_memory_fd::NAME.as_ptr()))
+        .chain(have.portability.then(|| khr::portability_subset::NAME.as_ptr()))
         .collect();
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)

@@ -5,8 +5,10 @@
 //! (the host orders the two), and holds the buffer until its own frame has finished. So neither device ever waits on
 //! the other's queue, and a shader that hangs in one holds up nothing in the other.
 
+#[cfg(unix)]
 use super::memory::Memory;
 use super::{Buffer, Commands, Gpu, Result, VulkanError, vk};
+#[cfg(unix)]
 use ash::khr;
 use std::sync::Arc;
 
@@ -19,6 +21,7 @@ pub struct DeviceId {
 }
 
 /// A copy in, and a copy out.
+#[cfg(unix)]
 const USAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
     vk::BufferUsageFlags::TRANSFER_SRC.as_raw() | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
 );
@@ -34,7 +37,7 @@ pub(super) fn is_supported(
     extensions: &[vk::ExtensionProperties],
 ) -> bool {
     use vk::ExternalMemoryFeatureFlags as Can;
-    if !extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(khr::external_memory_fd::NAME)) {
+    if !super::gpu::has(extensions, khr::external_memory_fd::NAME) {
         return false;
     }
     let info = vk::PhysicalDeviceExternalBufferInfo::default().usage(USAGE).handle_type(HANDLE);
