@@ -442,8 +442,8 @@ fn a_capture_is_replayed_texel_by_texel() {
     std::fs::write(&shader, WAVE).unwrap();
 
     // So is another device, and a picture that is no more.
-    let manifest = picture("moved/capture.json");
-    let text = String::from_utf8(manifest).unwrap().replace(&device(), "Voodoo");
+    let bytes = picture("moved/capture.json");
+    let text = String::from_utf8(bytes).unwrap().replace(&manifest.device, "Voodoo");
     std::fs::write(elsewhere.path().join("moved/capture.json"), text).unwrap();
     std::fs::write(elsewhere.path().join("moved/picture.exr"), "gone").unwrap();
     let output = replay(&[]).output().unwrap();
