@@ -44,11 +44,13 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     let measured = driver.event(mark, "error");
     assert!(measured["error"].is_null() && measured["why"].is_null(), "there is no reference yet: {measured}");
 
-    // 256 samples take long on a software device: it is stopped, and what there is by then is kept.
+    // 256 samples take long on a software device: it is stopped, and the blocks of 32 that there are by then are kept.
     let mark = driver.now();
     driver.click("Button", "gather the reference");
     driver.event(mark, "gathering");
-    driver.texts_until("a reference in the making, or made", |t| t.iter().any(|t| t == "cancel" || t == "gather more"));
+    driver.wait_at_most(Duration::from_secs(300), mark, "a block", |e| {
+        e["event"] == "gathers" && e["samples"].as_u64().is_some_and(|n| n >= 32)
+    });
     if driver.texts().iter().any(|t| t == "cancel") {
         driver.click("Button", "cancel");
     }

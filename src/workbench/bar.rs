@@ -142,7 +142,9 @@ impl Workbench {
     pub(super) fn status_line(&mut self, ui: &mut Ui) {
         ui.horizontal(|ui| {
             if let Some((what, part)) = self.loading.clone() {
-                ui.add(egui::ProgressBar::new(part).desired_width(160.0).text(what));
+                let lasts = self.sent_at.elapsed().as_secs();
+                ui.add(egui::ProgressBar::new(part).desired_width(200.0).text(format!("{what}, {lasts} s")));
+                ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
                 if ui.small_button("cancel").clicked() {
                     self.engine.order(Order::CancelLoading);
                 }

@@ -34,12 +34,13 @@ pub struct Effects {
     /// A side that waits, for what, and since when that has not changed.
     waiting: Option<(usize, Of, Instant)>,
     working: bool,
+    old: [bool; 2],
     made: (Sender<Made>, Receiver<Made>),
 }
 
 impl Default for Effects {
     fn default() -> Effects {
-        Effects { known: [None, None], waiting: None, working: false, made: unbounded() }
+        Effects { known: [None, None], waiting: None, working: false, old: [false; 2], made: unbounded() }
     }
 }
 
@@ -50,6 +51,11 @@ impl Effects {
     /// What is known of a side, be it of the values before.
     pub fn of(&self, side: usize) -> Option<&Found> {
         self.known[side].as_ref().map(|k| &k.1)
+    }
+
+    /// Whether what is known of a side is of other values than the present ones.
+    pub fn is_old(&self, side: usize) -> bool {
+        self.old[side]
     }
 
     /// Whether something is about to come.
@@ -66,11 +72,14 @@ impl Workbench {
             self.effects.known[side] = Some((of, found));
         }
         let same = |a: &Of, b: &Of| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1;
-        let outdated = (0..2).find_map(|side| {
+        let unknown = [0, 1].map(|side| {
             let of = (self.sides[side].info.clone()?, self.desired.sides[side].as_ref()?.params.clone());
             let is_known = self.effects.known[side].as_ref().is_some_and(|k| same(&k.0, &of));
             (!is_known).then_some((side, of))
         });
+        // What is asked for and does not run yet counts as unknown too.
+        self.effects.old = [0, 1].map(|side| unknown[side].is_some() || self.sides[side].behind(self.sent_number));
+        let outdated = unknown.into_iter().flatten().next();
         let Some((side, of)) = outdated else {
             self.effects.waiting = None;
             return;

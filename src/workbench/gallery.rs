@@ -90,7 +90,13 @@ impl Workbench {
                 (self.gallery.taken, self.gallery.saved) = (None, None);
             }
             let again = self.gallery.taken.is_some();
-            if ui.button(if again { "replace it" } else { "save" }).on_hover_text("Ctrl S").clicked() {
+            let text = match (again, self.desired.sides[1].is_some()) {
+                (true, _) => "replace it",
+                (false, false) => "save",
+                // The side whose parameters are shown.
+                (false, true) => ["save A", "save B"][self.panel_side.min(1)],
+            };
+            if ui.button(text).on_hover_text("Ctrl S").clicked() {
                 self.save(again);
             }
         });

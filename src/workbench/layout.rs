@@ -33,7 +33,8 @@ impl Workbench {
         };
         let other = self.desired.sides[1 - number].clone();
         if let Some(side) = &mut self.desired.sides[number] {
-            self.panel.show(ui, &info.graph, side, other.as_ref(), self.effects.of(number));
+            let found = (self.effects.of(number), self.effects.is_old(number));
+            self.panel.show(ui, &info.graph, side, other.as_ref(), found);
         }
     }
 

@@ -108,6 +108,13 @@ struct Side {
     picture: Option<PictureReport>,
 }
 
+impl Side {
+    /// Whether its picture is of an earlier request.
+    fn behind(&self, sent: u64) -> bool {
+        self.picture.as_ref().is_some_and(|p| p.preview || p.request < sent)
+    }
+}
+
 /// A part of the interface; it may show the hosts' pictures.
 type Show = fn(&mut Workbench, &mut Ui, &[TextureId]);
 

@@ -24,6 +24,8 @@ pub struct Panel {
 struct Shown<'a> {
     graph: &'a Graph,
     found: Option<&'a Found>,
+    /// Whether that is of other values.
+    old: bool,
     /// The side that it is compared with.
     other: Option<&'a SideRequest>,
 }
@@ -46,7 +48,7 @@ impl Panel {
         graph: &Graph,
         side: &mut SideRequest,
         other: Option<&SideRequest>,
-        found: Option<&Found>,
+        (found, old): (Option<&Found>, bool),
     ) {
         self.top(ui, graph, side);
         let needle = folded(&self.search);
@@ -54,7 +56,7 @@ impl Panel {
             matches(graph, p, &needle) && (!self.only_changed || is_changed(graph, side, p))
         };
         let searching = !needle.is_empty() || self.only_changed;
-        let shown = Shown { graph, found, other };
+        let shown = Shown { graph, found, old, other };
         // Wide rows scroll: they must not make the panel wider.
         egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
             let mut any = false;
@@ -142,6 +144,10 @@ impl Shown<'_> {
         let Some(param) = self.graph.params.param(name) else { return };
         let Ok(value) = param.parse(option) else { return };
         ui.horizontal(|ui| {
+            if self.old {
+                // A second click would go on from a choice that is on its way.
+                return drop(ui.weak("dimmed: without effect in the picture shown"));
+            }
             ui.weak("dimmed: without effect unless");
             if ui.small_button(format!("{name} = {option}")).on_hover_text(&param.help).clicked() {
                 edit::set(side, param, &value);

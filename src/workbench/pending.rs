@@ -31,6 +31,11 @@ impl Workbench {
                 _ => Some((format!("working on {name}"), since)),
             }
         };
-        of(0).or_else(|| of(1)).or_else(|| self.comparing.then(|| ("comparing A and B".into(), self.sent_at)))
+        let comparing = || self.comparing.then(|| ("comparing A and B".into(), self.sent_at));
+        // Light that gathers over frames goes on after the first picture.
+        let finished = self.sides.iter().filter_map(|s| s.picture.as_ref()).map(|p| p.finished).max();
+        let settling =
+            || Some(("the next frame of light that settles".into(), finished.filter(|_| self.engine.works())?));
+        of(0).or_else(|| of(1)).or_else(comparing).or_else(settling)
     }
 }

@@ -135,8 +135,8 @@ impl Workbench {
                 draw(usize::from(self.view.flipped), shown, area);
                 badge(
                     &painter,
-                    right_top(shown.intersect(area)),
-                    Align2::RIGHT_TOP,
+                    corner(shown.intersect(area)),
+                    Align2::RIGHT_BOTTOM,
                     &names[usize::from(self.view.flipped)],
                 );
             }
@@ -145,8 +145,8 @@ impl Workbench {
                 shown = fit(left);
                 draw(0, shown, left);
                 draw(1, fit(right), right);
-                badge(&painter, right_top(shown.intersect(left)), Align2::RIGHT_TOP, &names[0]);
-                badge(&painter, right_top(fit(right).intersect(right)), Align2::RIGHT_TOP, &names[1]);
+                badge(&painter, corner(shown.intersect(left)), Align2::RIGHT_BOTTOM, &names[0]);
+                badge(&painter, corner(fit(right).intersect(right)), Align2::RIGHT_BOTTOM, &names[1]);
             }
             Mode::Difference | Mode::Perceived => {
                 if self.comparison.as_ref().is_some_and(|(mode, _)| *mode == self.view.mode) {
@@ -225,9 +225,9 @@ impl Workbench {
     }
 }
 
-/// Where a picture's name is: its times are at the left.
-fn right_top(picture: Rect) -> Pos2 {
-    picture.right_top() + Vec2::new(-4.0, 4.0)
+/// Where a picture's name is: its times are at the top.
+fn corner(picture: Rect) -> Pos2 {
+    picture.right_bottom() - Vec2::splat(4.0)
 }
 
 fn badge(painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str) {

@@ -38,11 +38,11 @@ const KEEP_EVERY: Duration = Duration::from_secs(30);
 const MOST_SAMPLES: u64 = 1 << 20;
 
 /// Gathers the reference of an experiment, from where an earlier run stopped. `scene` is lit as the experiment says.
-/// The same samples give the same bits on the same device, in one run or in many. `progress` may stop it; what was
-/// gathered is kept then too.
+/// The same samples give the same bits on the same device, in one run or in many. `progress` may stop it; whole blocks of
+/// samples are kept then too.
 ///
 /// # Errors
-/// Everything that can be wrong with an experiment; a folder that cannot be written to; samples that are not finite.
+/// Everything that can be wrong with an experiment; stopped in the first block; a folder that cannot be written to; samples that are not finite.
 pub fn gather(
     lab: &Lab,
     experiment: &Experiment,
@@ -120,7 +120,7 @@ impl Tracer {
         traced.set("samples", &per_frame.to_string());
         let wanted = loaded.graph.parts.iter().map(|p| store::sum_texture(&p.name)).collect();
         let mut session = lab.build(&traced, &loaded, scene.clone(), wanted, self.shared.as_ref())?;
-        let mut kept = Instant::now();
+        let (mut kept, mut all_kept) = (Instant::now(), true);
         while now.samples < now.goal {
             frame(lab, &mut session, &mut sums, per_frame)?;
             now = state(&sums, goal)?;
@@ -129,9 +129,18 @@ impl Tracer {
             let whole = sums.samples.is_multiple_of(store::BLOCK);
             if whole && (stop || now.samples >= now.goal || kept.elapsed() > KEEP_EVERY) {
                 store::write(&folder, &sums, &traced, &lab.gpu.info)?;
-                kept = Instant::now();
+                (kept, all_kept) = (Instant::now(), true);
+            } else if whole {
+                all_kept = false;
             }
             if stop && whole {
+                break;
+            }
+            // Where a block takes long, every one before this was kept.
+            if stop && all_kept {
+                let before = store::read(&folder, traced.size, &loaded.graph)?;
+                let block = store::BLOCK;
+                sums = before.ok_or_else(|| LabError::Request(format!("stopped before the first {block} samples")))?;
                 break;
             }
         }

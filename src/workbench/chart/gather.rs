@@ -65,7 +65,7 @@ impl Gather {
         Gather { state: None, first: None, cancelled: false, cancel, messages, thread: Some(thread) }
     }
 
-    /// Tells it to stop after the block of samples in work; what was gathered is kept.
+    /// Tells it to stop; whole blocks of samples are kept.
     pub fn cancel(&mut self) {
         self.cancelled = true;
         self.cancel.store(true, Ordering::Relaxed);

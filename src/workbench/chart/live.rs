@@ -237,7 +237,15 @@ impl Workbench {
 
     /// Takes in how far the gathering is.
     pub(super) fn poll_gather(&mut self) {
-        let Some(result) = self.chart.live.gather.as_mut().and_then(Gather::take) else { return };
+        let Some(gather) = self.chart.live.gather.as_mut() else { return };
+        let samples = |gather: &Gather| gather.state.map(|s| s.samples);
+        let before = samples(gather);
+        let result = gather.take();
+        let now = samples(gather);
+        if now != before {
+            self.event("gathers", json!({ "samples": now }));
+        }
+        let Some(result) = result else { return };
         let gather = self.chart.live.gather.take();
         self.chart.live.messages.extend(gather.into_iter().flat_map(|g| g.stop(Duration::from_secs(5))));
         self.chart.live.gathered += 1;

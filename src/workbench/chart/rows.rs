@@ -61,7 +61,7 @@ impl Workbench {
                 let left = gather.left().map_or(String::new(), |left| format!(", {}", minutes(left)));
                 ui.add(ProgressBar::new(part).desired_width(230.0).text(format!("{text}{left}")));
                 let cancel = Button::new(if gather.cancelled { "stopping" } else { "cancel" }).small();
-                let about = "Stops after the block of samples in work; what was gathered is kept";
+                let about = "Stops; whole blocks of 32 samples are kept";
                 if ui.add_enabled(!gather.cancelled, cancel).on_hover_text(about).clicked() {
                     gather.cancel();
                 }

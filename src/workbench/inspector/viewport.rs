@@ -68,7 +68,8 @@ impl Workbench {
         }
         let texel = shown.width() / size.x;
         self.under_pointer(&painter, pointer, shown, texel);
-        let target = &self.inspector.target;
+        // Of what is shown: what was asked for last may be on its way.
+        let target = &done.decoded.target;
         let name = format!(
             "{} {}  mip {}  × {:.3}",
             ["A", "B"][target.side.min(1)],

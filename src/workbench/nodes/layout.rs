@@ -175,7 +175,7 @@ mod tests {
             passes: vec![i],
         };
         let at = |i: usize| Node { pass: i, rect: column(i).rect, ..node("", &[], &[]) };
-        for (area, lines) in [(Vec2::new(9000.0, 300.0), 1), (Vec2::new(900.0, 900.0), 2), (Vec2::new(300.0, 900.0), 8)]
+        for (area, lines) in [(Vec2::new(9000.0, 300.0), 1), (Vec2::new(900.0, 900.0), 3), (Vec2::new(300.0, 900.0), 4)]
         {
             let columns = (0..8).map(column).collect();
             let mut layout = Layout { nodes: (0..8).map(at).collect(), edges: Vec::new(), columns };
