@@ -30,15 +30,12 @@ vec4 seenAt(ivec2 at) {
 }
 
 // How much of another pixel's light a surface takes: 1 where both see one surface.
-float likeness(ivec2 at, vec4 other, Likeness like) {
+float likeness(ivec2 at, Likeness like) {
+    vec4 other = seenAt(at);
     if (other.w <= 0.0) return 0.0;
     vec2 ray = like.origin + vec2(at) * like.step;
     float off = abs(other.w * inversesqrt(dot(ray, ray) + 1.0) * (dot(ray, like.plane.xy) - like.plane.z) - like.away);
     return clamp(5.0 * abs(dot(other.xyz, like.normal)) - 3.8, 0.0, 1.0) * clamp(2.0 - like.scale * off, 0.0, 1.0);
-}
-
-float likeness(ivec2 at, Likeness like) {
-    return likeness(at, seenAt(at), like);
 }
 
 // How far a surface's reflection may blur: a mirror's picture must not.

@@ -5,7 +5,6 @@
 use super::evaluated::Evaluated;
 use super::expr::{Env, Ex, Var};
 use super::externals::EXTERNALS;
-use super::file::PassDecl;
 use super::link::{Linked, Target, generated, has_word};
 use super::param::{Kind, Param, Params, Value};
 use crate::shader::{ShaderCompiler, module_include};
@@ -49,15 +48,18 @@ pub fn idle(running: &Running<'_>, compiler: &ShaderCompiler) -> BTreeMap<String
     silent.into_iter().map(|p| (p.name.clone(), trial.reason(p, &texts))).collect()
 }
 
-/// Passes that a condition leaves out, by name, with the condition and what it waits for.
-pub fn resting(set: &Evaluated<'_>) -> BTreeMap<String, Reason> {
+/// Passes that a condition leaves out, by name, with the choices with which it would hold.
+pub fn resting(set: &Evaluated<'_>) -> BTreeMap<String, Vec<(String, String)>> {
     let (read, written) = (BTreeSet::new(), BTreeSet::new());
     let running = Running { set, linked: &[], passes: &[], written };
     let trial = Trial::new(&running, &read);
-    let failing = |pass: &PassDecl| pass.conditions().find(|when| when.value.eval(&trial.env) == Ok(0.0)).cloned();
-    let passes = set.graph.passes.iter().filter_map(|pass| Some((&pass.value, failing(&pass.value)?)));
-    let reason = |when: &Ex| Reason { text: when.value.text.clone(), needs: trial.needs_of(when) };
-    passes.map(|(pass, when)| (pass.name.value.clone(), reason(&when))).collect()
+    let passes = set.graph.passes.iter().map(|pass| &pass.value);
+    passes
+        .filter_map(|pass| {
+            let failing = pass.conditions().find(|when| when.value.eval(&trial.env) == Ok(0.0))?;
+            Some((pass.name.value.clone(), trial.needs_of(failing)))
+        })
+        .collect()
 }
 
 /// What shaders take in a parameter's place, where that is a number and another than its value.

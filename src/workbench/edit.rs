@@ -17,12 +17,11 @@ pub fn value(side: &SideRequest, param: &Param) -> Value {
 
 /// The passes that a side leaves out.
 pub fn off(side: &SideRequest, params: &Params) -> Vec<String> {
+    let Some((_, text)) = side.params.iter().rev().find(|(name, _)| name == OFF) else { return Vec::new() };
     let mut params = params.clone();
     params.off.clear();
-    if let Some((_, text)) = side.params.iter().rev().find(|(name, _)| name == OFF) {
-        // A pass that the graph no longer has is said by the build.
-        let _ = params.set(OFF, text);
-    }
+    // A pass that the graph no longer has is said by the build.
+    let _ = params.set(OFF, text);
     params.off
 }
 

@@ -18,8 +18,8 @@ pub struct Found {
     pub idle: BTreeMap<String, Reason>,
     /// What shaders take in place of a value.
     pub effective: BTreeMap<String, f64>,
-    /// Passes that a condition leaves out.
-    pub resting: BTreeMap<String, Reason>,
+    /// Passes that a condition leaves out, and the choices with which it would hold.
+    pub resting: BTreeMap<String, Vec<(String, String)>>,
 }
 
 /// What they were found for: the graph as it runs, and the parameters that are set.

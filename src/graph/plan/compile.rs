@@ -66,7 +66,8 @@ pub fn plan(
         }
     }
     let mut numbers = planner.numbers;
-    for (of, read) in instead {
+    // The last first: of two filters that are off, who reads the second reads what the first would have read.
+    for (of, read) in instead.into_iter().rev() {
         read_instead(&textures, &mut steps, of, read);
     }
     for res in &missing {

@@ -244,7 +244,7 @@ impl Workbench {
         let mut needed = None;
         if let Some((_, why)) = info.left_out.iter().find(|(pass, _)| *pass == number) {
             ui.colored_label(ui.visuals().warn_fg_color, format!("does not run: {why}"));
-            let needs = self.effects.of(side).and_then(|f| f.resting.get(name)).map_or(&[][..], |r| &r.needs);
+            let needs = self.effects.of(side).and_then(|f| f.resting.get(name)).map_or(&[][..], Vec::as_slice);
             ui.horizontal_wrapped(|ui| {
                 for (param, option) in needs {
                     if ui.small_button(format!("{param} = {option}")).on_hover_text("It runs with this").clicked() {
