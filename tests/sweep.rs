@@ -2,14 +2,13 @@
 
 mod common;
 
-use common::{conelab, fails, home, succeeds, table};
+use common::{conelab, fails, home, succeeds, table, table_with_times};
 use conelab::campaign::sweep::Sweep;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// A folder with the program's graphs and shaders, so that references and captures are the test's own.
 /// A sweep of cornell that a software device measures in tens of milliseconds a point.
 fn sweep_file(home: &Path, axes: &str) -> PathBuf {
     let path = home.join("small.ron");
@@ -81,6 +80,60 @@ fn a_sweep_that_is_killed_again_and_again_ends_as_one_that_is_not() {
     assert_eq!(found, expected);
     assert_eq!(files(&points).len(), 2 * count, "every point is there once");
     assert!(files(&killed.join("pictures")) == files(&whole.join("pictures")), "pictures differ");
+}
+
+#[test]
+fn a_search_that_is_killed_goes_on_and_ends_at_the_cheapest_of_what_it_tried() {
+    let home = home();
+    let bound = 0.2;
+    let fit = |limit: &str| {
+        let mut command = conelab(home.path());
+        let fixed = "fit configs/default.ron --scene cornell --size 64x48 --spp 16 --frames 3 --warmup 1 -o found.ron";
+        let set = "--set shadow_dim=256 --set bounces=one --set voxelizer=raster --set conservative=msaa";
+        // No device has 3 samples.
+        let vary = "--vary voxel_dim=16,24,32,48 --vary ray_pixels=all,quarter --vary voxel_samples=4,3";
+        command.args(format!("{fixed} {set} {vary} {limit}").split(' ')).current_dir(home.path());
+        command
+    };
+    let limit = format!("--max-error {bound}");
+    let mut child = fit(&limit).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let folder = home.path().join("found");
+    let deadline = Instant::now() + Duration::from_secs(120);
+    while files(&folder.join("points")).len() < 3 {
+        assert!(child.try_wait().unwrap().is_none() && Instant::now() < deadline, "no three points to keep");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let kept = files(&folder.join("points"));
+
+    let said = succeeds(&mut fit(&limit));
+    let now = files(&folder.join("points"));
+    assert!(kept.iter().all(|(name, bytes)| now.get(name) == Some(bytes)), "what was tried was tried again");
+    let rows = table_with_times(&folder.join("sweep.csv"));
+    assert!(said.contains(&format!("{} of 16 settings tried", rows.len())), "{said}");
+    let failed = rows.iter().filter(|r| r["outcome"] == "failed");
+    assert!(failed.clone().count() > 0 && failed.clone().all(|r| r["voxel_samples"] == "3"), "{said}");
+    assert!(said.contains("cannot be run: ") && said.contains("voxel_samples=3"), "{said}");
+
+    // Of two goals each has the best of what it tried, and the second measures nothing again.
+    let number = |row: &BTreeMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
+    let best = |rows: &[BTreeMap<String, String>], bounded: &str, limit: f64, small: &str| {
+        let within = rows.iter().filter(|r| r["outcome"] == "done" && number(r, bounded) <= limit);
+        within.map(|r| number(r, small)).min_by(f64::total_cmp).unwrap()
+    };
+    let fastest = best(&rows, "total relmse", bound, "total median ms");
+    assert!(said.contains(&format!("{fastest:.3} ms, relMSE")), "{fastest} in {said}");
+    let text = std::fs::read_to_string(home.path().join("found.ron")).unwrap();
+    assert!(text.starts_with(&format!("// {fastest:.3} ms, relMSE")), "{text}");
+    let ms = 1.5 * fastest;
+    let said = succeeds(&mut fit(&format!("--max-ms {ms}")));
+    let least = best(&table_with_times(&folder.join("sweep.csv")), "total median ms", ms, "total relmse");
+    assert!(said.contains(&format!("relMSE {least:.4e} of the total")), "{least:.4e} in {said}");
+    let last = files(&folder.join("points"));
+    assert!(now.iter().all(|(name, bytes)| last.get(name) == Some(bytes)), "what was tried was tried again");
+    let page = succeeds(conelab(home.path()).arg("report").arg(&folder));
+    assert!(page.contains("points are finished"), "{page}");
 }
 
 #[test]

@@ -29,6 +29,8 @@ pub enum Progress {
     Runs(String),
     /// A reference is being gathered.
     Gathers(Gathered),
+    /// What a search has tried: one line.
+    Tried(String),
     /// A point is finished: what it is, and what there is to say of it.
     Finished(String, Vec<String>),
     /// All points are finished.
@@ -164,6 +166,23 @@ impl<'a> Runner<'a> {
         }
         self.tell(Progress::Ends);
         Ok(records)
+    }
+
+    /// The record of one job: the one that is `kept`, or what `measure` measures now; see [`Runner::run`].
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
+    pub fn one<J: Job>(
+        &mut self,
+        folder: &Folder,
+        job: &J,
+        kept: &mut Kept<J>,
+        measure: &mut dyn FnMut(&mut Runner, &J) -> Taken<J>,
+    ) -> Result<RecordOf<J>, LabError> {
+        match kept(self, job)? {
+            Some(record) => Ok(record),
+            None => self.measured(folder, job, measure),
+        }
     }
 
     fn measured<J: Job>(

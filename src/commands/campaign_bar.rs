@@ -27,6 +27,7 @@ pub fn bar(points: &str) -> impl FnMut(Progress) {
         Progress::Gathers(now) => {
             bar.set_message(format!("{doing}, reference {} of {} samples", now.samples, now.goal));
         }
+        Progress::Tried(text) => bar.suspend(|| say!("{text}")),
         Progress::Finished(what, said) => {
             bar.suspend(|| said.iter().for_each(|text| eprintln!("{what}: {}", first_line(text))));
             bar.inc(1);

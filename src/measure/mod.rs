@@ -12,9 +12,9 @@ pub use warm_up::WarmUp;
 
 use crate::experiment::Experiment;
 use crate::graph::run::FrameTimes;
-use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session};
+use crate::lab::{Lab, LabError, Loaded, ReusableParts, Session, parts_of};
 use crate::measure::reference::Reference;
-use crate::metrics::{Compared, Linear, Noise, Scores};
+use crate::metrics::{Compared, Linear, Metric, Noise, Scores};
 use crate::results::stats::{self, Stats};
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -28,6 +28,21 @@ pub struct Frames {
     pub warmup: usize,
     /// Frames measured, at least 1.
     pub count: usize,
+}
+
+/// Which scores a point has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scored<'a> {
+    /// Those of every part of the light by every metric.
+    All,
+    /// That of one part by one metric: FLIP of all parts takes longer than many frames.
+    One(&'a str, &'static Metric),
+}
+
+impl Scored<'_> {
+    fn has(self, part: &str) -> bool {
+        matches!(self, Scored::All) || matches!(self, Scored::One(one, _) if one == part)
+    }
 }
 
 /// Costs and scores of one experiment.
@@ -68,8 +83,9 @@ pub struct Measured {
 
 /// Measures an experiment on its scene (with the experiment's light, see [`Experiment::adapted`]). The frames that are
 /// timed compute what the picture needs and no more; the parts that are scored come from frames of their own, because
-/// writing them costs time. Every pass runs in every frame.
-/// All parts are scored against the first reference, and the total against the others: (bounces, reference).
+/// writing them costs time, unless it is the linear picture alone, which is made for the display anyway. Every pass runs in
+/// every frame.
+/// The parts are scored against the first reference, and the total against the others too: (bounces, reference).
 ///
 /// # Errors
 /// Everything that can be wrong with the experiment; the device was lost; a reference of another size.
@@ -80,16 +96,28 @@ pub fn measure(
     scene: &Arc<Scene>,
     frames: Frames,
     references: &[(u32, Arc<Reference>)],
+    scored: Scored,
 ) -> Result<Measured, LabError> {
     let loaded = warm.graph(&lab.home, &experiment.graph)?.clone();
+    let wanted: Vec<String> =
+        parts_of(&loaded.graph).into_iter().filter(|p| scored.has(&p.name)).map(|p| p.texture).collect();
+    let together = !references.is_empty() && wanted.iter().all(|texture| loaded.graph.hdr.as_ref() == Some(texture));
+    let extra = if together { &wanted[..] } else { &[] };
     let Timed { mut session, times, warmup } =
-        timed(lab, &loaded, experiment, scene, frames, &[], warm.timed.as_ref())?;
+        timed(lab, &loaded, experiment, scene, frames, extra, warm.timed.as_ref())?;
     let warnings = session.failed_checks()?;
     let stats = stats::collect(&lab.gpu.info, &experiment.name, &session, &times, warmup, warnings);
     let picture = loaded.graph.output.as_ref().map(|name| session.texels(name, 0, 0)).transpose()?;
     let picture = picture.map(|texels| pictures::thumbnail(&texels)).transpose()?;
     warm.timed = Some(session.share());
-    drop(session);
+    let parts = match references {
+        [] => BTreeMap::new(),
+        _ if together => session.parts()?,
+        _ => {
+            drop(session);
+            parts_alone(lab, warm, experiment, &loaded, scene, frames, wanted)?
+        }
+    };
     let mut point = Point {
         stats,
         scores: BTreeMap::new(),
@@ -98,30 +126,31 @@ pub fn measure(
         references: BTreeMap::new(),
     };
     let (mut error_map, mut shown) = (None, None);
-    if !references.is_empty() {
-        let parts = parts_of(lab, warm, experiment, &loaded, scene, frames)?;
-        for (number, (bounces, reference)) in references.iter().enumerate() {
-            for (part, light) in &parts {
-                let Some(expected) = reference.parts.get(part).filter(|_| number == 0 || part == "total") else {
-                    continue;
-                };
-                let wrong = |why: &str| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
-                let compared = Compared::new(light, &expected.mean).map_err(|e| wrong(&e.0))?;
-                let scores = compared.scores(None).ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
-                let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
-                point.scores.insert(name.clone(), scores);
-                // Of black references there is none, and JSON has no number for that.
-                if expected.noise.structure.is_finite() {
-                    point.structure_noise.insert(name.clone(), expected.noise.structure);
-                }
-                point.noise.insert(name, expected.noise.relmse);
-                if number == 0 && part == "total" {
-                    error_map = Some(pictures::error_map(light, &expected.mean)?);
-                    shown = Some(pictures::displayed(&expected.mean)?);
-                }
+    for (number, (bounces, reference)) in references.iter().enumerate() {
+        for (part, light) in &parts {
+            let Some(expected) = reference.parts.get(part).filter(|_| number == 0 || part == "total") else {
+                continue;
+            };
+            let wrong = |why: &str| LabError::Request(format!("the part '{part}' cannot be compared: {why}"));
+            let compared = Compared::new(light, &expected.mean).map_err(|e| wrong(&e.0))?;
+            let scores = match scored {
+                Scored::All => compared.scores(None),
+                Scored::One(_, metric) => compared.scores_by(metric),
+            };
+            let scores = scores.ok_or_else(|| wrong("no pixel is a number in both pictures"))?;
+            let name = if number == 0 { part.clone() } else { format!("{part}, {bounces} bounces") };
+            point.scores.insert(name.clone(), scores);
+            // Of black references there is none, and JSON has no number for that.
+            if expected.noise.structure.is_finite() {
+                point.structure_noise.insert(name.clone(), expected.noise.structure);
             }
-            point.references.insert(*bounces, reference.samples);
+            point.noise.insert(name, expected.noise.relmse);
+            if number == 0 && part == "total" {
+                error_map = Some(pictures::error_map(light, &expected.mean)?);
+                shown = Some(pictures::displayed(&expected.mean)?);
+            }
         }
+        point.references.insert(*bounces, reference.samples);
     }
     Ok(Measured { point, picture, error_map, reference: shown })
 }
@@ -166,16 +195,16 @@ pub fn timed(
     Ok(Timed { session, times, warmup })
 }
 
-/// The parts of an experiment's light, by the graph's names for them.
-fn parts_of(
+/// Parts of an experiment's light, by the graph's names for them, from frames that make nothing else.
+fn parts_alone(
     lab: &Lab,
     warm: &mut Warm,
     experiment: &Experiment,
     loaded: &Loaded,
     scene: &Arc<Scene>,
     frames: Frames,
+    wanted: Vec<String>,
 ) -> Result<BTreeMap<String, Linear>, LabError> {
-    let wanted = loaded.graph.parts.iter().map(|p| p.texture.clone()).collect();
     // The timed session's scene is on the device already: another upload of it would cost memory.
     let reuse = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;

@@ -141,7 +141,12 @@ impl<'a> Compared<'a> {
     /// The scores over the pixels of a mask, or over all of them; nothing where none of them is a number in both.
     /// What is dark does not depend on the mask.
     pub fn scores(&self, mask: Option<&[bool]>) -> Option<Scores> {
-        Scores::new(self, mask)
+        Scores::new(self, mask, &|_| true)
+    }
+
+    /// The scores over all pixels by one metric alone, without the time that others take.
+    pub fn scores_by(&self, metric: &Metric) -> Option<Scores> {
+        Scores::new(self, None, &|m| m == metric)
     }
 
     /// One metric over all pixels, without the time that others take.

@@ -173,13 +173,14 @@ pub struct Scores {
 }
 
 impl Scores {
-    /// Nothing without a finite pixel.
-    pub(super) fn new(compared: &Compared, mask: Mask) -> Option<Scores> {
+    /// By these metrics; by others it is no number. Nothing without a finite pixel.
+    pub(super) fn new(compared: &Compared, mask: Mask, wanted: &dyn Fn(&Metric) -> bool) -> Option<Scores> {
         let [pixels, finite] = means::sums(compared, mask, |i, [pixels, finite]| {
             *pixels += 1.0;
             *finite += f64::from(u8::from(compared.is_finite(i)));
         });
-        let values = || METRICS.iter().map(|m| (m.of)(compared, mask)).collect();
+        let value = |m: &Metric| if wanted(m) { (m.of)(compared, mask) } else { f64::NAN };
+        let values = || METRICS.iter().map(value).collect();
         (finite > 0.0).then(|| Scores { values: values(), pixels: pixels as u64, not_finite: (pixels - finite) as u64 })
     }
 

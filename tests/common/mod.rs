@@ -139,13 +139,14 @@ pub fn mean(texels: &[[f32; 4]]) -> f64 {
 
 /// A table without what differs from run to run: a line for each row, by column.
 pub fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    let names = reader.headers().unwrap().clone();
-    let line = |record: csv::StringRecord| {
-        let cells = names.iter().zip(&record).filter(|c| !c.0.ends_with(" ms"));
-        cells.map(|(name, value)| (name.to_string(), value.to_string())).collect()
-    };
-    reader.records().map(|r| line(r.unwrap())).collect()
+    let mut rows = table_with_times(path);
+    rows.iter_mut().for_each(|row| row.retain(|name, _| !name.ends_with(" ms")));
+    rows
+}
+
+/// Rows of a CSV file by the names of its columns.
+pub fn table_with_times(path: &Path) -> Vec<BTreeMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
 }
 
 /// A copy of the repository's graphs, shaders and experiments, for what a test writes.

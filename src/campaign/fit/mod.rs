@@ -1,10 +1,10 @@
 //! The cheapest setting that stays within a bound: a search over a few values of a few parameters.
 
-mod evaluate;
 mod model;
+mod run;
 mod search;
 
-pub use evaluate::{Evaluator, Goal, Subject};
+pub use run::{Fitted, Goal, Request, run};
 pub use search::{Found, Limits, Step, Stop, Trial, search};
 
 use crate::campaign::settings::Axis;
@@ -33,7 +33,7 @@ pub fn axes(graph: &Graph, given: &[Axis]) -> Result<Vec<Axis>, LabError> {
 }
 
 /// The place on the axes nearest to an experiment's own values; the first of an axis where there is no nearest.
-pub fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
+fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
     let place = |(name, values): &Axis| {
         let own = params.get(name)?;
         let distance = |text: &String| {
@@ -49,7 +49,7 @@ pub fn start(axes: &[Axis], params: &Params) -> Vec<usize> {
 }
 
 /// The experiment with the values of a place on the axes.
-pub fn at(experiment: &Experiment, axes: &[Axis], place: &[usize]) -> Experiment {
+fn at(experiment: &Experiment, axes: &[Axis], place: &[usize]) -> Experiment {
     let mut experiment = experiment.clone();
     for ((name, values), i) in axes.iter().zip(place) {
         experiment.set(name, &values[*i]);

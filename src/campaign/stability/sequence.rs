@@ -44,7 +44,7 @@ pub(super) fn measure(
     let loaded = runner.warm.graph(&runner.lab.home, &job.experiment.graph)?.clone();
     let motion = &job.case.motion;
     let mut wanted: Vec<String> = parts_of(&loaded.graph).into_iter().map(|p| p.texture).collect();
-    if job.case.voxels && loaded.graph.voxels.is_some() || motion.in_voxels() {
+    if job.case.voxels && oracle::makes_voxels(&loaded.graph) || motion.in_voxels() {
         wanted.extend(oracle::wanted(&loaded.graph)?);
     }
     let reuse = runner.warm.sessions.get(&job.method);
@@ -206,7 +206,7 @@ fn voxels(
     time: f64,
     warnings: &mut Vec<String>,
 ) -> Result<Option<oracle::Score>, LabError> {
-    if !job.case.voxels || session.graph.voxels.is_none() {
+    if !job.case.voxels || !oracle::makes_voxels(&session.graph) {
         return Ok(None);
     }
     match oracle::read(session) {

@@ -12,6 +12,6 @@ mod table;
 pub use super::points::Subject;
 pub use list::{check, list};
 pub use points::{MAX_POINTS, NOTHING, SCENE, SET, Sweep};
-pub use record::{About, Collected, Manifest, ManifestPoint, PointRecord, collect};
-pub use run::{Options, Shard, run};
+pub use record::{About, Collected, Manifest, ManifestPoint, PointRecord, collect, points_in};
+pub use run::{Measuring, Options, Shard, run, write_table};
 pub use table::{csv, parts_of};

@@ -60,7 +60,7 @@ pub struct About {
 pub type PointRecord = Record<About, Point>;
 
 /// The records of a sweep's folder.
-pub(super) fn folder(path: &Path) -> Folder {
+pub fn points_in(path: &Path) -> Folder {
     Folder { path: path.into(), kind: "points", schema: POINT_SCHEMA, most: MAX_FILE }
 }
 
@@ -74,24 +74,28 @@ pub(super) fn reference(subject: &Subject) -> String {
     jpeg("references", &content_id([format!("{subject:?}")], DIGITS))
 }
 
+impl ManifestPoint {
+    /// The entry of a point.
+    pub fn of(point: &SweepPoint) -> ManifestPoint {
+        ManifestPoint { id: point.id.clone(), labels: point.labels.iter().cloned().collect() }
+    }
+}
+
 impl Manifest {
-    pub(super) fn new(sweep: &super::Sweep, frames: Frames, points: &[SweepPoint]) -> Manifest {
-        let point = |p: &SweepPoint| ManifestPoint { id: p.id.clone(), labels: p.labels.iter().cloned().collect() };
-        Manifest {
-            schema: MANIFEST_SCHEMA.into(),
-            name: sweep.name.clone(),
-            text: sweep.text.clone(),
-            names: sweep.names.clone(),
-            frames,
-            points: points.iter().map(point).collect(),
-        }
+    /// A list of points.
+    pub fn new(name: String, text: String, names: Vec<String>, frames: Frames, points: Vec<ManifestPoint>) -> Manifest {
+        Manifest { schema: MANIFEST_SCHEMA.into(), name, text, names, frames, points }
     }
 
     fn file(folder: &Path) -> PathBuf {
         folder.join("sweep.json")
     }
 
-    pub(super) fn write(&self, folder: &Path) -> Result<(), LabError> {
+    /// Writes it to its folder.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn write(&self, folder: &Path) -> Result<(), LabError> {
         write_file(&Manifest::file(folder), &json(self)?)
     }
 
@@ -148,7 +152,7 @@ pub fn collect(folders: &[PathBuf]) -> Result<Collected, LabError> {
         let manifest = Manifest::read(path)?;
         sweeps.insert(manifest.name);
         names.extend(manifest.names);
-        let folder = folder(path);
+        let folder = points_in(path);
         for point in manifest.points {
             let id = point.id.clone();
             let i = *at.entry(id.clone()).or_insert_with(|| {

@@ -2,16 +2,16 @@
 
 use super::list::list;
 use super::points::Sweep;
-use super::record::{About, Manifest, PointRecord, collect, folder, jpeg, reference};
+use super::record::{About, Manifest, ManifestPoint, PointRecord, collect, jpeg, points_in, reference};
 use crate::campaign::points::{OpenScene, SweepPoint, labelled};
-use crate::campaign::record::{File, Folder, Outcome, write_file};
-use crate::campaign::runner::{Counts, Job, Open, Progress, Runner};
+use crate::campaign::record::{File, Folder, write_file};
+use crate::campaign::runner::{Counts, Job, Open, Progress, Runner, Taken};
 use crate::experiment::resolved_text;
 use crate::lab::{LabError, camera_of};
 use crate::measure::reference::Reference;
-use crate::measure::{Frames, Point, Wanted, measure};
+use crate::measure::{Frames, Point, Scored, Wanted, measure};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Which of the points: every `of`-th, from the `number`-th on.
@@ -90,16 +90,66 @@ pub fn run(
     if equal > 0 {
         runner.tell(Progress::Note(format!("{equal} combinations equal another one and are measured once")));
     }
-    let folder = folder(&options.folder);
+    let folder = points_in(&options.folder);
     folder.clean(&["points", "pictures", "errors", "references"]);
-    Manifest::new(sweep, options.frames, &points).write(&options.folder)?;
+    let (name, text, names) = (sweep.name.clone(), sweep.text.clone(), sweep.names.clone());
+    let listed = points.iter().map(ManifestPoint::of).collect();
+    Manifest::new(name, text, names, options.frames, listed).write(&options.folder)?;
     let Shard { number, of } = options.shard;
     let mine: Vec<&SweepPoint> = points.iter().skip(number - 1).step_by(of).collect();
-    let bounces = &sweep.bounces;
+    let Options { frames, samples, .. } = *options;
+    let measuring = Measuring { frames, bounces: &sweep.bounces, samples, scored: Scored::All };
     let mut elsewhere = 0;
     let mut kept = |runner: &mut Runner, point: &SweepPoint| {
+        let record = measuring.kept(runner, &folder, point)?.filter(|r| r.done().is_some() || !options.again);
+        let measured = record.as_ref().filter(|r| r.done().is_some());
+        elsewhere += usize::from(measured.is_some_and(|r| r.device.name != runner.lab.gpu.info.name));
+        Ok(record)
+    };
+    let mut measured = |runner: &mut Runner, point: &SweepPoint| measuring.measured(runner, point);
+    let records = runner.run(&folder, &mine, &mut kept, &mut measured)?;
+    if elsewhere > 0 {
+        let message = "points were measured on another device; name another folder with -o to measure them here";
+        runner.tell(Progress::Note(format!("{elsewhere} {message}")));
+    }
+    write_table(&options.folder)?;
+    Ok(Counts::of(&records))
+}
+
+/// Writes the table of a folder's points.
+///
+/// # Errors
+/// A folder that cannot be read or written to.
+pub fn write_table(folder: &Path) -> Result<(), LabError> {
+    let table = super::table::csv(&collect(&[folder.into()])?)?;
+    write_file(&folder.join("sweep.csv"), table.as_bytes())
+}
+
+/// How points are measured.
+pub struct Measuring<'a> {
+    /// Frames of every point.
+    pub frames: Frames,
+    /// Bounces of the references that points are scored against.
+    pub bounces: &'a [u32],
+    /// Samples a pixel that references are gathered to first; what is on the disk is used as it is when absent.
+    pub samples: Option<u64>,
+    /// Which scores points have.
+    pub scored: Scored<'a>,
+}
+
+impl Measuring<'_> {
+    /// The record of a point, if it is finished and scored against the references of now.
+    ///
+    /// # Errors
+    /// A reference of a point that is finished cannot be had.
+    pub fn kept(
+        &self,
+        runner: &mut Runner,
+        folder: &Folder,
+        point: &SweepPoint,
+    ) -> Result<Option<PointRecord>, LabError> {
         let record: Option<PointRecord> = folder.read(&point.id);
-        let known = match references(runner, point, bounces, options.samples) {
+        let known = match self.references(runner, point) {
             Ok(known) => known,
             // A finished point is not given up for it. Others meet it again, and keep it, when their turn comes.
             Err(error) if record.as_ref().is_some_and(|r| r.done().is_some()) => return Err(error),
@@ -107,22 +157,20 @@ pub fn run(
         };
         let samples: BTreeMap<u32, u64> = known.iter().map(|(bounces, r)| (*bounces, r.samples)).collect();
         // A reference that has come or grown since makes other scores.
-        let stays = |r: &PointRecord| match &r.outcome {
-            Outcome::Done(found) => found.references == samples,
-            Outcome::Failed(_) => !options.again,
-        };
-        let record = record.filter(stays);
-        let measured = record.as_ref().filter(|r| r.done().is_some());
-        elsewhere += usize::from(measured.is_some_and(|r| r.device.name != runner.lab.gpu.info.name));
-        Ok(record)
-    };
-    let mut measured = |runner: &mut Runner, point: &SweepPoint| {
+        Ok(record.filter(|r| r.done().is_none_or(|found| found.references == samples)))
+    }
+
+    /// Measures a point.
+    ///
+    /// # Errors
+    /// Everything that can be wrong with the point; the device was lost.
+    pub fn measured(&self, runner: &mut Runner, point: &SweepPoint) -> Taken<SweepPoint> {
         if let Some(why) = &point.absent {
             return Err(LabError::Request(why.clone()));
         }
-        let known = references(runner, point, bounces, options.samples)?;
+        let known = self.references(runner, point)?;
         let Runner { lab, warm, .. } = runner;
-        let found = measure(lab, warm, &point.experiment, &point.scene, options.frames, &known)?;
+        let found = measure(lab, warm, &point.experiment, &point.scene, self.frames, &known, self.scored)?;
         let files: [(String, Option<Vec<u8>>); 3] = [
             (jpeg("pictures", &point.id), found.picture),
             (jpeg("errors", &point.id), found.error_map),
@@ -130,29 +178,19 @@ pub fn run(
         ];
         let files: Vec<File> = files.into_iter().filter_map(|(name, bytes)| Some((name, bytes?))).collect();
         Ok((found.point, files))
-    };
-    let records = runner.run(&folder, &mine, &mut kept, &mut measured)?;
-    if elsewhere > 0 {
-        let message = "points were measured on another device; name another folder with -o to measure them here";
-        runner.tell(Progress::Note(format!("{elsewhere} {message}")));
     }
-    let table = super::table::csv(&collect(std::slice::from_ref(&options.folder))?)?;
-    write_file(&options.folder.join("sweep.csv"), table.as_bytes())?;
-    Ok(Counts::of(&records))
-}
 
-/// The references that a point is scored against, by bounces, as far as there are any.
-fn references(
-    runner: &mut Runner,
-    point: &SweepPoint,
-    bounces: &[u32],
-    samples: Option<u64>,
-) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
-    let mut list = Vec::new();
-    for bounces in bounces.iter().filter(|_| point.absent.is_none()) {
-        let wanted = Wanted { bounces: *bounces, samples, seed: None };
-        let found = runner.reference(&point.experiment, &point.scene, &format!("{:?}", point.subject), wanted)?;
-        list.extend(found.map(|r| (*bounces, r)));
+    /// The references that a point is scored against, by bounces, as far as there are any.
+    ///
+    /// # Errors
+    /// One that cannot be gathered or read.
+    pub fn references(&self, runner: &mut Runner, point: &SweepPoint) -> Result<Vec<(u32, Arc<Reference>)>, LabError> {
+        let mut list = Vec::new();
+        for bounces in self.bounces.iter().filter(|_| point.absent.is_none()) {
+            let wanted = Wanted { bounces: *bounces, samples: self.samples, seed: None };
+            let found = runner.reference(&point.experiment, &point.scene, &format!("{:?}", point.subject), wanted)?;
+            list.extend(found.map(|r| (*bounces, r)));
+        }
+        Ok(list)
     }
-    Ok(list)
 }
