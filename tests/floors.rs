@@ -132,6 +132,19 @@ fn no_room_of_the_graph_knows_what_stands_above_it() {
 }
 
 #[test]
+fn the_method_is_known_to_graphs_and_shaders_alone() {
+    let mut list = Vec::new();
+    for room in ["graph", "shader", "vulkan"] {
+        sources(&common::root().join("src").join(room), &format!("{room}/"), &mut list);
+    }
+    let lines = list.iter().flat_map(|(file, text)| text.lines().map(move |line| (file, line.to_lowercase())));
+    let code = lines.filter(|(_, line)| !line.trim_start().starts_with("//"));
+    let wrong: Vec<_> =
+        code.filter(|(_, line)| line.contains("voxel") || line.replace("conelab", "").contains("cone")).collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
 fn only_what_is_drawn_knows_the_windows_library() {
     let mut list = Vec::new();
     sources(&common::root().join("src"), "", &mut list);

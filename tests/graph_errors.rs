@@ -171,6 +171,9 @@ impl Bench {
         let home = Workspace { root: self.folder.path().to_path_buf(), cache: None };
         let experiment = Experiment::read(&self.path("configs/run.ron"))?;
         let (graph, linked, warnings) = home.graph(&experiment.graph)?;
+        if let Some(mistake) = conelab::measure::oracle::mistake(&graph) {
+            return Err(vec![mistake]);
+        }
         let params = params_of(&graph, &experiment).map_err(|e| match e {
             LabError::Input(list) => list,
             other => panic!("{other}"),
@@ -1501,16 +1504,27 @@ fn comparisons_of_what_is_not_there() {
 
 #[test]
 fn voxels_that_are_not_there() {
-    let with =
-        |section: &str| graph("output: \"picture\",", &format!("voxels: ({section}),\n    output: \"picture\","));
-    let found = with("occupied: \"count\", color: \"gird\", normal: \"grid\", borders: \"wrok\"");
-    for message in ["'count' is 2D: voxels are in 3D textures", "'gird'", "'grid'", "'wrok'", "'work'"] {
+    let with = |resources: &str, settings: &str| {
+        let tool = format!("\"voxels\": (resources: {{ {resources} }}, settings: [{settings}])");
+        graph("output: \"picture\",", &format!("tools: {{ {tool} }},\n    output: \"picture\","))
+    };
+    let all = |occupied: &str, borders: &str| {
+        format!(r#""occupied": "{occupied}", "color": "grid", "normal": "grid", "borders": "{borders}""#)
+    };
+    // Names are checked with the graph, what they mean by the tool.
+    let found = with(r#""color": "gird", "borders": "wrok""#, "");
+    for message in ["'gird'", "'grid'", "'wrok'", "'work'"] {
         assert!(found.contains(message), "{message} in {found}");
     }
-    let mode = |set: &str| {
-        let modes = format!("modes: [(title: \"T\", help: \"h\", set: {{ {set} }})]");
-        with(&format!("occupied: \"grid\", color: \"grid\", normal: \"grid\", borders: \"work\", {modes}"))
-    };
+    for (resources, message) in [
+        (all("count", "work"), "'count' is no 3D texture"),
+        (all("grid", "grid"), "'grid' is no buffer"),
+        (String::from(r#""occupied": "grid""#), "no resource 'borders'"),
+    ] {
+        let found = with(&resources, "");
+        assert!(found.contains("passes/graph.ron:29:") && found.contains(message), "{message} in {found}");
+    }
+    let mode = |set: &str| with(&all("grid", "work"), &format!("(title: \"T\", help: \"h\", set: {{ {set} }})"));
     let found = mode("\"method\": slow");
     assert!(found.contains("passes/graph.ron:29:") && found.contains("slow"), "{found}");
     assert_eq!(mode("\"method\": exact"), "");

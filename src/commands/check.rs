@@ -2,11 +2,12 @@
 
 use crate::campaign::bench::check_record;
 use crate::campaign::{stability, sweep};
-use crate::diagnostics::{Severity, Sources};
+use crate::diagnostics::{Diagnostic, Severity, Sources};
 use crate::experiment::Experiment;
 use crate::files::read_input_text;
 use crate::graph::file::GraphFile;
 use crate::lab::{LabError, Workspace, params_of};
+use crate::measure::oracle;
 use crate::scene::SceneError;
 use clap::Args;
 use std::ops::ControlFlow;
@@ -110,7 +111,7 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
     for file in &files {
         let name = file.to_string_lossy();
         let findings = match kind(&name) {
-            FileKind::Graph => home.check(&name),
+            FileKind::Graph => check_graph(&home, &name),
             FileKind::Path => crate::camera_path::CameraPath::read(file).err().unwrap_or_default(),
             FileKind::Experiment => check_experiment(&home, file),
             campaign @ (FileKind::Sweep | FileKind::Stability | FileKind::Times) => {
@@ -154,7 +155,13 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
     if wrong > 0 { Err(LabError::Request(format!("{wrong} errors"))) } else { Ok(()) }
 }
 
-fn check_experiment(home: &Workspace, file: &Path) -> Vec<crate::diagnostics::Diagnostic> {
+fn check_graph(home: &Workspace, name: &str) -> Vec<Diagnostic> {
+    let mut findings = home.check(name);
+    findings.extend(home.read(name).ok().and_then(|graph| oracle::mistake(&graph)));
+    findings
+}
+
+fn check_experiment(home: &Workspace, file: &Path) -> Vec<Diagnostic> {
     let experiment = match Experiment::read(file) {
         Ok(e) => e,
         Err(errors) => return errors,

@@ -131,14 +131,14 @@ fn modes_of(loaded: &Loaded, all: bool) -> Result<Vec<(String, Settings)>, LabEr
     if !all {
         return Ok(vec![("as set".into(), Vec::new())]);
     }
-    let modes = loaded.graph.voxels.iter().flat_map(|v| &v.value.modes.0).map(|m| {
-        let set = m.value.set.0.iter().map(|(name, value)| (name.value.clone(), value.value.0.clone()));
-        (m.value.title.clone(), set.collect())
+    let modes = oracle::modes(&loaded.graph).map(|m| {
+        let set = m.set.0.iter().map(|(name, value)| (name.value.clone(), value.value.0.clone()));
+        (m.title.clone(), set.collect())
     });
     let modes: Vec<_> = modes.collect();
     if modes.is_empty() {
         return Err(LabError::Request(format!(
-            "graph '{}' declares no modes in `voxels`: leave out --all",
+            "graph '{}' tells the tool `voxels` no settings: leave out --all",
             loaded.graph.name
         )));
     }

@@ -2,8 +2,8 @@
 
 use super::expr::{Env, Ex};
 use super::file::{
-    Bind, BufferDecl, CheckDecl, CompareDecl, PassDecl, RefuseDecl, SceneNeeds, TableDecl, TextureDecl, ViewDecl,
-    VoxelsDecl,
+    Bind, BufferDecl, CheckDecl, CompareDecl, PassDecl, RefuseDecl, SceneNeeds, TableDecl, TextureDecl, ToolDecl,
+    ViewDecl,
 };
 use super::param::{Params, Value};
 use crate::diagnostics::{At, Loc, Sources};
@@ -59,8 +59,8 @@ pub struct Graph {
     pub fit: Vec<(String, Vec<String>)>,
     /// Settings from the ideal to the method as it is set: what each step adds is a part of its error.
     pub ablation: Vec<Loc<ViewDecl>>,
-    /// The voxels that it makes.
-    pub voxels: Option<Loc<VoxelsDecl>>,
+    /// What tools are told, by their names.
+    pub tools: Vec<(String, Loc<ToolDecl>)>,
     /// The files it came from.
     pub sources: Sources,
 }
@@ -210,6 +210,11 @@ impl Graph {
     pub fn checked_with(&self, wanted: &[String]) -> Vec<String> {
         let made = |c: &&CheckDecl| c.with.as_ref().is_none_or(|texture| wanted.contains(&texture.value));
         self.checks.iter().map(|c| &c.value).filter(made).map(|c| c.buffer().to_string()).collect()
+    }
+
+    /// What a tool is told.
+    pub fn tool(&self, name: &str) -> Option<&Loc<ToolDecl>> {
+        self.tools.iter().find(|t| t.0 == name).map(|t| &t.1)
     }
 
     /// The alias or named sampler of that name.

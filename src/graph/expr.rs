@@ -170,7 +170,7 @@ impl<'de> Deserialize<'de> for Expr {
         impl Visitor<'_> for V {
             type Value = Expr;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("an expression: a number, or a text such as \"voxel_dim / 2\"")
+                f.write_str("an expression: a number, or a text such as \"width / 2\"")
             }
             fn visit_str<E>(self, text: &str) -> Result<Expr, E> {
                 Ok(Expr::new(text))

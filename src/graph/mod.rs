@@ -1,5 +1,5 @@
-//! The pass graph: parameters, textures, buffers and passes, read from RON. Of voxels and of tools it knows what graphs
-//! declare for them, and no more.
+//! The pass graph: parameters, textures, buffers and passes, read from RON. Of tools it knows their names and what
+//! graphs tell them; of the method nothing.
 
 mod definition;
 pub mod effect;

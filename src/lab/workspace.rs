@@ -181,7 +181,11 @@ impl Workspace {
         Ok(Loaded { graph: loaded.graph.clone(), linked: Arc::new(linked), warnings })
     }
 
-    fn read(&self, name: &str) -> Result<Graph, Vec<Diagnostic>> {
+    /// A graph without its shaders.
+    ///
+    /// # Errors
+    /// All mistakes of its files.
+    pub fn read(&self, name: &str) -> Result<Graph, Vec<Diagnostic>> {
         load(&self.graph_path(name), &self.folders())
     }
 

@@ -50,9 +50,7 @@ pub enum VulkanError {
     #[error("the Vulkan validation layer is not installed (Debian, Ubuntu: vulkan-validationlayers)")]
     NoValidation,
     /// Device memory ran out.
-    #[error(
-        "out of device memory: {what} needs {mib:.0} MiB. Use fewer voxels, a smaller shadow map or a smaller picture"
-    )]
+    #[error("out of device memory: {what} needs {mib:.0} MiB. Use a smaller picture, or what else makes it smaller")]
     OutOfMemory {
         /// The resource that did not fit.
         what: String,

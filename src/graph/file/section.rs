@@ -115,21 +115,21 @@ pub struct ViewDecl {
     pub set: Entries<RawText>,
 }
 
-/// Voxels that a graph makes, for comparing them with what its triangles exactly overlap.
+/// What a graph says to a tool; the tool of that name knows what it means.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct VoxelsDecl {
-    /// 3D texture whose first channel is not zero in occupied cells.
-    pub occupied: Loc<String>,
-    /// 3D texture of linear base colour; alpha is opacity.
-    pub color: Loc<String>,
-    /// 3D texture of the unit normal * 0.5 + 0.5.
-    pub normal: Loc<String>,
-    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; the z of the first of
-    /// them in the textures; how many there are along x, y and z; then, as floats, the world coordinates (m) of their
-    /// borders along x, y and z, one more than cells each.
-    pub borders: Loc<String>,
-    /// Ways of making them that are worth comparing.
+pub struct ToolDecl {
+    /// Textures and buffers, by what they are to the tool.
     #[serde(default)]
-    pub modes: Items<ViewDecl>,
+    pub resources: Entries<String>,
+    /// Settings that it may go through.
+    #[serde(default)]
+    pub settings: Items<ViewDecl>,
+}
+
+impl ToolDecl {
+    /// The texture or buffer that is this to the tool.
+    pub fn resource(&self, role: &str) -> Option<&Loc<String>> {
+        self.resources.0.iter().find(|(name, _)| name.value == role).map(|(_, resource)| resource)
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::pass::PassItem;
 use super::resource::{AliasDecl, BufferDecl, NamedSampler, TextureDecl};
-use super::section::{CheckDecl, CompareDecl, PartItem, RefuseDecl, SceneNeeds, ValueDecl, ViewDecl, VoxelsDecl};
+use super::section::{CheckDecl, CompareDecl, PartItem, RefuseDecl, SceneNeeds, ToolDecl, ValueDecl, ViewDecl};
 use super::table::TableDecl;
 use crate::diagnostics::{Entries, Items, Loc, RawText};
 use crate::graph::param::Decl;
@@ -65,6 +65,6 @@ pub struct GraphFile {
     /// Settings from the ideal to the method: what each step costs is the method's error, split.
     #[serde(alias = "ladder")]
     pub ablation: Items<ViewDecl>,
-    /// The voxels that the graph makes.
-    pub voxels: Option<Loc<VoxelsDecl>>,
+    /// What tools are told, by their names.
+    pub tools: Entries<ToolDecl>,
 }

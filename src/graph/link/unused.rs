@@ -19,10 +19,8 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
     wanted.extend(graph.parts.iter().map(|p| p.texture.as_str()));
     wanted.extend(graph.checks.iter().map(|c| c.value.buffer()));
     wanted.extend(graph.tables.iter().map(|t| t.value.buffer()));
-    for voxels in graph.voxels.iter().map(|v| &v.value) {
-        let names = [&voxels.occupied, &voxels.color, &voxels.normal, &voxels.borders];
-        wanted.extend(names.map(|n| n.value.as_str()));
-    }
+    let of_tools = graph.tools.iter().flat_map(|t| &t.1.value.resources.0);
+    wanted.extend(of_tools.map(|(_, name)| name.value.as_str()));
     let mut findings = Vec::new();
     let mut warn = |at: At, message: String| {
         let d = graph.sources.error(at, message);

@@ -7,7 +7,7 @@ use crate::diagnostics::{At, Entries, Loc, RawText, nearest};
 use crate::graph::definition::Graph;
 use crate::graph::expr::Ex;
 use crate::graph::externals::EXTERNALS;
-use crate::graph::file::{CheckDecl, Path, TableDecl, VoxelsDecl};
+use crate::graph::file::{CheckDecl, Path, TableDecl, ToolDecl};
 use crate::graph::param::Kind;
 use crate::vulkan::Format;
 use std::collections::HashSet;
@@ -134,22 +134,23 @@ impl<'g> Check<'g> {
 
     pub(super) fn texture_name(&mut self, name: &Loc<String>) -> bool {
         let graph = self.graph;
-        graph.texture(&name.value).is_some() || self.missing(name, "texture", graph.textures.iter().map(|t| &t.0))
+        graph.texture(&name.value).is_some()
+            || self.missing(name, "texture", graph.textures.iter().map(|t| t.0.as_str()))
     }
 
     pub(super) fn buffer_name(&mut self, name: &Loc<String>) -> bool {
         let graph = self.graph;
-        graph.buffer(&name.value).is_some() || self.missing(name, "buffer", graph.buffers.iter().map(|b| &b.0))
+        graph.buffer(&name.value).is_some() || self.missing(name, "buffer", graph.buffers.iter().map(|b| b.0.as_str()))
     }
 
     /// Reports a name that stands for nothing of a kind; false.
-    fn missing<'n>(&mut self, name: &Loc<String>, what: &str, known: impl Iterator<Item = &'n String>) -> bool {
+    fn missing<'n>(&mut self, name: &Loc<String>, what: &str, known: impl Iterator<Item = &'n str>) -> bool {
         if self.graph.alias(&name.value).is_some() {
             let message = format!("'{}' is an alias or sampler, which passes bind: name a {what}", name.value);
             self.error(name.at, message);
         } else {
             let message = format!("no {what} is named '{}'", name.value);
-            self.found.unknown(name.at, &name.value, message, known.map(String::as_str));
+            self.found.unknown(name.at, &name.value, message, known);
         }
         false
     }
@@ -201,14 +202,14 @@ impl<'g> Check<'g> {
         }
     }
 
-    pub(super) fn voxels(&mut self, voxels: &VoxelsDecl) {
-        for name in [&voxels.occupied, &voxels.color, &voxels.normal] {
-            if self.texture_name(name) && !self.is_volume(&name.value) {
-                self.error(name.at, format!("'{}' is 2D: voxels are in 3D textures", name.value));
+    pub(super) fn tool(&mut self, tool: &ToolDecl) {
+        let graph = self.graph;
+        for (_, name) in &tool.resources.0 {
+            if graph.resource(&name.value).is_none() {
+                self.missing(name, "texture or buffer", graph.resource_names());
             }
         }
-        self.buffer_name(&voxels.borders);
-        voxels.modes.0.iter().for_each(|mode| self.settings(&mode.value.set));
+        tool.settings.0.iter().for_each(|view| self.settings(&view.value.set));
     }
 
     pub(super) fn check(&mut self, check: &CheckDecl, at: At) {

@@ -13,6 +13,7 @@ pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
     all.values.0.retain(|(name, _)| !is_param(name));
     replace(&mut all.modules, file.modules);
     replace(&mut all.values, file.values);
+    replace(&mut all.tools, file.tools);
     for (name, title) in file.pinned.0 {
         match all.pinned.0.iter_mut().find(|p| p.0.value == name.value) {
             Some(known) => known.1 = title,
@@ -38,7 +39,6 @@ pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
     later(&mut all.scene, file.scene);
     later(&mut all.caption, file.caption);
     later(&mut all.pointer, file.pointer);
-    later(&mut all.voxels, file.voxels);
 }
 
 fn append<T>(all: &mut Items<T>, more: Items<T>) {

@@ -76,7 +76,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         views: file.views.0,
         fit: file.fit.0.iter().map(|(name, list)| (name.value.clone(), raw(&list.value))).collect(),
         ablation: file.ablation.0,
-        voxels: file.voxels,
+        tools: by_name(file.tools),
         // They are needed for messages until the end.
         sources: Sources::default(),
     };
@@ -104,8 +104,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     for view in graph.views.iter().chain(&graph.ablation) {
         check.settings(&view.value.set);
     }
-    if let Some(voxels) = &graph.voxels {
-        check.voxels(&voxels.value);
+    for (_, tool) in &graph.tools {
+        check.tool(&tool.value);
     }
     for item in &graph.checks {
         check.check(&item.value, item.at);

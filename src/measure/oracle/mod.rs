@@ -21,7 +21,7 @@ pub use exact::{Cell, exact};
 pub use fill::{Neighbours, flood};
 pub use grid::Grid;
 pub use overlap::{Axes, Overlap};
-pub use read::{Voxel, grid, read, wanted};
+pub use read::{Voxel, grid, makes_voxels, mistake, modes, read, wanted};
 pub use shape::{SHAPES, shape_of};
 pub use surface::Surfaces;
 pub use triangle::{Triangle, triangles_of};

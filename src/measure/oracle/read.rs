@@ -1,8 +1,9 @@
 //! The voxels of a session, as its graph declares them.
 
 use super::grid::Grid;
+use crate::diagnostics::Diagnostic;
 use crate::graph::Graph;
-use crate::graph::file::VoxelsDecl;
+use crate::graph::file::ViewDecl;
 use crate::lab::{LabError, Session, Texels};
 use glam::Vec3;
 
@@ -19,31 +20,86 @@ pub struct Voxel {
     pub normal: Vec3,
 }
 
-fn declared(graph: &Graph) -> Result<&VoxelsDecl, LabError> {
-    graph.voxels.as_ref().map(|v| &v.value).ok_or_else(|| {
+/// The tool of graphs whose voxels can be compared: [`resources`] says what it is told.
+const TOOL: &str = "voxels";
+
+/// Names of what holds a graph's voxels.
+#[derive(Clone, Debug)]
+struct Resources {
+    /// 3D texture whose first channel is not zero in occupied cells.
+    occupied: String,
+    /// 3D texture of linear base colour; alpha is opacity.
+    color: String,
+    /// 3D texture of the unit normal * 0.5 + 0.5.
+    normal: String,
+    /// Buffer that says where the cells lie: a 32-bit word that is 1 where they are boxes, else 0; the z of the first of
+    /// them in the textures; how many there are along x, y and z; then, as floats, the world coordinates (m) of their
+    /// borders along x, y and z, one more than cells each.
+    borders: String,
+}
+
+/// What a graph says of its voxels; nothing where it makes none.
+fn resources(graph: &Graph) -> Result<Option<Resources>, Diagnostic> {
+    let Some(tool) = graph.tool(TOOL) else { return Ok(None) };
+    let named = |role: &str| {
+        let missing = || graph.sources.error(tool.at, format!("'{TOOL}' is told no resource '{role}' (docs/graph.md)"));
+        tool.value.resource(role).ok_or_else(missing)
+    };
+    let volume = |role: &str| {
+        let name = named(role)?;
+        let volume = graph.texture(&name.value).is_some_and(|t| graph.textures[t].1.value.is_volume());
+        let wrong = || graph.sources.error(name.at, format!("'{}' is no 3D texture, as voxels are", name.value));
+        volume.then(|| name.value.clone()).ok_or_else(wrong)
+    };
+    let borders = named("borders")?;
+    if graph.buffer(&borders.value).is_none() {
+        let message = format!("'{}' is no buffer, as the cells' borders are", borders.value);
+        return Err(graph.sources.error(borders.at, message));
+    }
+    let borders = borders.value.clone();
+    Ok(Some(Resources { occupied: volume("occupied")?, color: volume("color")?, normal: volume("normal")?, borders }))
+}
+
+fn declared(graph: &Graph) -> Result<Resources, LabError> {
+    resources(graph).map_err(|wrong| LabError::Input(vec![wrong]))?.ok_or_else(|| {
         LabError::Request(format!(
-            "graph '{}' declares no `voxels` (docs/graph.md), so there is nothing to check",
+            "graph '{}' makes no voxels (docs/graph.md), so there is nothing to check",
             graph.name
         ))
     })
 }
 
+/// Whether a graph makes voxels that can be compared.
+pub fn makes_voxels(graph: &Graph) -> bool {
+    graph.tool(TOOL).is_some()
+}
+
+/// What is wrong with what a graph says of its voxels.
+pub fn mistake(graph: &Graph) -> Option<Diagnostic> {
+    resources(graph).err()
+}
+
+/// Ways of making voxels that a graph says are worth comparing.
+pub fn modes(graph: &Graph) -> impl Iterator<Item = &ViewDecl> {
+    graph.tool(TOOL).into_iter().flat_map(|tool| &tool.value.settings.0).map(|mode| &mode.value)
+}
+
 /// What a session must keep for [`read`].
 ///
 /// # Errors
-/// The graph declares no voxels.
+/// The graph makes no voxels.
 pub fn wanted(graph: &Graph) -> Result<Vec<String>, LabError> {
     let v = declared(graph)?;
-    Ok([&v.occupied, &v.color, &v.normal, &v.borders].map(|n| n.value.clone()).to_vec())
+    Ok(vec![v.occupied, v.color, v.normal, v.borders])
 }
 
 /// The grid and the voxels of the last frame, in order of numbers.
 ///
 /// # Errors
-/// The graph declares no voxels; cells that are no boxes; the device was lost.
+/// The graph makes no voxels; cells that are no boxes; the device was lost.
 pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
-    let v = declared(&session.graph)?.clone();
-    let occupied = session.texels(&v.occupied.value, 0, 0)?;
+    let v = declared(&session.graph)?;
+    let occupied = session.texels(&v.occupied, 0, 0)?;
     let (grid, first) = grid_in(session, &v, occupied.extent)?;
     let bytes = occupied.format.bytes as usize;
     let [x, y, z] = grid.size().map(|n| n as usize);
@@ -52,8 +108,8 @@ pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
     let numbers: Vec<u32> =
         texels.zip(0u32..).filter(|(texel, _)| texel.iter().any(|b| *b != 0)).map(|(_, i)| i).collect();
     drop(occupied);
-    let color = texels_at(session, &v.color.value, before, &numbers)?;
-    let normal = texels_at(session, &v.normal.value, before, &numbers)?;
+    let color = texels_at(session, &v.color, before, &numbers)?;
+    let normal = texels_at(session, &v.normal, before, &numbers)?;
     let voxels = numbers.iter().zip(color.iter().zip(&normal)).map(|(number, (color, normal))| Voxel {
         number: *number,
         color: Vec3::new(color[0], color[1], color[2]),
@@ -69,15 +125,15 @@ pub fn read(session: &mut Session) -> Result<(Grid, Vec<Voxel>), LabError> {
 /// # Errors
 /// As [`read`].
 pub fn grid(session: &mut Session) -> Result<Grid, LabError> {
-    let v = declared(&session.graph)?.clone();
-    let index = session.graph.texture(&v.occupied.value);
+    let v = declared(&session.graph)?;
+    let index = session.graph.texture(&v.occupied);
     let extent = index.map_or([0; 3], |i| session.program.plan.textures[i].extent);
     Ok(grid_in(session, &v, extent)?.0)
 }
 
 /// The grid, and the z of its first cell in the textures.
-fn grid_in(session: &mut Session, v: &VoxelsDecl, cells: [u32; 3]) -> Result<(Grid, u32), LabError> {
-    let borders = session.buffer(&v.borders.value)?;
+fn grid_in(session: &mut Session, v: &Resources, cells: [u32; 3]) -> Result<(Grid, u32), LabError> {
+    let borders = session.buffer(&v.borders)?;
     grid_of(&borders, cells).map_err(LabError::Request)
 }
 
@@ -91,7 +147,7 @@ fn texels_at(session: &mut Session, name: &str, before: usize, numbers: &[u32]) 
     Ok(some.floats())
 }
 
-/// The grid that a buffer of borders describes; see [`VoxelsDecl::borders`].
+/// The grid that a buffer of borders describes; see [`Resources::borders`].
 fn grid_of(bytes: &[u8], texture: [u32; 3]) -> Result<(Grid, u32), String> {
     let words: Vec<u32> = bytes.as_chunks::<4>().0.iter().map(|w| u32::from_ne_bytes(*w)).collect();
     let ([boxes, first, x, y, z], mut rest) =
