@@ -6,9 +6,9 @@ mod common;
 use common::root;
 use conelab::lab::Workspace;
 use conelab::vulkan::{Faults, GpuOptions};
+use conelab::workbench::desired::request::{RenderRequest, SideRequest};
 use conelab::workbench::engine::Engine;
-use conelab::workbench::report::{PictureReport, Report};
-use conelab::workbench::request::{RenderRequest, SideRequest};
+use conelab::workbench::engine::report::{PictureReport, Report};
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::{Duration, Instant};
 

@@ -1,11 +1,12 @@
 //! The bar at the top: experiments, scenes, undo, comparisons; and the line at the foot.
 
-use super::control::CHANGED;
-use super::engine::Order;
-use super::{Workbench, edit, ron_files, short, side_of};
 use crate::diagnostics::{Entries, RawText};
 use crate::experiment::Experiment;
 use crate::timers::Rows;
+use crate::workbench::desired::edit;
+use crate::workbench::engine::Order;
+use crate::workbench::panel::control::CHANGED;
+use crate::workbench::{Workbench, ron_files, short, side_of};
 use egui::Ui;
 
 impl Workbench {

@@ -1,6 +1,6 @@
 //! Keys: one list makes them work and explains them.
 
-use super::Workbench;
+use crate::workbench::Workbench;
 use egui::{Key, KeyboardShortcut, Modifiers, Ui};
 
 /// What a key does.

@@ -1,6 +1,6 @@
 //! What a host (a window, a screenshot) asks: pixels to show, and the events that scripts read.
 
-use super::{NewPixels, Workbench, events};
+use crate::workbench::{NewPixels, Workbench, events};
 use serde_json::json;
 use std::time::Instant;
 

@@ -1,7 +1,9 @@
 //! The panels at the sides, and what keys do.
 
-use super::engine::Order;
-use super::{TABS, Workbench, help, panel, zoom};
+use crate::workbench::engine::Order;
+use crate::workbench::picture::zoom;
+use crate::workbench::tabs::TABS;
+use crate::workbench::{Workbench, help, panel};
 use egui::{TextureId, Ui};
 
 impl Workbench {

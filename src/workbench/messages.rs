@@ -1,8 +1,8 @@
 //! Errors with the place and the source line, over the picture's foot; they go when they are mended.
 
-use super::engine::Order;
-use super::{Workbench, editor};
 use crate::diagnostics::{Diagnostic, Severity};
+use crate::workbench::engine::Order;
+use crate::workbench::{Workbench, editor};
 use egui::{Align2, Color32, Rect, RichText, Ui};
 
 /// What the words of an engine end with whose device is to be opened anew.

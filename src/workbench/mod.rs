@@ -3,47 +3,22 @@
 //! Nothing here knows a window system: [`crate::window`] and offscreen screenshots are two hosts of the same interface.
 
 mod bar;
-mod bookmarks;
-mod builder;
-mod chart;
-pub mod compare;
-mod control;
-mod difference;
-pub mod edit;
+pub mod desired;
 mod editor;
-mod effects;
 pub mod engine;
-pub mod error_worker;
 pub mod events;
-mod gallery;
-mod guard;
 mod help;
-mod history;
 mod host;
-mod inspector;
 mod layout;
 mod messages;
 mod models;
-mod motion;
-mod nodes;
 mod opening;
-mod overlay;
 mod panel;
-mod paths;
 mod pending;
+pub mod picture;
 mod poll;
-mod renderdoc;
-pub mod report;
-pub mod request;
-mod save;
-mod sequence;
-mod sides;
-mod surroundings;
-mod tables;
-mod times;
-mod view;
+mod tabs;
 mod watch;
-mod zoom;
 
 use crate::diagnostics::Diagnostic;
 use crate::experiment::Experiment;
@@ -51,17 +26,21 @@ use crate::graph::run::Redo;
 use crate::lab::{LabError, Workspace};
 use crate::scene::Scene;
 use crate::vulkan::{Buffer, DeviceId, GpuOptions, PixelSource, Pixels};
-use compare::{Map, Mode};
 use crossbeam_channel::{Receiver, Sender, unbounded};
+use desired::request::RenderRequest;
+use desired::{edit, history, request, sides};
 use egui::{TextureId, Ui, Vec2};
 use engine::Engine;
+use engine::report::{DeviceReport, GraphInfo, PictureReport};
 use events::Events;
 use opening::{picture_of, side_of};
-use report::{DeviceReport, GraphInfo, PictureReport};
-use request::RenderRequest;
+use panel::effects;
+use picture::compare::{Map, Mode};
+use picture::view;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use tabs::{Tab, bookmarks, chart, gallery, inspector, nodes, paths, surroundings, tables, times};
 
 /// Pictures that hosts keep for the interface: A, B, the comparison, the inspector.
 pub const PICTURES: usize = 4;
@@ -114,32 +93,6 @@ impl Side {
         self.picture.as_ref().is_some_and(|p| p.preview || p.request < sent)
     }
 }
-
-/// A part of the interface; it may show the hosts' pictures.
-type Show = fn(&mut Workbench, &mut Ui, &[TextureId]);
-
-/// A tab of the right panel.
-#[derive(Clone, Copy)]
-struct Tab {
-    title: &'static str,
-    show: Show,
-    /// What stands in the middle of the window while the tab is open.
-    middle: Show,
-}
-
-impl Tab {
-    const fn new(title: &'static str, show: Show) -> Tab {
-        Tab { title, show, middle: |workbench, ui, textures| workbench.picture(ui, textures) }
-    }
-
-    fn is(self, other: Tab) -> bool {
-        self.title == other.title
-    }
-}
-
-/// The tabs, in order.
-const TABS: [Tab; 8] =
-    [surroundings::TAB, times::TAB, chart::TAB, nodes::TAB, inspector::TAB, tables::TAB, paths::TAB, gallery::TAB];
 
 /// How to open the workbench.
 pub struct Options {

@@ -1,9 +1,10 @@
 //! What is opened: experiments, scenes, files that were edited or dropped on the window.
 
-use super::request::SideRequest;
-use super::{Workbench, save, watch};
 use crate::experiment::Experiment;
 use crate::lab::viewpoint_of;
+use crate::workbench::desired::request::SideRequest;
+use crate::workbench::desired::save;
+use crate::workbench::{Workbench, watch};
 use serde_json::json;
 use std::path::Path;
 use std::time::Instant;

@@ -1,6 +1,6 @@
 //! What is waited for, in words: the work of the engine that lasts longer than a moment.
 
-use super::Workbench;
+use crate::workbench::Workbench;
 use std::time::{Duration, Instant};
 
 /// What lasts no longer is not worth a word.

@@ -1,13 +1,14 @@
 //! Messages from other threads: the engine, the watch over files, comparisons, the inspector.
 
-use super::compare::MODES;
-use super::engine::Engine;
-use super::report::{PictureReport, Report};
-use super::{COMPARISON, NewPixels, Workbench, events, save};
 use crate::experiment::{CameraChoice, Experiment};
 use crate::graph::run::Change;
 use crate::lab::{Viewpoint, viewpoint_of};
 use crate::scene::Scene;
+use crate::workbench::desired::save;
+use crate::workbench::engine::Engine;
+use crate::workbench::engine::report::{PictureReport, Report};
+use crate::workbench::picture::compare::MODES;
+use crate::workbench::{COMPARISON, NewPixels, Workbench, events};
 use serde_json::json;
 use std::sync::Arc;
 use std::time::Duration;

@@ -1,11 +1,11 @@
 //! Work on the shown picture in the background, while frames go on: its error, a capture.
 
-use super::super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
-use super::super::guard::guarded;
-use super::super::report::Report;
-use super::super::save;
 use super::Run;
+use super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
+use super::guard::guarded;
+use super::report::Report;
 use crate::timers::Rows;
+use crate::workbench::desired::save;
 
 impl Run<'_> {
     /// Sends what a side shows to the error worker. A picture that is not there yet is asked for again.

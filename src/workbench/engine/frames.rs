@@ -1,11 +1,11 @@
 //! Frames that are left to render, and the reports about them.
 
-use super::super::renderdoc;
-use super::super::report::{PictureReport, Report};
-use super::super::request::LightState;
+use super::renderdoc;
+use super::report::{PictureReport, Report};
 use super::{LONG, Run, Submitted};
 use crate::graph::run::FrameTimes;
 use crate::lab::LabError;
+use crate::workbench::desired::request::LightState;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 

@@ -5,23 +5,28 @@
 //! and it can share memory; else each goes through main memory (8 MB at 1080p, about a millisecond each way).
 
 mod background;
+mod builder;
+pub mod error_worker;
 mod frames;
+pub(crate) mod guard;
 mod pictures;
 mod pulse;
 mod reconcile;
+mod renderdoc;
+pub mod report;
 mod scenes;
 
-use super::builder::{self, Done, Job, Key};
-use super::error_worker::{self, ErrorQuery, ErrorRequest};
-use super::report::{DeviceReport, Report};
-use super::request::{InspectTarget, RenderRequest};
 use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
 use crate::panics::said;
 use crate::scene::{Scene, SceneError};
 use crate::timers::Rows;
 use crate::vulkan::GpuOptions;
+use crate::workbench::desired::request::{InspectTarget, RenderRequest};
+use builder::{Done, Job, Key};
 use crossbeam_channel::{Receiver, Sender, select, unbounded};
+use error_worker::{ErrorQuery, ErrorRequest};
 use pulse::Pulse;
+use report::{DeviceReport, Report};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};

@@ -1,12 +1,12 @@
 //! Reconciling what a side shows with the desired state: values are set, or a build is swapped in.
 
-use super::super::builder::{Done, Job, Key};
-use super::super::report::{GraphInfo, PassUses, Report};
-use super::super::request::SideRequest;
 use super::Run;
+use super::builder::{Done, Job, Key};
+use super::report::{GraphInfo, PassUses, Report};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::lab::{LabError, Loaded, Session, params_of};
 use crate::vulkan::VulkanError;
+use crate::workbench::desired::request::SideRequest;
 use std::sync::Arc;
 use std::time::Instant;
 

@@ -1,8 +1,8 @@
 //! The scene that is desired, loaded on a thread of its own.
 
-use super::super::guard::guarded;
-use super::super::report::Report;
 use super::Run;
+use super::guard::guarded;
+use super::report::Report;
 use crate::lab::LabError;
 use crate::scene::{Scene, SceneError};
 use std::ops::ControlFlow;

@@ -1,0 +1,165 @@
+//! Undo: states to go back and forth between.
+
+use super::request::RenderRequest;
+use crate::workbench::Workbench;
+
+/// What an edit changes, and what opening an experiment changes besides.
+#[derive(Clone)]
+pub struct State {
+    desired: RenderRequest,
+    name: String,
+    fixed_size: Option<(u32, u32)>,
+    /// The scene's time, s.
+    time: f64,
+}
+
+/// A state, and whether the way to or from it was the opening of an experiment: then view, size and time are part of it.
+type Step = (State, bool);
+
+/// The states of a session.
+#[derive(Default)]
+pub struct History {
+    past: Vec<Step>,
+    future: Vec<Step>,
+    settled: Option<State>,
+    opened: bool,
+}
+
+/// States that are remembered.
+const MOST: usize = 200;
+
+impl State {
+    /// Whether undo has nothing to do between two states: views and measurements do not count, unless an experiment was
+    /// opened.
+    fn same(&self, other: &State, opened: bool) -> bool {
+        let (a, b) = (&self.desired, &other.desired);
+        let edit = a.sides == b.sides && (&a.scene, &a.environment, &a.lights) == (&b.scene, &b.environment, &b.lights);
+        let view = a.camera == b.camera && self.fixed_size == other.fixed_size && self.name == other.name;
+        edit && (view || !opened)
+    }
+}
+
+impl History {
+    /// The edit in work opens an experiment.
+    pub fn opens(&mut self) {
+        self.opened = true;
+    }
+
+    /// Remembers the state after an edit; while `held` (a slider in the hand) it is still the same edit.
+    fn note(&mut self, state: State, held: bool) {
+        let opened = self.opened;
+        match &mut self.settled {
+            Some(settled) if !settled.same(&state, opened) => {
+                if !held {
+                    self.past.push((std::mem::replace(settled, state), opened));
+                    if self.past.len() > MOST {
+                        self.past.remove(0);
+                    }
+                    self.future.clear();
+                    self.opened = false;
+                }
+            }
+            // A view that moves without an edit is where the next edit begins.
+            _ => {
+                self.settled = Some(state);
+                self.opened = false;
+            }
+        }
+    }
+
+    /// Whether there is something to undo and to redo.
+    pub fn can(&self) -> (bool, bool) {
+        (!self.past.is_empty(), !self.future.is_empty())
+    }
+
+    /// The state to go to from this one.
+    fn step(&mut self, now: State, back: bool) -> Option<Step> {
+        let (from, to) = if back { (&mut self.past, &mut self.future) } else { (&mut self.future, &mut self.past) };
+        let (state, opened) = from.pop()?;
+        to.push((now, opened));
+        Some((state, opened))
+    }
+}
+
+impl History {
+    /// Forgets a scene that could not be loaded: its states take the scene of `before`, to which the session returns.
+    fn forget_scene(&mut self, failed: (&str, &str), before: &State) {
+        let settled = self.settled.iter_mut();
+        let states = self.past.iter_mut().chain(&mut self.future).map(|s| &mut s.0).chain(settled);
+        for state in states {
+            if (state.desired.scene.as_str(), state.desired.environment.as_str()) == failed {
+                state.take_scene(before);
+            }
+        }
+        self.settled = Some(before.clone());
+        while self.past.last().is_some_and(|(last, opened)| last.same(before, *opened)) {
+            self.past.pop();
+        }
+        self.opened = false;
+    }
+}
+
+impl State {
+    fn take_scene(&mut self, other: &State) {
+        self.desired.scene.clone_from(&other.desired.scene);
+        self.desired.environment.clone_from(&other.desired.environment);
+        self.desired.lights.clone_from(&other.desired.lights);
+        self.desired.camera = other.desired.camera;
+    }
+}
+
+impl Workbench {
+    /// Returns to the scene that is shown, and to all that was asked for before another one was, because that one could
+    /// not be loaded.
+    pub(crate) fn return_to_scene(&mut self) {
+        let Some(before) = self.before_loading.take() else { return };
+        let failed = (self.desired.scene.clone(), self.desired.environment.clone());
+        let (revision, scene_revision) = (self.desired.revision, self.desired.scene_revision);
+        let (clock, continuous, redo) = (self.desired.clock, self.desired.continuous, self.desired.redo);
+        self.desired = before.desired.clone();
+        (self.desired.revision, self.desired.scene_revision) = (revision, scene_revision);
+        (self.desired.clock, self.desired.continuous, self.desired.redo) = (clock, continuous, redo);
+        self.name.clone_from(&before.name);
+        self.fixed_size = before.fixed_size;
+        (self.experiment, self.returning) = (None, false);
+        self.view.picture.clone_from(&self.desired.environment);
+        self.watch.scene(&self.desired.scene);
+        self.history.forget_scene((&failed.0, &failed.1), &before);
+    }
+
+    pub(crate) fn state(&self) -> State {
+        let time = self.sides[0].picture.as_ref().map_or(self.desired.clock.at, |p| p.time);
+        State { desired: self.desired.clone(), name: self.name.clone(), fixed_size: self.fixed_size, time }
+    }
+
+    /// Remembers what there is now; see [`History::note`].
+    pub(crate) fn remember(&mut self, held: bool) {
+        let state = self.state();
+        self.history.note(state, held);
+    }
+
+    /// Goes back, or forth, by one edit.
+    pub(crate) fn go(&mut self, back: bool) {
+        let now = self.state();
+        let Some((State { desired, name, fixed_size, time }, opened)) = self.history.step(now, back) else { return };
+        if (&self.desired.scene, &self.desired.environment) != (&desired.scene, &desired.environment) {
+            self.open_scene(&desired.scene);
+            self.view.picture.clone_from(&desired.environment);
+            self.desired.environment = desired.environment;
+            // It is seen as it was, not as an experiment would have it.
+            self.returning = desired.camera.is_some();
+            self.desired.camera = desired.camera;
+        }
+        self.desired.sides = desired.sides;
+        self.desired.lights = desired.lights;
+        if opened {
+            self.desired.camera = desired.camera;
+            self.desired.size = desired.size;
+            self.desired.clock.at = time;
+            self.desired.clock.jumps += 1;
+            (self.name, self.fixed_size, self.resize_since) = (name, fixed_size, None);
+            self.experiment = None;
+        }
+        self.history.settled = Some(self.state());
+    }
+}

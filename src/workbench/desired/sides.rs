@@ -1,0 +1,69 @@
+//! A and B: how a comparison begins and ends, and what they differ in.
+
+use super::edit;
+use super::request::SideRequest;
+use crate::graph::param::OFF;
+use crate::workbench::{Workbench, short};
+
+/// What A was before a comparison, and what the comparison made of it.
+pub(crate) type Alone = Option<(SideRequest, SideRequest)>;
+
+/// Most parameters that are named.
+const NAMED: usize = 2;
+
+impl Workbench {
+    /// Shows two sides beside each other.
+    pub(crate) fn compare_sides(&mut self, sides: [Option<SideRequest>; 2]) {
+        let now = self.desired.sides[0].clone();
+        // A comparison that follows another ends with what was before the first.
+        let first = self.alone.take().filter(|(_, made)| self.desired.sides[1].is_some() && now.as_ref() == Some(made));
+        let before = first.map(|(before, _)| before).or(now);
+        self.alone = before.zip(sides[0].clone());
+        self.desired.sides = sides;
+        self.panel_side = 1;
+    }
+
+    /// Shows A alone: as it was before the comparison, unless it was edited since.
+    pub(crate) fn end_comparison(&mut self) {
+        self.desired.sides[1] = None;
+        if let Some((before, made)) = self.alone.take()
+            && self.desired.sides[0].as_ref() == Some(&made)
+        {
+            self.desired.sides[0] = Some(before);
+        }
+    }
+
+    /// What A and B differ in, a few words each; nothing where they are the same, or there is no B.
+    pub(crate) fn sides_in_words(&self) -> [String; 2] {
+        let [Some(a), Some(b)] = &self.desired.sides else { return Default::default() };
+        if a.graph != b.graph {
+            return [a, b].map(|side| short(&side.graph));
+        }
+        let Some(info) = &self.sides[0].info else { return Default::default() };
+        let mut words = [Vec::new(), Vec::new()];
+        let off = [a, b].map(|side| edit::off(side, &info.params));
+        for (words, (own, other)) in words.iter_mut().zip([(&off[0], &off[1]), (&off[1], &off[0])]) {
+            let without: Vec<&str> = own.iter().filter(|o| !other.contains(o)).map(String::as_str).collect();
+            let with: Vec<&str> = other.iter().filter(|o| !own.contains(o)).map(String::as_str).collect();
+            words.extend((!without.is_empty()).then(|| format!("without {}", without.join(", "))));
+            words.extend((!with.is_empty()).then(|| format!("with {}", with.join(", "))));
+        }
+        let mut seen: Vec<&str> = vec![OFF];
+        let mut more = false;
+        for (name, _) in a.params.iter().chain(&b.params) {
+            let Some(param) = info.graph.params.param(name).filter(|_| !seen.contains(&name.as_str())) else {
+                continue;
+            };
+            seen.push(name);
+            let values = [a, b].map(|side| edit::value(side, param));
+            if values[0] == values[1] {
+                continue;
+            }
+            more |= words[0].len() >= NAMED;
+            for (words, value) in words.iter_mut().zip(&values).filter(|(words, _)| words.len() < NAMED) {
+                words.push(format!("{name} {value}"));
+            }
+        }
+        words.map(|w| format!("{}{}", w.join(", "), if more { ", …" } else { "" }))
+    }
+}

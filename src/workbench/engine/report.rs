@@ -1,0 +1,168 @@
+//! Messages from the engine to the window.
+
+use super::error_worker::ErrorResult;
+use crate::diagnostics::Diagnostic;
+use crate::graph::Graph;
+use crate::graph::expr::Env;
+use crate::graph::link::Linked;
+use crate::graph::param::Params;
+use crate::graph::plan::TexturePlan;
+use crate::graph::run::Change;
+use crate::graph::table::Table;
+use crate::lab::Texels;
+use crate::scene::Scene;
+use crate::vulkan::Buffer;
+use crate::workbench::desired::request::InspectTarget;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The device that the engine uses.
+#[derive(Clone, Debug)]
+pub struct DeviceReport {
+    /// Name.
+    pub name: String,
+    /// Driver.
+    pub driver: String,
+}
+
+/// Names of the resources that a pass uses.
+#[derive(Clone, Debug, Default)]
+pub struct PassUses {
+    /// Number of the pass.
+    pub pass: usize,
+    /// Resources it reads, of this or the last frame.
+    pub reads: Vec<String>,
+    /// Resources it writes.
+    pub writes: Vec<String>,
+}
+
+/// The graph of a side as it runs now.
+#[derive(Clone)]
+pub struct GraphInfo {
+    /// The graph.
+    pub graph: Arc<Graph>,
+    /// Its passes with their shaders.
+    pub linked: Arc<Vec<Linked>>,
+    /// Scene, size and device, as its expressions see them.
+    pub variables: Env,
+    /// Its parameters with the values they were built with.
+    pub params: Params,
+    /// The textures as they were made, in the graph's order.
+    pub textures: Vec<TexturePlan>,
+    /// (name, bytes) of what was made.
+    pub memory: Vec<(String, u64)>,
+    /// Bytes of geometry and textures of the scene.
+    pub scene_bytes: u64,
+    /// Numbers of the passes that run, in order.
+    pub passes: Vec<usize>,
+    /// What the passes that run read and write, in order.
+    pub uses: Vec<PassUses>,
+    /// Passes that do not run, and why.
+    pub left_out: Vec<(usize, String)>,
+    /// Resources that passes which are off would write, and nobody else does.
+    pub empty: Vec<String>,
+    /// Findings that are no errors.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A picture and the times of its frame.
+#[derive(Clone)]
+pub struct PictureReport {
+    /// 0 is A, 1 is B.
+    pub side: usize,
+    /// The request that it fulfils.
+    pub request: u64,
+    /// Revision of the files that it was made from.
+    pub revision: u64,
+    /// Whether it is the preview, shown until the graph's own picture is there.
+    pub preview: bool,
+    /// Counts the side's frames.
+    pub frame: u64,
+    /// When it was finished, as the engine saw it.
+    pub finished: Instant,
+    /// Time of the scene, s.
+    pub time: f64,
+    /// Width and height.
+    pub size: [u32; 2],
+    /// RGBA, 8 bits each, in main memory; where the window takes pictures from the device, only if it asked for them.
+    pub bytes: Option<Arc<Vec<u8>>>,
+    /// The same on the device.
+    pub shared: Option<Arc<Buffer>>,
+    /// (pass number, ms) on the GPU.
+    pub passes: Vec<(usize, f64)>,
+    /// Numbers of the passes that slept.
+    pub asleep: Vec<usize>,
+    /// First to last command on the GPU, ms.
+    pub gpu_ms: f64,
+    /// Recording and submitting on the CPU, ms.
+    pub cpu_ms: f64,
+}
+
+/// A message from the engine.
+pub enum Report {
+    /// A device was opened.
+    Device(DeviceReport),
+    /// A side runs something new. The times are those of the whole build, ms, and of the wait from the change to it.
+    Built {
+        /// 0 is A, 1 is B.
+        side: usize,
+        /// What runs.
+        info: Arc<GraphInfo>,
+        /// Numbers of objects kept and rebuilt.
+        change: Change,
+        /// From the start of the build to the swap.
+        ms: f64,
+        /// The sources' revision.
+        revision: u64,
+        /// Vulkan objects that live on the device: what grows is never let go.
+        objects: usize,
+    },
+    /// A build failed; what ran before runs on.
+    Failed {
+        /// 0 is A, 1 is B.
+        side: usize,
+        /// The errors, with their places.
+        diagnostics: Vec<Diagnostic>,
+        /// The sources' revision.
+        revision: u64,
+    },
+    /// A side's parameters were set without building anything.
+    Set {
+        /// 0 is A, 1 is B.
+        side: usize,
+        /// The values.
+        params: Params,
+    },
+    /// A frame has finished.
+    Picture(PictureReport),
+    /// The pixels of a side's frame, now in main memory too.
+    Pixels {
+        /// 0 is A, 1 is B.
+        side: usize,
+        /// Counts the side's frames.
+        frame: u64,
+        /// RGBA, 8 bits each.
+        bytes: Arc<Vec<u8>>,
+    },
+    /// A scene is being loaded: what, and the share done.
+    Loading(String, f32),
+    /// A scene is there.
+    Loaded(Arc<Scene>),
+    /// A scene could not be loaded; the one before stays.
+    LoadFailed(String),
+    /// Texels that the inspector asked for.
+    Texels(InspectTarget, Box<Texels>),
+    /// Number of a table, where its columns lie, and the bytes of its buffer, of side A.
+    Table(usize, Table, Vec<u8>),
+    /// Messages of the graph's checks that failed.
+    Checks(usize, Vec<String>),
+    /// A capture was made, or why not.
+    Captured(Result<PathBuf, String>),
+    /// The error of what is shown.
+    Error(ErrorResult),
+    /// The device failed, and what can be done: the engine waits.
+    DeviceFailed(String),
+    /// Something the user should know.
+    Trouble(String),
+}

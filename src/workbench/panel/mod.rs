@@ -1,0 +1,281 @@
+//! The panel of parameters, made from what the graph declares: nothing here knows any of them.
+
+pub(crate) mod control;
+pub(crate) mod effects;
+
+use crate::graph::Graph;
+use crate::graph::effect::Reason;
+use crate::graph::param::Param;
+use crate::workbench::desired::edit;
+use crate::workbench::desired::request::SideRequest;
+use control::{CHANGED, control};
+use effects::Found;
+use egui::{RichText, Ui};
+
+/// What of the panel is not part of the experiment.
+#[derive(Default)]
+pub struct Panel {
+    /// Text that names, groups or help must hold.
+    pub search: String,
+    /// Show only what is not at its default.
+    pub only_changed: bool,
+    /// Whether it had them when it was shown last: Esc has taken them by then.
+    pub typing: bool,
+}
+
+/// What the rows of a side are made from.
+struct Shown<'a> {
+    graph: &'a Graph,
+    found: Option<&'a Found>,
+    /// Whether that is of other values.
+    old: bool,
+    /// The side that it is compared with.
+    other: Option<&'a SideRequest>,
+}
+
+/// The search field.
+fn search_id() -> egui::Id {
+    egui::Id::new("search parameters")
+}
+
+impl Panel {
+    /// Gives the search the keys, those of this frame too.
+    pub fn find(ui: &Ui) {
+        ui.memory_mut(|m| m.request_focus(search_id()));
+    }
+
+    /// Shows the parameters of a side; edits go into it. `other` is the side it is compared with.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        graph: &Graph,
+        side: &mut SideRequest,
+        other: Option<&SideRequest>,
+        (found, old): (Option<&Found>, bool),
+    ) {
+        self.top(ui, graph, side);
+        let needle = folded(&self.search);
+        let wanted = |p: &Param, side: &SideRequest| {
+            matches(graph, p, &needle) && (!self.only_changed || is_changed(graph, side, p))
+        };
+        let searching = !needle.is_empty() || self.only_changed;
+        let shown = Shown { graph, found, old, other };
+        // Wide rows scroll: they must not make the panel wider.
+        egui::ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            let mut any = false;
+            if !searching && !graph.pinned.is_empty() {
+                egui::CollapsingHeader::new("Pinned").default_open(true).show(ui, |ui| shown.pinned(ui, side));
+            }
+            for (number, group) in groups(graph).into_iter().enumerate() {
+                let of_group = |p: &&Param| p.group == group;
+                let list: Vec<&Param> = graph.params.list.iter().filter(of_group).filter(|p| wanted(p, side)).collect();
+                if list.is_empty() {
+                    continue;
+                }
+                any = true;
+                let count = graph.params.list.iter().filter(of_group).filter(|p| is_changed(graph, side, p)).count();
+                let title = if group.is_empty() { "Other" } else { group };
+                let title = match count {
+                    0 => RichText::new(title),
+                    n => RichText::new(format!("{title} ({n})")).color(CHANGED),
+                };
+                // What a search opens is folded again after it, as it was.
+                let header = egui::CollapsingHeader::new(title).id_salt((searching, "group", number));
+                header.default_open(searching).show(ui, |ui| {
+                    for param in list {
+                        shown.row(ui, param, &param.name, side);
+                    }
+                });
+            }
+            for (name, instead) in
+                graph.params.retired.iter().filter(|r| searching && !self.only_changed && !r.0.contains('='))
+            {
+                if folded(name).contains(&needle) && graph.params.index(name).is_none() {
+                    any = true;
+                    elsewhere(ui, name, name, instead, side);
+                }
+            }
+            if !any {
+                ui.weak(if self.only_changed && needle.is_empty() { "nothing is changed" } else { "nothing matches" });
+            }
+        });
+    }
+
+    fn top(&mut self, ui: &mut Ui, graph: &Graph, side: &mut SideRequest) {
+        let top = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
+        ui.allocate_ui_with_layout(top, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let any = graph.params.list.iter().any(|p| is_changed(graph, side, p));
+            let reset = egui::Button::new(RichText::new("reset all")).small();
+            if ui.add_enabled(any, reset).clicked() {
+                side.params.clear();
+            }
+            ui.checkbox(&mut self.only_changed, "changed").on_hover_text("Only what is not at its default");
+            let clear = ui.add_enabled(!self.search.is_empty(), egui::Button::new("×").small().frame(false));
+            clear.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, "clear the search"));
+            let hint = egui::TextEdit::singleline(&mut self.search).id(search_id()).hint_text("search");
+            let field = ui.add(hint.desired_width(f32::INFINITY)).on_hover_text("Ctrl F; Esc clears");
+            field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "search parameters"));
+            self.typing = field.has_focus();
+            if clear.clicked() {
+                self.search.clear();
+            }
+        });
+    }
+}
+
+impl Shown<'_> {
+    /// The parameters that the graph pins, by their titles.
+    fn pinned(&self, ui: &mut Ui, side: &mut SideRequest) {
+        for (name, title) in &self.graph.pinned {
+            let params = &self.graph.params;
+            if let Some(param) = params.param(name) {
+                self.row(ui, param, title, side);
+            } else if let Some((_, instead)) = params.retired.iter().find(|r| r.0 == *name) {
+                elsewhere(ui, name, title, instead, side);
+            }
+        }
+        self.needed(ui, side);
+    }
+
+    /// The choice with which most of the dimmed pinned parameters would count, a click away.
+    fn needed(&self, ui: &mut Ui, side: &mut SideRequest) {
+        let reasons = self.graph.pinned.iter().filter_map(|p| self.found?.idle.get(&p.0));
+        let needs: Vec<&(String, String)> = reasons.flat_map(|r| &r.needs).collect();
+        let count = |need: &(String, String)| needs.iter().filter(|n| **n == need).count();
+        // Of several, the first.
+        let Some((name, option)) = needs.iter().rev().max_by_key(|n| count(n)) else { return };
+        let Some(param) = self.graph.params.param(name) else { return };
+        let Ok(value) = param.parse(option) else { return };
+        ui.horizontal(|ui| {
+            if self.old {
+                // A second click would go on from a choice that is on its way.
+                return drop(ui.weak("dimmed: without effect in the picture shown"));
+            }
+            ui.weak("dimmed: without effect unless");
+            if ui.small_button(format!("{name} = {option}")).on_hover_text(&param.help).clicked() {
+                edit::set(side, param, &value);
+            }
+        });
+    }
+
+    fn row(&self, ui: &mut Ui, param: &Param, title: &str, side: &mut SideRequest) {
+        let before = edit::value(side, param);
+        let mut value = before.clone();
+        let changed = is_changed(self.graph, side, param);
+        let idle = self.found.and_then(|f| f.idle.get(&param.name));
+        ui.horizontal(|ui| {
+            let reset = ui.add_visible(changed, egui::Button::new("↺").small().frame(false));
+            let name = format!("reset {}", param.name);
+            reset.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &name));
+            if reset.on_hover_text("Back to the default").clicked() {
+                value = param.default.clone();
+            }
+            if idle.is_some() {
+                ui.multiply_opacity(0.55);
+            }
+            let response = control(ui, param, title, &mut value, changed);
+            response.on_hover_ui(|ui| help(ui, param, idle));
+            if let Some(taken) = self.found.and_then(|f| f.effective.get(&param.name)) {
+                ui.weak(format!("= {}{}", short_number(*taken), unit(param))).on_hover_text("What shaders take for it");
+            }
+            if let Some(other) = self.other {
+                let theirs = edit::value(other, param);
+                if theirs != before {
+                    ui.weak(format!("other: {theirs}"));
+                }
+            }
+        });
+        if value != before {
+            edit::set(side, param, &value);
+        }
+    }
+}
+
+/// A parameter that another graph has; a button goes there, where the graph's text begins with its name.
+fn elsewhere(ui: &mut Ui, name: &str, title: &str, instead: &str, side: &mut SideRequest) {
+    ui.horizontal(|ui| {
+        ui.add_visible(false, egui::Button::new("↺").small().frame(false));
+        ui.weak(title).on_hover_text(format!("{name}: {instead}"));
+        let graph = instead.strip_prefix("graph: \"").and_then(|rest| rest.split_once('"')).map(|(graph, _)| graph);
+        match graph {
+            Some(graph) => {
+                let button = ui.small_button(format!("use {graph}"));
+                button.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("use {graph} for {title}"))
+                });
+                if button.on_hover_text(instead).clicked() {
+                    side.graph = graph.to_string();
+                }
+            }
+            None => drop(ui.weak(instead)),
+        }
+    });
+}
+
+fn groups(graph: &Graph) -> Vec<&str> {
+    let mut groups: Vec<&str> = Vec::new();
+    for param in &graph.params.list {
+        if !groups.contains(&param.group.as_str()) {
+            groups.push(&param.group);
+        }
+    }
+    groups
+}
+
+/// A text to be compared without regard to case, spaces and underscores.
+pub(super) fn folded(text: &str) -> String {
+    text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+fn matches(graph: &Graph, param: &Param, needle: &str) -> bool {
+    let title = graph.pinned.iter().find(|p| p.0 == param.name).map_or("", |p| p.1.as_str());
+    let texts = [param.name.as_str(), title, &param.group, &param.help];
+    needle.is_empty() || texts.iter().any(|text| folded(text).contains(needle))
+}
+
+/// Whether a value is another than the default; where the pointer is is nobody's setting.
+fn is_changed(graph: &Graph, side: &SideRequest, param: &Param) -> bool {
+    edit::value(side, param) != param.default && graph.pointer.as_ref() != Some(&param.name)
+}
+
+fn help(ui: &mut Ui, param: &Param, idle: Option<&Reason>) {
+    ui.set_max_width(320.0);
+    ui.strong(&param.name);
+    if let Some(why) = idle {
+        let why = &why.text;
+        let text = if why.starts_with("where") { format!("it counts {why}") } else { why.clone() };
+        ui.colored_label(CHANGED, format!("changes nothing now: {text}"));
+    }
+    ui.label(&param.help);
+    let mut facts = vec![format!("default {}", param.default)];
+    if let Some((low, high)) = param.range {
+        facts.push(format!("{low} to {high}"));
+    }
+    if !param.unit.is_empty() {
+        facts.push(param.unit.clone());
+    }
+    if param.is_compiled() {
+        facts.push("a constant of its shaders: changing it builds them anew".into());
+    }
+    ui.weak(facts.join(", "));
+}
+
+fn unit(param: &Param) -> String {
+    if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) }
+}
+
+fn short_number(x: f64) -> String {
+    format!("{}", (x * 1e3).round() / 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::folded;
+
+    #[test]
+    fn names_are_found_however_they_are_written() {
+        for text in ["lod_offset", "LOD offset", "lodOffset", "lod-offset"] {
+            assert_eq!(folded(text), "lodoffset");
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Times on the picture: in a corner of each side.
+
+use super::compare::Mode;
+use crate::timers::{Rows, Timers, draw};
+use crate::workbench::Workbench;
+use egui::{Painter, Rect};
+
+impl Workbench {
+    /// Draws the times of what is shown: the whole picture, and the part where B is.
+    pub(crate) fn timers(&mut self, painter: &Painter, a: Rect, b: Option<Rect>) {
+        if self.view.timers == Rows::None {
+            return;
+        }
+        let sides: Vec<Timers> = (0..2).map(|side| self.timers_of(painter.ctx(), side)).collect();
+        let longest = sides[0].longest().max(if b.is_some() { sides[1].longest() } else { 0.0 });
+        let flipped = self.view.mode == Mode::Flip && self.view.flipped && b.is_some();
+        draw(painter, a, false, &sides[usize::from(flipped)], longest);
+        if let Some(b) = b.filter(|_| self.view.mode != Mode::Flip) {
+            draw(painter, b, self.view.mode != Mode::Side, &sides[1], longest);
+        }
+    }
+
+    fn timers_of(&mut self, context: &egui::Context, side: usize) -> Timers {
+        let medians = self.times.medians(context, side);
+        let (Some(info), Some(picture)) = (&self.sides[side].info, &self.sides[side].picture) else {
+            return Timers::default();
+        };
+        let device = self.device.as_ref().map_or("", |d| d.name.as_str());
+        let mut timers =
+            Timers::new(self.view.timers, &info.graph, &info.params, device, picture.size, &medians.passes);
+        if self.desired.sides[1].is_some() {
+            timers.title[0].insert_str(0, ["A: ", "B: "][side.min(1)]);
+        }
+        if let Some((metric, error)) = self.chart.known_error(side, self.sent_number) {
+            timers.title.push(format!("{metric} {error:.3e}"));
+        }
+        timers.total = medians.total;
+        timers
+    }
+}

@@ -1,0 +1,256 @@
+//! Error against time while one works: the points of a sweep, and the workbench as a dot among them.
+
+mod choice;
+mod folder;
+mod gather;
+mod live;
+mod plot;
+mod rows;
+mod thumbnail;
+
+use super::Tab;
+use crate::campaign::report::{Data, Dot};
+use crate::experiment::Experiment;
+use crate::graph::param::Params;
+use crate::lab::parts_of;
+use crate::metrics::Metric;
+use crate::workbench::Workbench;
+use crate::workbench::panel::control::named;
+use choice::{Choice, Chosen};
+use egui::Ui;
+use folder::Folder;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+pub(crate) const TAB: Tab = Tab::new("Chart", |workbench, ui, _| workbench.chart_tab(ui));
+
+/// Most dots whose places are logged for scripts.
+const MAX_LOGGED: usize = 2000;
+/// Least time between two tellings.
+const LOG_AGE: Duration = Duration::from_millis(100);
+
+/// State of this tab.
+#[derive(Default)]
+pub struct Chart {
+    /// Folders with sweeps, once they were looked for.
+    folders: Option<Vec<PathBuf>>,
+    folder: Option<Folder>,
+    choice: Choice,
+    /// Whether the subject was chosen by hand.
+    by_hand: bool,
+    chosen: Chosen,
+    live: live::State,
+    thumbnail: thumbnail::Thumbnail,
+    /// The dots as logged last.
+    logged: Value,
+    logged_at: Option<Instant>,
+}
+
+impl Workbench {
+    /// The tab.
+    pub(crate) fn chart_tab(&mut self, ui: &mut Ui) {
+        ui.weak("How far pictures are from the path-traced truth, and what they take: a sweep's, and the one shown.");
+        self.folder_row(ui);
+        let data = self.chart.chosen.refresh(self.chart.folder.as_ref(), &self.chart.choice);
+        self.choice_row(ui, data.as_deref());
+        let subject = data.as_ref().and_then(|d| d.keys.get(self.chart.choice.subject));
+        let now = self.chart.live.subject();
+        let device = self.device.as_ref().map_or("", |d| d.name.as_str());
+        let mut differences: Vec<String> = match (now, subject) {
+            (Some(now), Some(subject)) => {
+                folder::differences(now, device, subject).into_iter().map(String::from).collect()
+            }
+            _ => Vec::new(),
+        };
+        let swept = data.as_ref().and_then(|d| d.samples.get(self.chart.choice.subject));
+        differences.extend(swept.and_then(|swept| self.chart.live.reference_differs(swept)));
+        let title = self.chart.choice.metric.axis();
+        let lives = [0, 1].map(|side| self.chart.live.dot(side, self.sent_number));
+        let height = (ui.available_height() - 150.0).clamp(160.0, 520.0);
+        let shown = plot::Shown {
+            chosen: &self.chart.chosen,
+            fits: differences.is_empty(),
+            live: lives.each_ref().map(Option::as_ref),
+            title: &title,
+        };
+        let name = format!("{:?} {:?}", self.chart.folder.as_ref().map(|f| &f.path), self.chart.choice);
+        let drawn = plot::show(ui, &name, height, &shown);
+        if !differences.is_empty() {
+            let text = format!("the sweep differs: {}", differences.join(", "));
+            ui.weak(text)
+                .on_hover_text("Errors of different pictures cannot be compared. A click on a dot goes there.");
+        }
+        self.live_rows(ui, &title, &lives);
+        let Some(data) = data else { return };
+        let scored = drawn.hovered.map(|i| &self.chart.chosen.dots[i]);
+        if let Some((dot, error)) = scored.and_then(|s| Some((data.dots.get(s.index)?, s.error))) {
+            self.chart.thumbnail.show(&drawn.response, dot, &title, error, &self.wake);
+            if drawn.response.clicked() {
+                self.load_point(dot);
+            }
+        }
+        self.log_dots(ui, &data, &drawn.places, &differences);
+    }
+
+    fn folder_row(&mut self, ui: &mut Ui) {
+        let folders = self.chart.folders.get_or_insert_with(|| folder::list(&self.root)).clone();
+        let mut chosen = None;
+        ui.horizontal(|ui| {
+            let name = self.chart.folder.as_ref().map_or("no sweep".into(), |f| folder::name(&f.path));
+            egui::ComboBox::from_id_salt("sweep").selected_text(format!("sweep: {name}")).show_ui(ui, |ui| {
+                for path in &folders {
+                    if ui.selectable_label(folder::name(path) == name, folder::name(path)).clicked() {
+                        chosen = Some(path.clone());
+                    }
+                }
+            });
+            if ui.small_button("refresh").on_hover_text("Reads captures/sweeps and the sweep again").clicked() {
+                self.chart.folders = None;
+                chosen = self.chart.folder.as_ref().map(|f| f.path.clone());
+            }
+        });
+        if self.chart.folder.is_none() && chosen.is_none() {
+            chosen = folders.first().cloned();
+        }
+        if let Some(path) = chosen {
+            self.chart.folder = Some(Folder::open(path, self.wake.clone()));
+            self.chart.chosen.forget();
+            (self.chart.choice.subject, self.chart.by_hand) = (0, false);
+        }
+        match self.chart.folder.as_ref().map(|f| &f.data) {
+            None => {
+                let text =
+                    "There is no sweep in captures/sweeps yet: `conelab sweep configs/sweeps/cones.ron` makes one.";
+                ui.weak(text);
+            }
+            Some(None) => {
+                ui.weak("reading");
+            }
+            Some(Some(Err(why))) => {
+                ui.colored_label(egui::Color32::from_rgb(255, 110, 90), why);
+            }
+            Some(Some(Ok(_))) => {}
+        }
+    }
+
+    fn choice_row(&mut self, ui: &mut Ui, data: Option<&Data>) {
+        // The subject that is shown, unless another one was asked for.
+        if let (Some(data), Some(now), false) = (data, self.chart.live.subject(), self.chart.by_hand) {
+            let device = self.device.as_ref().map_or("", |d| d.name.as_str());
+            let fits = |key: &_| folder::differences(now, device, key).is_empty();
+            self.chart.choice.subject = data.keys.iter().position(fits).unwrap_or(self.chart.choice.subject);
+        }
+        let graph = self.sides[0].info.as_ref().map(|info| &info.graph);
+        let own = graph.map_or(Vec::new(), |graph| parts_of(graph).into_iter().map(|p| p.name).collect());
+        let choice = &mut self.chart.choice;
+        ui.horizontal_wrapped(|ui| {
+            egui::ComboBox::from_id_salt("part").selected_text(format!("part: {}", choice.part)).show_ui(ui, |ui| {
+                for part in data.map(|d| &d.parts).filter(|p| !p.is_empty()).unwrap_or(&own) {
+                    ui.selectable_value(&mut choice.part, part.clone(), part);
+                }
+            });
+            let title = choice.metric.axis();
+            egui::ComboBox::from_id_salt("metric").selected_text(format!("error: {title}")).show_ui(ui, |ui| {
+                for metric in Metric::ranking() {
+                    ui.selectable_value(&mut choice.metric, metric, metric.axis());
+                }
+            });
+        });
+        let Some(data) = data.filter(|d| d.subjects.len() > 1) else { return };
+        let name = |i: usize| data.subjects.get(i).cloned().unwrap_or_default();
+        let menu = egui::ComboBox::from_id_salt("subject").selected_text(name(choice.subject)).width(280.0);
+        let menu = menu.show_ui(ui, |ui| {
+            for i in 0..data.subjects.len() {
+                self.chart.by_hand |= ui.selectable_value(&mut choice.subject, i, name(i)).clicked();
+            }
+        });
+        named(&menu.response, egui::WidgetType::ComboBox, "scene, camera and size");
+    }
+
+    /// Shows a point's experiment in side A, at its size: then its error can be compared.
+    fn load_point(&mut self, dot: &Dot) {
+        let Some(folder) = &self.chart.folder else { return };
+        let short: String = dot.id.chars().take(8).collect();
+        let name = format!("{}-{short}", folder::name(&folder.path));
+        match Experiment::from_text(&folder.path.join(format!("{name}.ron")), &dot.experiment) {
+            Ok(mut experiment) => {
+                if let Some(info) = self.sides[0].info.as_ref().filter(|o| runs(&o.graph.name, &experiment.graph)) {
+                    without_defaults(&mut experiment, &info.graph.params);
+                }
+                self.fixed_size = Some(experiment.size);
+                self.open(&experiment);
+                self.status = format!("loaded {name}");
+                self.event(
+                    "loaded point",
+                    json!({ "id": dot.id, "name": name, "params": experiment_params(&experiment) }),
+                );
+            }
+            Err(errors) => self.sides[0].errors = errors,
+        }
+    }
+
+    /// Logs where the dots are, in points, for scripts.
+    fn log_dots(&mut self, ui: &Ui, data: &Data, places: &[egui::Pos2], differences: &[String]) {
+        if self.events.is_none() {
+            return;
+        }
+        let chosen = &self.chart.chosen;
+        let dots = chosen.dots.iter().zip(places).zip(&chosen.on_front).take(MAX_LOGGED).map(|((s, at), front)| {
+            json!({ "id": data.dots[s.index].id, "at": [at.x.round(), at.y.round()], "ms": s.ms, "error": s.error,
+                "front": front })
+        });
+        let logged = json!({ "part": self.chart.choice.part, "metric": self.chart.choice.metric.key, "differs": differences,
+            "dots": dots.collect::<Vec<_>>() });
+        if logged == self.chart.logged {
+            return;
+        }
+        // The dots move as long as the diamond does.
+        let age = self.chart.logged_at.map_or(LOG_AGE, |t| t.elapsed());
+        if age < LOG_AGE {
+            ui.ctx().request_repaint_after(LOG_AGE - age);
+        } else {
+            self.chart.logged_at = Some(Instant::now());
+            self.chart.logged = logged.clone();
+            self.event("dots", logged);
+        }
+    }
+
+    /// Takes in the messages of the threads of this tab.
+    pub(crate) fn poll_chart(&mut self) {
+        if self.chart.folder.as_mut().is_some_and(Folder::take) {
+            self.chart.chosen.forget();
+        }
+        self.poll_gather();
+    }
+
+    /// Whether something is about to come.
+    pub(crate) fn chart_awaits(&self) -> bool {
+        let reading = self.chart.folder.as_ref().is_some_and(|f| f.data.is_none());
+        self.tab.is(TAB) && (reading || self.chart.live.awaits() || self.error_pending())
+    }
+}
+
+/// Whether an experiment's graph is the one of this name.
+fn runs(name: &str, graph: &str) -> bool {
+    crate::workbench::short(graph) == crate::workbench::short(name)
+}
+
+fn without_defaults(experiment: &mut Experiment, defaults: &Params) {
+    experiment.params.retain(|(name, text)| {
+        let param = defaults.param(&name.value);
+        param.is_none_or(|p| p.parse(text).ok().as_ref() != Some(&p.default))
+    });
+}
+
+fn experiment_params(experiment: &Experiment) -> Value {
+    experiment.params.iter().map(|(name, text)| (name.value.clone(), Value::from(text.clone()))).collect()
+}
+
+/// The data of the folder that is shown.
+impl Chart {
+    fn data(&self) -> Option<&Arc<Data>> {
+        self.folder.as_ref()?.data.as_ref()?.as_ref().ok()
+    }
+}

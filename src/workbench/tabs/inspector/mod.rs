@@ -1,0 +1,312 @@
+//! Looks into any texture of the graph.
+
+mod histogram;
+mod image;
+mod statistics;
+mod viewport;
+mod views;
+mod work;
+
+use super::Tab;
+use crate::graph::plan::TexturePlan;
+use crate::lab::Texels;
+use crate::vulkan::format::Channels;
+use crate::workbench::desired::request::InspectTarget;
+use crate::workbench::engine::report::GraphInfo;
+use crate::workbench::panel::control::{named, spin};
+use crate::workbench::{INSPECTOR, Workbench};
+use egui::{Color32, DragValue, Slider, TextureId, Ui, Vec2};
+use image::{Channel, Tone};
+use std::sync::Arc;
+use work::{Done, Source, Work};
+
+pub(crate) const TAB: Tab = Tab {
+    middle: |workbench, ui, textures| match workbench.inspector.fills_viewport() {
+        true => workbench.inspected(ui, textures),
+        false => workbench.picture(ui, textures),
+    },
+    ..Tab::new("Inspect", |workbench, ui, textures| workbench.inspector_tab(ui, textures))
+};
+
+/// State of this tab.
+pub struct Inspector {
+    target: InspectTarget,
+    /// Whether the picture takes the render's place.
+    in_viewport: bool,
+    tone: Tone,
+    /// Whether the next texels decide the range.
+    fit: bool,
+    work: Work,
+    shown: Option<Done>,
+    pan_zoom: viewport::PanZoom,
+    before: views::Before,
+}
+
+impl Default for Inspector {
+    fn default() -> Self {
+        Inspector {
+            target: InspectTarget { side: 0, texture: String::new(), mip: 0, layer: 0, axis: 2, slice: 0 },
+            in_viewport: true,
+            tone: Tone::default(),
+            fit: true,
+            work: Work::default(),
+            shown: None,
+            pan_zoom: viewport::PanZoom::default(),
+            before: views::Before::default(),
+        }
+    }
+}
+
+impl Inspector {
+    /// Chooses a texture.
+    pub fn open(&mut self, side: usize, texture: String) {
+        if self.target.texture != texture {
+            self.fit = true;
+            self.pan_zoom = viewport::PanZoom::default();
+        }
+        // A slice that no volume has becomes the middle one.
+        self.target = InspectTarget { side, texture, mip: 0, layer: 0, axis: self.target.axis, slice: u32::MAX };
+    }
+
+    /// Takes in the texels that were asked for.
+    /// Those of a volume are a slice.
+    pub fn note(&mut self, target: InspectTarget, texels: Texels, volume: bool, wake: &Arc<dyn Fn() + Send + Sync>) {
+        let texels = if volume { image::upright(texels, target.axis) } else { texels };
+        // What was asked for before the user chose anew would only hold up what is to come.
+        if target.texture != self.target.texture || target.side != self.target.side {
+            return;
+        }
+        let fit = std::mem::take(&mut self.fit);
+        if fit {
+            self.tone = first_tone(&texels, self.tone);
+        }
+        self.work.start(Source::New(target, texels), self.tone, fit, wake);
+    }
+
+    /// New pixels to show, if there are.
+    pub fn take(&mut self, wake: &Arc<dyn Fn() + Send + Sync>) -> Option<crate::workbench::NewPixels> {
+        let done = self.work.take(wake)?;
+        if done.fitted {
+            (self.tone.low, self.tone.high) = (done.tone.low, done.tone.high);
+        }
+        let (size, bytes) = (done.decoded.size, Some(done.image.clone()));
+        let pixels = crate::workbench::NewPixels { picture: INSPECTOR, size, bytes, shared: None };
+        self.shown = Some(done);
+        Some(pixels)
+    }
+
+    /// Whether the viewport shows the inspected texture.
+    pub fn fills_viewport(&self) -> bool {
+        self.in_viewport && self.shown.is_some() && self.before.is_empty()
+    }
+
+    /// Shows the texels there are otherwise, when the tone was changed.
+    fn show_again(&mut self, before: Tone, fit: bool, wake: &Arc<dyn Fn() + Send + Sync>) {
+        if self.tone == before && !fit {
+            return;
+        }
+        if let Some(done) = &self.shown {
+            let source = Source::Again(done.decoded.clone(), done.values.clone());
+            self.work.start(source, self.tone, fit, wake);
+        }
+    }
+}
+
+/// How texels of that format are shown at first.
+fn first_tone(texels: &Texels, tone: Tone) -> Tone {
+    let f = texels.format;
+    let channel = if f.count == 1 { Channel::One(0) } else { Channel::Rgb };
+    // Bytes are mostly encoded already; depths and integers are no light.
+    let raw = f.channels != Channels::Float || f.name.starts_with("rgba8") || f.count < 3;
+    Tone { channel, raw, stops: 0.0, ..tone }
+}
+
+impl Workbench {
+    /// The tab.
+    pub(crate) fn inspector_tab(&mut self, ui: &mut Ui, textures: &[TextureId]) {
+        self.view_buttons(ui);
+        if self.desired.sides[1].is_none() {
+            self.inspector.target.side = 0;
+        } else {
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut self.inspector.target.side, 0, "A");
+                ui.selectable_value(&mut self.inspector.target.side, 1, "B");
+            });
+        }
+        let Some(info) = self.sides[self.inspector.target.side].info.clone() else {
+            ui.weak(self.waiting_text());
+            return;
+        };
+        let plan = self.choose(ui, &info);
+        let Some(plan) = plan else {
+            ui.weak("The graph has no textures");
+            return;
+        };
+        self.desired.inspect = Some(self.inspector.target.clone());
+        ui.separator();
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            self.tones(ui, &plan);
+            self.numbers(ui);
+            if !self.inspector.in_viewport && self.inspector.shown.is_some() {
+                let size = Vec2::new(ui.available_width(), ui.available_width().max(ui.available_height()));
+                ui.allocate_ui(size, |ui| self.inspected(ui, textures));
+            }
+        });
+    }
+
+    /// Texture, mip, layer or slice.
+    fn choose(&mut self, ui: &mut Ui, info: &GraphInfo) -> Option<TexturePlan> {
+        let names: Vec<&str> = info.graph.textures.iter().map(|t| t.0.as_str()).collect();
+        if !names.contains(&self.inspector.target.texture.as_str()) {
+            let preferred = info.graph.hdr.as_deref().or(info.graph.output.as_deref());
+            let name = preferred.or(names.first().copied())?.to_string();
+            self.inspector.open(self.inspector.target.side, name);
+        }
+        let mut chosen = None;
+        let box_ = egui::ComboBox::from_id_salt("texture").width(ui.available_width() - 8.0);
+        let label = describe(info, &self.inspector.target.texture);
+        let menu = box_.height(500.0).selected_text(label).show_ui(ui, |ui| {
+            for name in &names {
+                if ui.selectable_label(*name == self.inspector.target.texture, describe(info, name)).clicked() {
+                    chosen = Some((*name).to_string());
+                }
+            }
+        });
+        named(&menu.response, egui::WidgetType::ComboBox, "texture");
+        if let Some(name) = chosen {
+            self.inspector.open(self.inspector.target.side, name);
+        }
+        let target = &mut self.inspector.target;
+        let index = info.graph.texture(&target.texture)?;
+        let help = &info.graph.textures[index].1.value.help;
+        if !help.is_empty() {
+            ui.weak(help);
+        }
+        let plan = info.textures.get(index)?.clone();
+        let last = |n: u32| n.saturating_sub(1);
+        target.mip = target.mip.min(last(plan.mips));
+        target.layer = target.layer.min(last(plan.layers));
+        if plan.mips > 1 {
+            let old = target.mip;
+            ui.add(Slider::new(&mut target.mip, 0..=last(plan.mips)).text("mip"));
+            // The same place of the volume.
+            target.slice =
+                if target.mip > old { target.slice >> (target.mip - old) } else { target.slice << (old - target.mip) };
+        }
+        if plan.layers > 1 {
+            ui.add(Slider::new(&mut target.layer, 0..=last(plan.layers)).text("layer"));
+        }
+        if plan.volume {
+            ui.horizontal(|ui| {
+                ui.label("cut across");
+                for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+                    ui.selectable_value(&mut target.axis, axis, *name);
+                }
+            });
+            let size = (plan.extent[target.axis.min(2)] >> target.mip.min(31)).max(1);
+            if target.slice >= size {
+                target.slice = size / 2;
+            }
+            ui.add(Slider::new(&mut target.slice, 0..=size - 1).text("slice"));
+        }
+        let waits = self.inspector.shown.as_ref().is_none_or(|s| s.decoded.target != self.inspector.target);
+        ui.horizontal(|ui| {
+            ui.checkbox(&mut self.inspector.in_viewport, "in the viewport")
+                .on_hover_text("Where the render is; else below");
+            if waits && plan.usage.is_empty() {
+                ui.weak("not made yet: no pass that runs uses it");
+            } else if waits {
+                ui.weak("…");
+            }
+        });
+        Some(plan)
+    }
+
+    fn tones(&mut self, ui: &mut Ui, plan: &TexturePlan) {
+        let before = self.inspector.tone;
+        let mut fit = false;
+        let tone = &mut self.inspector.tone;
+        ui.horizontal_wrapped(|ui| {
+            if plan.format.count >= 2 {
+                ui.selectable_value(&mut tone.channel, Channel::Rgb, "RGB");
+            }
+            for (i, name) in ["R", "G", "B", "A"].iter().enumerate().take(plan.format.count as usize) {
+                ui.selectable_value(&mut tone.channel, Channel::One(i), *name);
+            }
+            if plan.format.count >= 3 {
+                ui.selectable_value(&mut tone.channel, Channel::Luminance, "luminance");
+            }
+        });
+        ui.add(Slider::new(&mut tone.stops, -12.0..=12.0).step_by(0.1).text("stops"));
+        ui.horizontal(|ui| {
+            let speed = f64::from((tone.high - tone.low).abs()).max(1e-6) * 0.005;
+            let field = DragValue::new(&mut tone.low).speed(speed).max_decimals(6);
+            spin(ui, field, "black").on_hover_text("This value is black");
+            ui.label("to");
+            let field = DragValue::new(&mut tone.high).speed(speed).max_decimals(6);
+            spin(ui, field, "white").on_hover_text("This value is white");
+            fit = ui.button("fit range").on_hover_text("From the least to the greatest finite value").clicked();
+            if ui.button("0 to 1").clicked() {
+                (tone.low, tone.high, tone.stops) = (0.0, 1.0, 0.0);
+            }
+        });
+        let mut encoded = !tone.raw;
+        ui.checkbox(&mut encoded, "linear light").on_hover_text(
+            "The values are light and are encoded for the screen (sRGB); else they are shown as they are. rgba8_srgb holds encoded values",
+        );
+        tone.raw = !encoded;
+        self.inspector.show_again(before, fit, &self.wake);
+    }
+
+    fn numbers(&mut self, ui: &mut Ui) {
+        let Some(done) = &self.inspector.shown else { return };
+        let nan: usize = done.values.iter().map(|v| v.nan).sum();
+        let infinite: usize = done.values.iter().map(|v| v.infinite).sum();
+        if nan + infinite > 0 {
+            let text = format!("{nan} values are not a number (magenta), {infinite} are infinite (cyan)");
+            ui.colored_label(Color32::from_rgb(240, 90, 80), text);
+        }
+        histogram::show(ui, done);
+        egui::Grid::new("values").num_columns(6).striped(true).show(ui, |ui| {
+            for head in ["", "min", "max", "mean", "NaN", "inf"] {
+                ui.weak(head);
+            }
+            ui.end_row();
+            for (name, v) in ["R", "G", "B", "A"].iter().zip(done.values.iter()) {
+                ui.label(*name);
+                if v.count == 0 {
+                    (0..3).for_each(|_| drop(ui.label("-")));
+                } else {
+                    for x in [f64::from(v.min), f64::from(v.max), v.mean()] {
+                        ui.monospace(short_number(x));
+                    }
+                }
+                for n in [v.nan, v.infinite] {
+                    let text = egui::RichText::new(n.to_string()).monospace();
+                    ui.label(if n > 0 { text.color(Color32::from_rgb(240, 90, 80)) } else { text });
+                }
+                ui.end_row();
+            }
+        });
+    }
+}
+
+fn short_number(x: f64) -> String {
+    let size = x.abs();
+    match () {
+        () if x == x.trunc() && size < 1e9 => format!("{x}"),
+        () if (1e-3..1e6).contains(&size) => format!("{x:.4}"),
+        () => format!("{x:.3e}"),
+    }
+}
+
+/// Name, size and format of a texture.
+fn describe(info: &GraphInfo, name: &str) -> String {
+    let index = info.graph.texture(name);
+    let Some(p) = index.and_then(|i| info.textures.get(i)) else { return name.to_string() };
+    let [x, y, z] = p.extent;
+    let size = if p.volume { format!("{x}×{y}×{z}") } else { format!("{x}×{y}") };
+    let layers = if p.layers > 1 { format!(", {} layers", p.layers) } else { String::new() };
+    let mips = if p.mips > 1 { format!(", {} mips", p.mips) } else { String::new() };
+    format!("{name}  {size} {}{layers}{mips}", p.format.name)
+}

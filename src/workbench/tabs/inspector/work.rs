@@ -1,0 +1,95 @@
+//! The work on texels, on a thread of its own and one piece at a time: megapixels must not hold up the window.
+
+use super::image::{Decoded, Tone};
+use super::statistics::{self, BINS, Values};
+use crate::lab::Texels;
+use crate::workbench::desired::request::InspectTarget;
+use crossbeam_channel::{Receiver, Sender, unbounded};
+use std::sync::Arc;
+
+/// What to work on.
+pub enum Source {
+    /// Texels that came.
+    New(InspectTarget, Texels),
+    /// The decoded texels of before, with another tone.
+    Again(Arc<Decoded>, Arc<Vec<Values>>),
+}
+
+/// Picture, values and histogram of the texels.
+pub struct Done {
+    /// The texels.
+    pub decoded: Arc<Decoded>,
+    /// Statistics of each channel.
+    pub values: Arc<Vec<Values>>,
+    /// Histogram of each channel, over the tone's range.
+    pub histogram: Vec<[u32; BINS]>,
+    /// The tone of the picture.
+    pub tone: Tone,
+    /// Whether the range was made to fit.
+    pub fitted: bool,
+    /// RGBA.
+    pub image: Arc<Vec<u8>>,
+}
+
+type Job = (Source, Tone, bool);
+
+/// The work in progress.
+pub struct Work {
+    busy: bool,
+    next: Option<Job>,
+    channel: (Sender<Done>, Receiver<Done>),
+}
+
+impl Default for Work {
+    fn default() -> Self {
+        Work { busy: false, next: None, channel: unbounded() }
+    }
+}
+
+impl Work {
+    /// Starts a piece of work, or keeps it until the one in progress is done; only the latest is kept. With `fit` the
+    /// range becomes that of the values.
+    pub fn start(&mut self, source: Source, tone: Tone, fit: bool, wake: &Arc<dyn Fn() + Send + Sync>) {
+        if self.busy {
+            // New texels that wait must not be lost to a change of the range.
+            self.next = Some(match (self.next.take(), source) {
+                (Some((new @ Source::New(..), _, fitted)), Source::Again(..)) => (new, tone, fit || fitted),
+                (Some((.., fitted)), source) => (source, tone, fit || fitted),
+                (None, source) => (source, tone, fit),
+            });
+            return;
+        }
+        self.busy = true;
+        let (out, wake) = (self.channel.0.clone(), wake.clone());
+        std::thread::spawn(move || {
+            // A window that has closed waits for nothing.
+            let _ = out.send(run(source, tone, fit));
+            wake();
+        });
+    }
+
+    /// What has been done, if anything.
+    pub fn take(&mut self, wake: &Arc<dyn Fn() + Send + Sync>) -> Option<Done> {
+        let done = self.channel.1.try_recv().ok()?;
+        self.busy = false;
+        if let Some((source, tone, fit)) = self.next.take() {
+            self.start(source, tone, fit, wake);
+        }
+        Some(done)
+    }
+}
+
+fn run(source: Source, tone: Tone, fit: bool) -> Done {
+    let (decoded, values) = match source {
+        Source::New(target, texels) => {
+            let decoded = Decoded::new(target, texels);
+            let values = statistics::values(&decoded);
+            (Arc::new(decoded), Arc::new(values))
+        }
+        Source::Again(decoded, values) => (decoded, values),
+    };
+    let tone = if fit { statistics::fit(&tone, &values) } else { tone };
+    let histogram = statistics::histogram(&decoded, tone.low, tone.high);
+    let image = Arc::new(decoded.image(&tone));
+    Done { decoded, values, histogram, tone, fitted: fit, image }
+}

@@ -1,0 +1,470 @@
+//! The graph as nodes: what each pass reads and writes, what it takes, and which passes are left out.
+
+mod layout;
+
+use super::Tab;
+use crate::workbench::Workbench;
+use crate::workbench::desired::edit;
+use crate::workbench::engine::report::GraphInfo;
+use crate::workbench::panel::control::named;
+use crate::workbench::panel::folded;
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, epaint::CubicBezierShape};
+use layout::{Layout, ROW, TITLE, WIDTH};
+use std::sync::Arc;
+
+pub(crate) const TAB: Tab = Tab {
+    middle: |workbench, ui, textures| match workbench.nodes.beside {
+        true => workbench.picture(ui, textures),
+        false => workbench.graph_view(ui),
+    },
+    ..Tab::new("Graph", |workbench, ui, _| workbench.graph_tab(ui))
+};
+
+/// State of this tab.
+#[derive(Default)]
+pub struct Nodes {
+    side: usize,
+    /// Name of the pass that was clicked on.
+    chosen: Option<String>,
+    /// Whether it is to be brought to the middle.
+    go: bool,
+    /// Text that names of passes, or of what they write, must hold.
+    search: String,
+    /// Whether the picture is in the middle, and not the graph.
+    beside: bool,
+    /// The part of the layout that is seen; all when absent.
+    seen: Option<Seen>,
+    /// Where it is drawn, points.
+    area: Vec2,
+    made: Option<(Arc<GraphInfo>, Vec2, Layout)>,
+}
+
+/// A part of the layout.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// Points of the screen a point of the layout.
+    zoom: f32,
+    /// What is at the upper left.
+    corner: Pos2,
+}
+
+/// What was asked for with a pass.
+enum Asked {
+    Choose(String),
+    Inspect(String),
+}
+
+impl Nodes {
+    /// The layout of a graph, made once.
+    fn layout(&mut self, info: &Arc<GraphInfo>) -> &Layout {
+        let area = self.area;
+        self.made.take_if(|(of, size, _)| !Arc::ptr_eq(of, info) || *size != area);
+        &self.made.get_or_insert_with(|| (info.clone(), area, Layout::new(info, area))).2
+    }
+
+    /// Chooses a pass, and brings it to the middle.
+    pub fn find(&mut self, side: usize, name: &str) {
+        (self.side, self.chosen, self.go) = (side, Some(name.to_string()), true);
+    }
+}
+
+impl Workbench {
+    /// The graph in the viewport.
+    pub(crate) fn graph_view(&mut self, ui: &mut Ui) {
+        let side = self.nodes.side.min(usize::from(self.desired.sides[1].is_some()));
+        let Some(info) = self.sides[side].info.clone() else {
+            ui.weak(self.waiting_text());
+            return;
+        };
+        let times = self.times.medians(ui.ctx(), side);
+        let chosen = self.nodes.chosen.clone();
+        let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
+        let area = response.rect;
+        ui.painter().rect_filled(area, 0.0, Color32::from_gray(12));
+        self.nodes.area = area.size();
+        let (mut seen, go) = (self.nodes.seen, std::mem::take(&mut self.nodes.go));
+        let layout = self.nodes.layout(&info);
+        let bounds = layout.bounds();
+        let fit = (area.width() / bounds.width()).min(area.height() / bounds.height());
+        let whole = Seen { zoom: fit.clamp(0.1, 1.0), corner: bounds.min };
+        let mut now = seen.unwrap_or(whole);
+        if let Some(node) = layout.nodes.iter().find(|n| go && chosen.as_ref() == Some(&n.name)) {
+            // Large enough to be read.
+            now.zoom = now.zoom.max(0.8);
+            now.corner = node.rect.center() - 0.5 * area.size() / now.zoom;
+            seen = Some(now);
+        }
+        if response.dragged() {
+            now.corner -= response.drag_delta() / now.zoom;
+            seen = Some(now);
+        }
+        let wheel = if response.contains_pointer() { ui.input(|i| i.smooth_scroll_delta().y) } else { 0.0 };
+        if let (Some(at), true) = (response.hover_pos(), wheel != 0.0) {
+            let zoom = stepped(now.zoom * (wheel * 0.01).exp()).clamp(0.2, 2.0);
+            now.corner += (at - area.min) * (1.0 / now.zoom - 1.0 / zoom);
+            now.zoom = zoom;
+            seen = Some(now);
+        }
+        if response.double_clicked() {
+            (now, seen) = (whole, None);
+        }
+        let mut canvas = Canvas { ui, area, seen: now, asked: None };
+        canvas.draw(&info, layout, &times.passes, chosen.as_deref());
+        let asked = canvas.asked;
+        self.nodes.seen = seen;
+        match asked {
+            Some(Asked::Choose(name)) => self.nodes.chosen = Some(name),
+            Some(Asked::Inspect(texture)) => {
+                self.inspector.open(side, texture);
+                self.tab = crate::workbench::tabs::inspector::TAB;
+            }
+            None => {}
+        }
+    }
+
+    /// What is said of the chosen pass, and what can be done with it.
+    pub(crate) fn graph_tab(&mut self, ui: &mut Ui) {
+        let both = self.desired.sides[1].is_some();
+        if both {
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut self.nodes.side, 0, "graph of A");
+                ui.selectable_value(&mut self.nodes.side, 1, "graph of B");
+            });
+        } else {
+            self.nodes.side = 0;
+        }
+        let side = self.nodes.side;
+        let (Some(info), Some(desired)) = (self.sides[side].info.clone(), &self.desired.sides[side]) else { return };
+        let mut off = edit::off(desired, &info.params);
+        let before = off.clone();
+        self.graph_bar(ui);
+        if !off.is_empty() {
+            ui.colored_label(ui.visuals().warn_fg_color, format!("off: {}", off.join(", ")));
+            for (name, readers) in zeros(&info) {
+                ui.colored_label(ui.visuals().warn_fg_color, format!("{name} is zeros now: {readers} read it"));
+            }
+            if ui.button("all passes on").clicked() {
+                off.clear();
+            }
+        }
+        ui.separator();
+        let mut needed = None;
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let name = self.nodes.chosen.clone().filter(|_| self.nodes.search.is_empty());
+            match name {
+                Some(name) => needed = self.chosen_pass(ui, side, &info, &name, &mut off),
+                None => self.pass_list(ui, side, &info),
+            }
+        });
+        let Some(desired) = &mut self.desired.sides[side] else { return };
+        if let Some((name, option)) = needed
+            && let Some(param) = info.graph.params.param(&name)
+            && let Ok(value) = param.parse(&option)
+        {
+            edit::set(desired, param, &value);
+        }
+        if off != before {
+            edit::set_off(desired, &off);
+        }
+    }
+
+    /// What of the graph is seen.
+    fn graph_bar(&mut self, ui: &mut Ui) {
+        let nodes = &mut self.nodes;
+        ui.horizontal(|ui| {
+            let width = ui.available_width() - 150.0;
+            let field = egui::TextEdit::singleline(&mut nodes.search).hint_text("find a pass, a texture");
+            let field = ui.add(field.desired_width(width.max(60.0)));
+            named(&field, egui::WidgetType::TextEdit, "find a pass, a texture");
+            if ui.add_enabled(nodes.chosen.is_some(), egui::Button::new("list").small()).clicked() {
+                nodes.chosen = None;
+            }
+            if ui.small_button("all").on_hover_text("The whole graph; or a double click").clicked() {
+                nodes.seen = None;
+            }
+            let about = "The picture in the middle, not the graph";
+            ui.toggle_value(&mut nodes.beside, egui::RichText::new("picture").small()).on_hover_text(about);
+        });
+        let about = "Columns are stages, boxes are passes and what they write, warmer the longer they take. Drag and wheel \
+             move; a click on a pass or a texture opens it.";
+        if !nodes.beside {
+            ui.weak(about);
+        }
+    }
+
+    /// All passes, or those that are searched for: what runs with its time, the others with why not.
+    fn pass_list(&mut self, ui: &mut Ui, side: usize, info: &Arc<GraphInfo>) {
+        let needle = folded(&self.nodes.search);
+        let times = self.times.medians(ui.ctx(), side);
+        let mut found = None;
+        for (number, pass) in info.graph.passes.iter().enumerate() {
+            let name = &pass.value.name.value;
+            let writes = info.uses.iter().find(|u| u.pass == number).map_or(&[][..], |u| &u.writes);
+            if !folded(name).contains(&needle) && !writes.iter().any(|w| folded(w).contains(&needle)) {
+                continue;
+            }
+            let ms = times.passes.iter().find(|t| t.0 == number).map(|t| t.1);
+            let why = || info.left_out.iter().find(|(pass, _)| *pass == number).map_or("not built yet", |l| &l.1);
+            let runs = info.passes.contains(&number);
+            let text = match ms.filter(|_| runs) {
+                Some(ms) => format!("{name}  {ms:.3} ms"),
+                None if runs => name.clone(),
+                None => format!("{name}  ({})", why()),
+            };
+            let text = if runs { egui::RichText::new(text) } else { egui::RichText::new(text).weak() };
+            let row = ui.add(egui::Button::new(text).small().frame(false));
+            row.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, format!("find pass {name}")));
+            if row.clicked() {
+                found = Some(name.clone());
+            }
+        }
+        if let Some(name) = found {
+            self.nodes.search.clear();
+            self.nodes.find(side, &name);
+        }
+    }
+
+    /// Says of a pass what it is and does; the choice with which one that waits for a condition would run, once asked for.
+    fn chosen_pass(
+        &mut self,
+        ui: &mut Ui,
+        side: usize,
+        info: &Arc<GraphInfo>,
+        name: &str,
+        off: &mut Vec<String>,
+    ) -> Option<(String, String)> {
+        let Some(number) = info.graph.passes.iter().position(|p| p.value.name.value == name) else {
+            ui.weak(format!("The graph has no pass '{name}' any more"));
+            return None;
+        };
+        let pass = &info.graph.passes[number].value;
+        ui.strong(name);
+        ui.label(format!("stage: {}", pass.stage()));
+        if let Some((_, ms)) = self.times.medians(ui.ctx(), side).passes.iter().find(|t| t.0 == number) {
+            ui.label(format!("{ms:.3} ms (median)"));
+        }
+        let mut needed = None;
+        if let Some((_, why)) = info.left_out.iter().find(|(pass, _)| *pass == number) {
+            ui.colored_label(ui.visuals().warn_fg_color, format!("does not run: {why}"));
+            let needs = self.effects.of(side).and_then(|f| f.resting.get(name)).map_or(&[][..], Vec::as_slice);
+            ui.horizontal_wrapped(|ui| {
+                for (param, option) in needs {
+                    if ui.small_button(format!("{param} = {option}")).on_hover_text("It runs with this").clicked() {
+                        needed = Some((param.clone(), option.clone()));
+                    }
+                }
+            });
+        }
+        ui.horizontal(|ui| {
+            let mut on = !off.iter().any(|o| o == name);
+            let about =
+                "Off, what it alone would write is what it says `instead`, or zeros. It is saved with the experiment";
+            if ui.checkbox(&mut on, "on").on_hover_text(about).changed() {
+                match on {
+                    true => off.retain(|o| o != name),
+                    false => off.push(name.to_string()),
+                }
+            }
+            let about = "A with this pass, B without it, over the picture";
+            if ui.button("with | without").on_hover_text(about).clicked() {
+                self.with_and_without(side, info, name);
+            }
+            let about = "Only this pass and what it needs; its first texture is shown in Inspect";
+            if ui.button("solo").on_hover_text(about).clicked() {
+                self.solo(side, info, name, off);
+            }
+        });
+        let Some(uses) = info.uses.iter().find(|u| u.pass == number) else { return needed };
+        for (title, list) in [("reads", &uses.reads), ("writes", &uses.writes)] {
+            ui.add_space(4.0);
+            ui.label(title);
+            for resource in list {
+                let texture = info.graph.texture(resource);
+                let text = format!("{resource}  {}", texture.map_or(String::new(), |t| of(info, t)));
+                if ui.add_enabled(texture.is_some(), egui::Button::new(text).small().frame(false)).clicked() {
+                    self.inspector.open(side, resource.clone());
+                    self.tab = crate::workbench::tabs::inspector::TAB;
+                }
+            }
+        }
+        needed
+    }
+
+    /// Puts what is shown beside itself without a pass.
+    fn with_and_without(&mut self, side: usize, info: &GraphInfo, name: &str) {
+        let Some(base) = self.desired.sides[side].clone() else { return };
+        let mut off = edit::off(&base, &info.params);
+        off.retain(|o| o != name);
+        let sides = [off.clone(), [off, vec![name.to_string()]].concat()].map(|off| {
+            let mut side = base.clone();
+            edit::set_off(&mut side, &off);
+            Some(side)
+        });
+        self.compare_sides(sides);
+        self.nodes.beside = true;
+    }
+
+    /// Leaves out every pass that a pass does not need, but those that make the picture, and shows what it writes.
+    fn solo(&mut self, side: usize, info: &Arc<GraphInfo>, name: &str, off: &mut Vec<String>) {
+        let layout = self.nodes.layout(info);
+        let Some(node) = layout.nodes.iter().position(|n| n.name == name) else { return };
+        let mut needed = layout.needed_by(node);
+        // Something has to write the picture that is shown meanwhile.
+        let output = info.graph.output.as_deref().unwrap_or_default();
+        needed.extend(layout.nodes.iter().rposition(|n| n.writes.iter().any(|w| w == output)));
+        let others = layout.nodes.iter().enumerate().filter(|(i, _)| !needed.contains(i));
+        *off = others.map(|(_, n)| n.name.clone()).collect();
+        let texture = |w: &&String| info.graph.texture(w).is_some();
+        if let Some(texture) = layout.nodes[node].writes.iter().find(texture).cloned() {
+            self.inspector.open(side, texture);
+        }
+    }
+}
+
+/// What passes that are off would have written, and who reads it.
+fn zeros(info: &GraphInfo) -> Vec<(&str, String)> {
+    let of = |name: &String| {
+        let reads = info.uses.iter().filter(|u| u.reads.contains(name));
+        let names: Vec<&str> = reads.map(|u| info.graph.pass_name(u.pass)).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    info.empty.iter().filter_map(|name| Some((name.as_str(), of(name)?))).collect()
+}
+
+/// A texture's format and size.
+fn of(info: &GraphInfo, texture: usize) -> String {
+    let plan = &info.textures[texture];
+    let format = plan.format.name;
+    let depth = if plan.volume { format!("x{}", plan.extent[2]) } else { String::new() };
+    format!("{format} {}x{}{depth}", plan.extent[0], plan.extent[1])
+}
+
+/// Zooms in steps, so that letters are not made anew in every size between.
+fn stepped(zoom: f32) -> f32 {
+    2f32.powf((zoom.max(1e-3).log2() * 6.0).round() / 6.0)
+}
+
+/// The part of the viewport that the graph is drawn in.
+struct Canvas<'u> {
+    ui: &'u mut Ui,
+    area: Rect,
+    seen: Seen,
+    asked: Option<Asked>,
+}
+
+impl Canvas<'_> {
+    fn at(&self, point: Pos2) -> Pos2 {
+        self.area.min + (point - self.seen.corner) * self.seen.zoom
+    }
+
+    fn place(&self, rect: Rect) -> Rect {
+        Rect::from_min_max(self.at(rect.min), self.at(rect.max))
+    }
+
+    fn painter(&self, clip: Rect) -> egui::Painter {
+        self.ui.painter().with_clip_rect(clip.intersect(self.area))
+    }
+
+    fn text(&self, clip: Rect, at: Pos2, anchor: Align2, text: &str, points: f32, color: Color32) {
+        let font = FontId::proportional(points * self.seen.zoom);
+        self.painter(clip).text(self.at(at), anchor, text, font, color);
+    }
+
+    /// A part that can be clicked on, with a name for scripts and screen readers.
+    fn button(&self, rect: Rect, id: impl egui::AsIdSalt, enabled: bool, name: String) -> Option<egui::Response> {
+        let rect = self.place(rect).intersect(self.area);
+        if !rect.is_positive() {
+            return None;
+        }
+        let response = self.ui.interact(rect, self.ui.id().with(id), Sense::click());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, enabled, &name));
+        Some(response)
+    }
+
+    fn draw(&mut self, info: &GraphInfo, layout: &Layout, times: &[(usize, f64)], chosen: Option<&str>) {
+        let ms = |pass: usize| times.iter().find(|t| t.0 == pass).map(|t| t.1);
+        let most = times.iter().map(|t| t.1).fold(0.0, f64::max);
+        let (strong, weak) = (self.ui.visuals().text_color(), self.ui.visuals().weak_text_color());
+        for column in &layout.columns {
+            let total: f64 = column.passes.iter().filter_map(|p| ms(*p)).sum();
+            let top = column.rect.left_top();
+            self.text(self.area, top, Align2::LEFT_TOP, &column.stage, 14.0, strong);
+            let below = top + Vec2::new(0.0, 17.0);
+            self.text(self.area, below, Align2::LEFT_TOP, &format!("{total:.3} ms"), 11.5, weak);
+            let line = self.place(Rect::from_min_max(top + Vec2::new(0.0, TITLE), column.rect.right_top()));
+            self.painter(self.area).hline(line.x_range(), line.top(), Stroke::new(1.0, weak.gamma_multiply(0.4)));
+        }
+        let touches = |i: usize| chosen.is_some_and(|c| layout.nodes[i].name == c);
+        for edge in &layout.edges {
+            let bright = touches(edge.from.0) || touches(edge.to);
+            let color = match (bright, edge.of_last_frame) {
+                (true, _) => Color32::from_rgb(240, 190, 90),
+                (false, true) => Color32::from_rgba_unmultiplied(150, 110, 190, 80),
+                (false, false) => Color32::from_rgba_unmultiplied(130, 150, 180, 64),
+            };
+            let stroke = Stroke::new(if bright { 1.8 } else { 1.0 }, color);
+            self.painter(self.area).add(self.curve(layout, edge, stroke));
+        }
+        for node in &layout.nodes {
+            let time = ms(node.pass).unwrap_or(0.0);
+            // The longer a pass takes, the warmer it is.
+            let heat = if most > 0.0 { (time / most).sqrt() as f32 } else { 0.0 };
+            self.node(info, node, time, heat, chosen == Some(node.name.as_str()));
+        }
+    }
+
+    fn node(&mut self, info: &GraphInfo, node: &layout::Node, time: f64, heat: f32, is_chosen: bool) {
+        let (strong, weak) = (self.ui.visuals().text_color(), self.ui.visuals().weak_text_color());
+        let Some(response) = self.button(node.rect, node.pass, true, format!("pass {}", node.name)) else { return };
+        let fill = Color32::from_gray(38).lerp_to_gamma(Color32::from_rgb(140, 66, 40), heat);
+        let fill = if node.runs { fill } else { Color32::from_gray(24) };
+        let edge = match (is_chosen, response.hovered()) {
+            (true, _) => Stroke::new(2.0, Color32::from_rgb(240, 190, 90)),
+            (_, true) => Stroke::new(1.5, strong),
+            _ => Stroke::new(1.0, Color32::from_gray(80)),
+        };
+        let rect = self.place(node.rect);
+        self.painter(self.area).rect(rect, 4.0 * self.seen.zoom, fill, edge, egui::StrokeKind::Inside);
+        let first = node.rect.left_top() + Vec2::new(6.0, ROW * 0.75);
+        let right = Pos2::new(node.rect.right() - 6.0, first.y);
+        let color = if node.runs { strong } else { weak };
+        let said = if node.runs { format!("{time:.3}") } else { "off".into() };
+        // Names give way to times.
+        let mut names = node.rect;
+        names.max.x = right.x - 34.0;
+        self.text(self.place(names), first, Align2::LEFT_CENTER, &node.name, 11.5, color);
+        self.text(rect, right, Align2::RIGHT_CENTER, &said, 10.5, color);
+        for (i, resource) in node.writes.iter().enumerate() {
+            let row = row_of(node.rect, i);
+            let texture = info.graph.texture(resource).is_some();
+            let name = format!("{} writes {resource}", node.name);
+            let Some(hit) = self.button(row, (node.pass, i), texture, name) else { continue };
+            let color = if hit.hovered() && texture { strong } else { Color32::from_gray(150) };
+            let at = row.left_center() + Vec2::new(12.0, 0.0);
+            self.text(self.place(row), at, Align2::LEFT_CENTER, resource, 10.5, color);
+            if hit.clicked() {
+                self.asked = Some(match texture {
+                    true => Asked::Inspect(resource.clone()),
+                    false => Asked::Choose(node.name.clone()),
+                });
+            }
+        }
+        if response.clicked() {
+            self.asked = Some(Asked::Choose(node.name.clone()));
+        }
+    }
+
+    fn curve(&self, layout: &Layout, edge: &layout::Edge, stroke: Stroke) -> Shape {
+        let from = self.at(row_of(layout.nodes[edge.from.0].rect, edge.from.1).right_center());
+        let to = self.at(layout.nodes[edge.to].rect.left_top() + Vec2::new(0.0, ROW * 0.75));
+        let bend = Vec2::new(((to.x - from.x).abs() * 0.5).clamp(28.0, 160.0), 0.0);
+        let points = [from, from + bend, to - bend, to];
+        CubicBezierShape::from_points_stroke(points, false, Color32::TRANSPARENT, stroke).into()
+    }
+}
+
+/// Where what a pass writes is named.
+fn row_of(node: Rect, number: usize) -> Rect {
+    let top = node.top() + ROW * (1.35 + number as f32);
+    Rect::from_min_size(Pos2::new(node.left(), top), Vec2::new(WIDTH, ROW))
+}

@@ -1,0 +1,208 @@
+//! Image sequences, rendered by the program's own command in a process of its own.
+
+use crate::camera_path;
+use crate::lab::LabError;
+use crate::workbench::Workbench;
+use crate::workbench::desired::save;
+use crate::workbench::messages::{AMBER, RED};
+use crossbeam_channel::{Receiver, unbounded};
+use egui::{DragValue, ProgressBar, Ui};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// A sequence to be rendered, or in work.
+pub struct Sequence {
+    frames: usize,
+    rate: f64,
+    folder: String,
+    running: Option<Running>,
+    /// How the last one ended: whether all is well, and in words.
+    said: Option<(bool, String)>,
+}
+
+impl Default for Sequence {
+    fn default() -> Self {
+        Sequence { frames: 60, rate: 30.0, folder: "captures/sequence".into(), running: None, said: None }
+    }
+}
+
+struct Running {
+    child: Arc<Mutex<Child>>,
+    ended: Receiver<(bool, String)>,
+    folder: PathBuf,
+    /// Frames that are there, of so many.
+    done: usize,
+    frames: usize,
+    cancelled: bool,
+}
+
+impl Running {
+    /// Looks how many frames there are.
+    fn count(&mut self) {
+        while self.done < self.frames && self.folder.join(format!("frame-{:05}.png", self.done)).is_file() {
+            self.done += 1;
+        }
+    }
+
+    fn cancel(&mut self) {
+        self.cancelled = true;
+        // One that has ended meanwhile needs no end.
+        let _ = self.child.lock().unwrap_or_else(PoisonError::into_inner).kill();
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+impl Workbench {
+    /// Takes in the end of a sequence.
+    pub(crate) fn poll_sequence(&mut self) {
+        let sequence = &mut self.paths.sequence;
+        let Some(running) = &mut sequence.running else { return };
+        running.count();
+        let Ok((ok, text)) = running.ended.try_recv() else { return };
+        let text = match running.cancelled {
+            true => format!(
+                "cancelled after {} of {} frames, which stay in {}",
+                running.done, running.frames, sequence.folder
+            ),
+            false => text,
+        };
+        sequence.running = None;
+        sequence.said = Some((ok, text.clone()));
+        self.event("sequence", serde_json::json!({ "ok": ok, "text": text }));
+        self.status = text;
+    }
+
+    /// The section.
+    pub(crate) fn sequence_rows(&mut self, ui: &mut Ui) {
+        let sequence = &mut self.paths.sequence;
+        let idle = sequence.running.is_none();
+        let mut render = false;
+        ui.add_enabled_ui(idle, |ui| {
+            ui.horizontal(|ui| {
+                let frames = DragValue::new(&mut sequence.frames).range(1..=100_000).suffix(" frames");
+                crate::workbench::panel::control::spin(ui, frames, "frames of the sequence");
+                let rate = DragValue::new(&mut sequence.rate).range(1.0..=240.0).suffix(" a second");
+                crate::workbench::panel::control::spin(ui, rate, "frames a second");
+            });
+            ui.horizontal(|ui| {
+                let field = ui.add(egui::TextEdit::singleline(&mut sequence.folder).desired_width(160.0));
+                crate::workbench::panel::control::named(&field, egui::WidgetType::TextEdit, "folder of the sequence");
+                field.on_hover_text("Folder for frame-00000.png and so on");
+                render = ui.button("render").clicked();
+            });
+        });
+        if let Some(running) = &mut sequence.running {
+            ui.horizontal(|ui| {
+                let part = running.done as f32 / running.frames.max(1) as f32;
+                let text = format!("{} of {} frames", running.done, running.frames);
+                ui.add(ProgressBar::new(part).desired_width(180.0).text(text));
+                let name = if running.cancelled { "stopping" } else { "cancel" };
+                let cancel = egui::Button::new(name).small();
+                if ui.add_enabled(!running.cancelled, cancel).on_hover_text("The frames so far stay").clicked() {
+                    running.cancel();
+                }
+            });
+            ui.ctx().request_repaint_after(Duration::from_millis(250));
+        } else if let Some((ok, text)) = &sequence.said {
+            match ok {
+                true => ui.weak(text),
+                false => ui.colored_label(if text.starts_with("cancelled") { AMBER } else { RED }, text),
+            };
+        }
+        if render {
+            self.paths.sequence.said = match self.start_sequence() {
+                Ok(()) => None,
+                Err(e) => Some((false, e.to_string())),
+            };
+        }
+    }
+
+    /// Starts the command, with files of its own.
+    fn start_sequence(&mut self) -> Result<(), LabError> {
+        if let Some(missing) = self.missing_scene() {
+            return Err(LabError::Request(missing));
+        }
+        let (Some(side), Some(info)) = (&self.desired.sides[0], &self.sides[0].info) else {
+            return Err(LabError::Request("no graph has been built yet".into()));
+        };
+        let failed = |e: std::io::Error| LabError::Request(format!("cannot write the sequence's settings: {e}"));
+        let folder = tempfile::Builder::new().prefix("conelab-sequence-").tempdir().map_err(failed)?;
+        let side = save::without_pointer(side, info.graph.pointer.as_deref());
+        let mut experiment = save::experiment(&self.desired, &side, "sequence", 0.0, self.scene.as_deref());
+        let scene = PathBuf::from(&experiment.scene);
+        if scene.is_file() {
+            experiment.scene = scene.canonicalize().map_err(failed)?.to_string_lossy().into_owned();
+        }
+        let file = folder.path().join("sequence.ron");
+        crate::experiment::write(&experiment, &info.graph.params, &file, false)?;
+        let Sequence { frames, rate, .. } = self.paths.sequence;
+        let to = self.root.join(&self.paths.sequence.folder);
+        let mut command = Command::new(std::env::current_exe().map_err(failed)?);
+        command.current_dir(&self.root).env("CONELAB_HOME", &self.root);
+        command.arg("render").arg(&file).arg("--sequence").arg(&to);
+        command.args(["--frames", &frames.to_string(), "--step", &(1.0 / rate).to_string()]);
+        if !self.paths.path.keys.is_empty() {
+            let path = folder.path().join("path.ron");
+            camera_path::write(&self.paths.path, &path, false)?;
+            command.arg("--path").arg(path);
+        }
+        if let Some(device) = &self.device {
+            command.arg("--device").arg(&device.name);
+        }
+        // Frames of another sequence are not counted: the command refuses their folder.
+        let done = if has_frames(&to) { frames } else { 0 };
+        let (child, ended) = start(command, folder, self.wake.clone())?;
+        self.paths.sequence.running = Some(Running { child, ended, folder: to, done, frames, cancelled: false });
+        self.event("sequence begun", serde_json::json!({ "frames": frames }));
+        Ok(())
+    }
+}
+
+fn has_frames(folder: &Path) -> bool {
+    folder.join("frame-00000.png").is_file()
+}
+
+type Started = (Arc<Mutex<Child>>, Receiver<(bool, String)>);
+
+/// Starts the command; its last line comes when it has ended, and `folder` is removed.
+fn start(
+    mut command: Command,
+    folder: tempfile::TempDir,
+    wake: Arc<dyn Fn() + Send + Sync>,
+) -> Result<Started, LabError> {
+    let cannot = |e: std::io::Error| LabError::Request(format!("cannot render the sequence: {e}"));
+    let mut child =
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().map_err(cannot)?;
+    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+    let child = Arc::new(Mutex::new(child));
+    let (out, ended) = unbounded();
+    let waited = child.clone();
+    std::thread::spawn(move || {
+        let errors = std::thread::spawn(move || all_of(stderr));
+        let said = all_of(stdout);
+        let errors = errors.join().unwrap_or_default();
+        // Both ends are closed: it has ended or is about to.
+        let status = waited.lock().unwrap_or_else(PoisonError::into_inner).wait();
+        drop(folder);
+        let ok = status.is_ok_and(|s| s.success());
+        let text = if ok { said } else { errors };
+        let _ = out.send((ok, text.trim().lines().last().unwrap_or_default().to_string()));
+        wake();
+    });
+    Ok((child, ended))
+}
+
+fn all_of(pipe: Option<impl Read>) -> String {
+    let mut bytes = Vec::new();
+    // What cannot be read is not there.
+    let _ = pipe.map(|mut p| p.read_to_end(&mut bytes));
+    String::from_utf8_lossy(&bytes).into_owned()
+}

@@ -1,0 +1,213 @@
+//! Camera, lights, sky and time: what is around the method.
+
+use super::Tab;
+use crate::lab::Viewpoint;
+use crate::scene::{Light, LightKind};
+use crate::workbench::Workbench;
+use crate::workbench::desired::request::LightState;
+use crate::workbench::messages::AMBER;
+use crate::workbench::panel::control::spin;
+use crate::workbench::picture::motion;
+use egui::{DragValue, RichText, Ui};
+use glam::Vec3;
+
+pub(crate) const TAB: Tab = Tab::new("Scene", |workbench, ui, _| workbench.surroundings(ui));
+
+const RGB: [&str; 3] = ["red", "green", "blue"];
+
+fn metres(ui: &mut Ui, label: &str, v: &mut Vec3) {
+    ui.horizontal(|ui| {
+        for (x, axis) in [&mut v.x, &mut v.y, &mut v.z].into_iter().zip(["x", "y", "z"]) {
+            spin(ui, DragValue::new(x).speed(0.02).max_decimals(3), &format!("{label} {axis}"));
+        }
+        ui.label(label);
+    });
+}
+
+impl Workbench {
+    /// The section.
+    pub(crate) fn surroundings(&mut self, ui: &mut Ui) {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let warnings = self.scene_warnings();
+            if !warnings.is_empty() {
+                let title = RichText::new(format!("Warnings ({})", warnings.len())).color(AMBER);
+                egui::CollapsingHeader::new(title).id_salt("warnings").default_open(true).show(ui, |ui| {
+                    for warning in &warnings {
+                        ui.label(warning);
+                    }
+                });
+                ui.separator();
+            }
+            ui.strong("Camera");
+            self.camera(ui);
+            ui.separator();
+            ui.strong("Clock");
+            self.time(ui);
+            ui.separator();
+            ui.strong("Lights and sky");
+            self.lights(ui);
+        });
+    }
+
+    fn camera(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut self.view.steering, motion::Mode::Orbit, "orbit")
+                .on_hover_text("Drag turns around the target, the wheel comes nearer");
+            ui.selectable_value(&mut self.view.steering, motion::Mode::Fly, "fly")
+                .on_hover_text("Drag looks around, W A S D Q E move");
+            let speed = DragValue::new(&mut self.view.speed).range(0.01..=100.0).speed(0.05).prefix("speed x ");
+            spin(ui, speed, "speed");
+        });
+        let names: Vec<String> = self.scene.as_ref().map_or(Vec::new(), |s| s.cameras.keys().cloned().collect());
+        if let Some(scene) = self.scene.clone() {
+            ui.horizontal_wrapped(|ui| {
+                ui.label("views:");
+                for name in &names {
+                    if ui.small_button(name).clicked() {
+                        self.desired.camera = scene.cameras.get(name).copied();
+                    }
+                }
+                if ui.small_button("whole scene").clicked() {
+                    self.desired.camera = Some(Viewpoint::around(&scene).camera);
+                }
+            });
+        }
+        self.bookmark_rows(ui);
+        if let Some(camera) = &mut self.desired.camera {
+            metres(ui, "eye, m", &mut camera.eye);
+            metres(ui, "target, m", &mut camera.target);
+            ui.add(egui::Slider::new(&mut camera.fov_y, 5.0..=150.0).suffix(" deg").text("field of view"));
+        }
+    }
+
+    fn time(&mut self, ui: &mut Ui) {
+        let clock = &mut self.desired.clock;
+        ui.horizontal(|ui| {
+            let name = if clock.playing { "pause" } else { "play" };
+            if ui.button(name).on_hover_text("Space").clicked() {
+                clock.playing = !clock.playing;
+            }
+            if ui.button("step").on_hover_text("One frame (.)").clicked() {
+                clock.playing = false;
+                clock.steps += 1;
+            }
+            if ui.button("to start").clicked() {
+                clock.at = 0.0;
+                clock.jumps += 1;
+            }
+            ui.label(format!("{:.3} s", self.sides[0].picture.as_ref().map_or(0.0, |p| p.time)));
+        });
+        ui.horizontal(|ui| {
+            let mut fixed = clock.step.is_some();
+            ui.checkbox(&mut fixed, "fixed step")
+                .on_hover_text("The same time from frame to frame, however long it takes");
+            clock.step = match (fixed, clock.step) {
+                (true, step) => Some(step.unwrap_or(1.0 / 60.0)),
+                (false, _) => None,
+            };
+            if let Some(step) = &mut clock.step {
+                spin(ui, DragValue::new(step).range(0.0001..=10.0).speed(0.001).suffix(" s"), "step");
+            }
+        });
+    }
+
+    fn lights(&mut self, ui: &mut Ui) {
+        let Some(scene) = self.scene.clone() else { return };
+        let own = LightState::of(&scene);
+        let mut now = self.desired.lights.clone().unwrap_or_else(|| own.clone());
+        let LightState { lights, sky, rotation } = &mut now;
+        ui.horizontal(|ui| {
+            for (x, c) in [&mut sky.x, &mut sky.y, &mut sky.z].into_iter().zip(RGB) {
+                spin(ui, DragValue::new(x).range(0.0..=1e6).speed(0.01), &format!("sky {c}"));
+            }
+            match scene.environment {
+                None => ui.label("sky radiance").on_hover_text("Linear RGB, W/(m² sr)"),
+                Some(_) => ui.label("times the sky's picture"),
+            };
+        });
+        if let Some(environment) = &scene.environment {
+            ui.label(format!("picture: {}", environment.name()));
+            ui.add(egui::Slider::new(rotation, 0.0..=360.0).suffix(" deg").text("rotation"));
+            intensity(ui, sky);
+        }
+        self.picture_file(ui);
+        for (i, light) in lights.iter_mut().enumerate() {
+            let name = if light.name.is_empty() { format!("light {}", i + 1) } else { light.name.clone() };
+            egui::CollapsingHeader::new(name).id_salt(("light", i)).default_open(i < 3).show(ui, |ui| one(ui, light));
+        }
+        let differs = now != own;
+        if ui.add_enabled(differs, egui::Button::new("reset lights")).clicked() {
+            self.desired.lights = None;
+        } else {
+            self.desired.lights = differs.then_some(now);
+        }
+    }
+
+    /// Another picture for the sky, by its file's name.
+    fn picture_file(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let field = egui::TextEdit::singleline(&mut self.view.picture).hint_text("sky.hdr or sky.exr");
+            let field = ui.add(field.desired_width(180.0));
+            crate::workbench::panel::control::named(&field, egui::WidgetType::TextEdit, "picture of the sky");
+            let done = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+            let clicked = ui.button("load").on_hover_text("A picture of the sky; empty: the scene's own").clicked();
+            if (done || clicked) && self.view.picture.trim() != self.desired.environment {
+                if self.missing_scene().is_none() {
+                    self.before_loading = Some(self.state());
+                }
+                self.desired.environment = self.view.picture.trim().into();
+                self.desired.lights = None;
+            }
+        });
+    }
+}
+
+/// One factor for all of the sky's colours.
+fn intensity(ui: &mut Ui, sky: &mut Vec3) {
+    let before = sky.max_element();
+    let mut now = before;
+    ui.horizontal(|ui| {
+        spin(ui, DragValue::new(&mut now).range(0.0..=1e6).speed(0.01), "sky intensity");
+        ui.label("intensity");
+    });
+    if now != before {
+        *sky = if before > 0.0 { *sky * (now / before) } else { Vec3::splat(now) };
+    }
+}
+
+fn one(ui: &mut Ui, light: &mut Light) {
+    ui.horizontal(|ui| {
+        for (x, c) in [&mut light.color.x, &mut light.color.y, &mut light.color.z].into_iter().zip(RGB) {
+            spin(ui, DragValue::new(x).range(0.0..=1e7).speed(0.02), &format!("light {c}"));
+        }
+        ui.label(match light.kind {
+            LightKind::Directional => "irradiance",
+            _ => "intensity",
+        })
+        .on_hover_text("Linear RGB; W/m² on a facing surface for a sun, W/sr for lamps");
+    });
+    if !matches!(light.kind, LightKind::Directional) {
+        metres(ui, "position, m", &mut light.position);
+    }
+    if !matches!(light.kind, LightKind::Point) {
+        // As angles: easier to set than three numbers of a unit vector.
+        let d = light.direction;
+        let (mut azimuth, mut elevation) = (d.z.atan2(d.x).to_degrees(), (-d.y).clamp(-1.0, 1.0).asin().to_degrees());
+        let before = (azimuth, elevation);
+        ui.add(egui::Slider::new(&mut azimuth, -180.0..=180.0).suffix(" deg").text("azimuth"));
+        ui.add(egui::Slider::new(&mut elevation, -90.0..=90.0).suffix(" deg").text("elevation"));
+        if (azimuth, elevation) != before {
+            let (a, e) = (azimuth.to_radians(), elevation.to_radians());
+            light.direction = Vec3::new(e.cos() * a.cos(), -e.sin(), e.cos() * a.sin());
+        }
+    }
+    if let LightKind::Spot { inner, outer } = &mut light.kind {
+        let (mut i, mut o) = (inner.to_degrees(), outer.to_degrees());
+        let before = (i, o);
+        ui.add(egui::Slider::new(&mut i, 0.0..=89.0).suffix(" deg").text("inner"));
+        ui.add(egui::Slider::new(&mut o, 1.0..=89.0).suffix(" deg").text("outer"));
+        if (i, o) != before {
+            (*inner, *outer) = (i.min(o).to_radians(), o.to_radians());
+        }
+    }
+}

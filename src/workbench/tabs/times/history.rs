@@ -1,0 +1,205 @@
+//! The times of the last frames, and what they say as a table.
+
+use crate::results::stats::{Spread, spread};
+use crate::workbench::engine::report::PictureReport;
+use std::collections::VecDeque;
+
+/// Frames that are kept.
+pub const KEPT: usize = 240;
+
+/// The times of a frame.
+#[derive(Clone, Debug, Default)]
+pub struct Frame {
+    /// Counts the side's frames.
+    pub frame: u64,
+    /// Time of the scene, s.
+    pub time: f64,
+    /// Recording and submitting, ms.
+    pub cpu_ms: f64,
+    /// First to last command on the GPU, ms.
+    pub gpu_ms: f64,
+    /// (pass number, ms).
+    pub passes: Vec<(usize, f64)>,
+    /// Numbers of the passes that slept.
+    pub asleep: Vec<usize>,
+}
+
+impl Frame {
+    /// The times of a picture's frame.
+    pub fn of(p: &PictureReport) -> Frame {
+        let (passes, asleep) = (p.passes.clone(), p.asleep.clone());
+        Frame { frame: p.frame, time: p.time, cpu_ms: p.cpu_ms, gpu_ms: p.gpu_ms, passes, asleep }
+    }
+
+    /// Time of a pass, ms; a pass that ran several times has the sum.
+    pub fn pass(&self, number: usize) -> f64 {
+        self.passes.iter().filter(|p| p.0 == number).map(|p| p.1).sum()
+    }
+}
+
+/// The last frames of a side.
+#[derive(Default)]
+pub struct History {
+    /// (number, name) of the passes, in the order they run.
+    pub passes: Vec<(usize, String)>,
+    /// The oldest first.
+    pub frames: VecDeque<Frame>,
+    /// Counts changes.
+    pub changes: u64,
+}
+
+impl History {
+    /// A history of these passes, without frames yet.
+    pub fn new(passes: Vec<(usize, String)>) -> History {
+        History { passes, ..History::default() }
+    }
+
+    /// Adds a frame and forgets the oldest.
+    pub fn push(&mut self, frame: Frame) {
+        if self.frames.len() == KEPT {
+            self.frames.pop_front();
+        }
+        self.frames.push_back(frame);
+        self.changes += 1;
+    }
+
+    /// The time that a chart should reach, ms: the 95th percentile and a bit, so that one slow frame flattens nothing.
+    pub fn top(&self) -> f64 {
+        let s = spread(self.frames.iter().map(|f| f.gpu_ms).collect());
+        s.p95.max(1e-3) * 1.15
+    }
+}
+
+/// A row of the table.
+pub struct Row {
+    /// Name.
+    pub name: String,
+    /// Whether it is a pass; else a total.
+    pub is_pass: bool,
+    /// Times of A and B, ms.
+    pub spread: [Option<Spread>; 2],
+    /// Whether it slept in the last frame of A, and in that of B.
+    pub asleep: [bool; 2],
+    /// Texts of the columns.
+    pub cells: [String; 4],
+}
+
+/// The rows: the passes of A in order, those that only B has, and the totals. With B the columns are the median of A
+/// and B, B/A, and the share of A; else median, 95th percentile, share and maximum.
+pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
+    let mut names: Vec<&str> = a.passes.iter().map(|p| p.1.as_str()).collect();
+    for (_, name) in b.iter().flat_map(|b| &b.passes) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let both = b.is_some();
+    let none = History::default();
+    let sides = [a, b.unwrap_or(&none)];
+    let values = |h: &History, f: &dyn Fn(&Frame) -> f64| -> Option<Vec<f64>> {
+        (!h.frames.is_empty()).then(|| h.frames.iter().map(f).collect())
+    };
+    let total = values(a, &|f| f.gpu_ms).map_or(0.0, |v| spread(v).median);
+    let row = |name: &str, is_pass: bool, lists: [Option<Vec<f64>>; 2]| {
+        let most = lists[0].iter().flatten().copied().fold(0.0, f64::max);
+        let spread = lists.map(|v| v.map(spread));
+        let share =
+            spread[0].filter(|_| total > 0.0 && name != CPU).map(|s| format!("{:.1}%", 100.0 * s.median / total));
+        let ms = |v: Option<f64>| v.map_or(String::new(), digits);
+        let median = spread.map(|s| s.map(|s| s.median));
+        let ratio = match median {
+            [Some(a), Some(b)] if a > 0.0 => format!("{:.2}", b / a),
+            _ => String::new(),
+        };
+        let share = share.unwrap_or_default();
+        let cells = if both {
+            [ms(median[0]), ms(median[1]), ratio, share]
+        } else {
+            [ms(median[0]), ms(spread[0].map(|s| s.p95)), share, ms(spread[0].map(|_| most))]
+        };
+        Row { name: name.into(), is_pass, spread, asleep: [false; 2], cells }
+    };
+    let number = |h: &History, name: &str| h.passes.iter().find(|p| p.1 == name).map(|p| p.0);
+    let slept = |h: &History, name: &str| {
+        h.frames.back().zip(number(h, name)).is_some_and(|(frame, number)| frame.asleep.contains(&number))
+    };
+    let mut list: Vec<Row> = Vec::with_capacity(names.len() + 2);
+    for name in names {
+        let times = sides.map(|h| number(h, name).and_then(|n| values(h, &|f| f.pass(n))));
+        list.push(Row { asleep: sides.map(|h| slept(h, name)), ..row(name, true, times) });
+    }
+    list.push(row("GPU, first to last", false, sides.map(|h| values(h, &|f| f.gpu_ms))));
+    list.push(row(CPU, false, sides.map(|h| values(h, &|f| f.cpu_ms))));
+    list
+}
+
+/// A time with four digits, ms.
+fn digits(ms: f64) -> String {
+    match ms {
+        _ if ms >= 999.95 => format!("{ms:.0}"),
+        _ if ms >= 99.995 => format!("{ms:.1}"),
+        _ if ms >= 9.9995 => format!("{ms:.2}"),
+        _ => format!("{ms:.3}"),
+    }
+}
+
+/// The row that is no part of the GPU's time.
+const CPU: &str = "CPU record, submit";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn history(names: &[&str], times: &[&[f64]]) -> History {
+        let mut h = History::new(names.iter().enumerate().map(|(i, n)| (i, (*n).to_string())).collect());
+        for t in times {
+            let passes: Vec<(usize, f64)> = t.iter().copied().enumerate().collect();
+            h.push(Frame { gpu_ms: t.iter().sum(), cpu_ms: 1.0, passes, ..Frame::default() });
+        }
+        h
+    }
+
+    #[test]
+    fn only_the_last_frames_are_kept() {
+        let mut h = history(&["a"], &[]);
+        for i in 0..KEPT as u64 + 7 {
+            h.push(Frame { frame: i, ..Frame::default() });
+        }
+        assert_eq!((h.frames.len(), h.frames[0].frame), (KEPT, 7));
+    }
+
+    #[test]
+    fn passes_of_a_and_b_are_paired_by_name() {
+        let a = history(&["x", "y"], &[&[1.0, 3.0], &[1.0, 3.0], &[1.0, 5.0]]);
+        let b = history(&["y", "z"], &[&[6.0, 2.0]]);
+        let rows = rows(&a, Some(&b));
+        let names: Vec<&str> = rows.iter().map(|r| r.name.as_str()).collect();
+        assert_eq!(names, ["x", "y", "z", "GPU, first to last", CPU]);
+        assert_eq!(rows[0].cells, ["1.000", "", "", "25.0%"]);
+        assert_eq!(rows[1].cells, ["3.000", "6.000", "2.00", "75.0%"]);
+        assert_eq!(rows[2].cells, ["", "2.000", "", ""]);
+        assert_eq!(rows[4].cells, ["1.000", "1.000", "1.00", ""]);
+    }
+
+    #[test]
+    fn a_pass_sleeps_in_the_last_frame_or_not() {
+        let mut h = history(&["x", "y"], &[&[1.0, 2.0]]);
+        h.push(Frame { passes: vec![(0, 0.0), (1, 2.0)], asleep: vec![0], ..Frame::default() });
+        assert_eq!(rows(&h, None).iter().map(|r| r.asleep[0]).collect::<Vec<_>>(), [true, false, false, false]);
+        h.push(Frame { passes: vec![(0, 1.0), (1, 2.0)], ..Frame::default() });
+        assert!(rows(&h, None).iter().all(|r| !r.asleep[0]));
+    }
+
+    #[test]
+    fn times_have_four_digits() {
+        let list = [0.0123, 9.9996, 52.944, 511.644, 21212.28].map(digits);
+        assert_eq!(list, ["0.012", "10.00", "52.94", "511.6", "21212"]);
+    }
+
+    #[test]
+    fn alone_it_says_how_times_spread() {
+        let rows = rows(&history(&["x"], &[&[1.0], &[2.0], &[9.0]]), None);
+        assert_eq!(rows[0].cells, ["2.000", "9.000", "100.0%", "9.000"]);
+        assert!(super::rows(&History::default(), None).iter().all(|r| r.cells.iter().all(String::is_empty)));
+    }
+}
