@@ -1,7 +1,7 @@
 //! conelab: a research workbench for voxel cone tracing.
 //!
 //! Knowledge flows one way: [`vulkan`], [`shader`], [`graph`] know no scene; [`scene`] knows no device; [`lab`] joins
-//! them to run an [`experiment`]; the commands and the [`workbench`] in its [`window`] are thin users of the lab.
+//! them to run an [`experiment`]; the commands and the [`workbench`] are thin users of the lab.
 pub mod camera_path;
 pub mod campaign;
 pub mod commands;
@@ -12,12 +12,8 @@ pub mod graph;
 pub mod lab;
 pub mod measure;
 pub mod metrics;
-pub mod panics;
 pub mod results;
 pub mod scene;
-pub mod screenshot;
 pub mod shader;
-pub mod timers;
 pub mod vulkan;
-pub mod window;
 pub mod workbench;

@@ -7,17 +7,17 @@ use std::path::Path;
 
 /// From the ground up; those of one floor that are named together may know each other.
 const FLOORS: [&[&str]; 11] = [
-    &["files", "diagnostics", "panics", "metrics"],
+    &["files", "diagnostics", "metrics"],
     &["vulkan"],
     &["scene"],
     &["shader"],
     &["graph"],
     &["experiment", "camera_path"],
     &["lab"],
-    &["results", "timers"],
+    &["results"],
     &["measure"],
     &["campaign"],
-    &["workbench", "window", "screenshot"],
+    &["workbench"],
 ];
 
 /// The rooms of `src/graph`, likewise: what a graph is, how it is read, linked, planned, run.
@@ -40,7 +40,7 @@ const TOP: [&str; 3] = ["commands", "main", "lib"];
 const STRANGERS: [(&str, &str); 1] = [("scene", "vulkan")];
 
 /// Who draws with the window's library: the window, what paints it, and texts on pictures.
-const DRAWS: [&str; 5] = ["workbench", "window", "screenshot", "vulkan/painter.rs", "timers"];
+const DRAWS: [&str; 3] = ["workbench", "vulkan/painter.rs", "results/timers.rs"];
 
 fn floor(room: &str) -> usize {
     let found = FLOORS.iter().position(|rooms| rooms.contains(&room));

@@ -5,7 +5,7 @@ use super::adapt::{self, ExperimentArgs, parse_resource};
 use crate::experiment::checked_name;
 use crate::lab::{Lab, LabError, Workspace};
 use crate::results::capture::{Resource, What, free_name, sweep_partials, take};
-use crate::timers::Rows;
+use crate::results::timers::Rows;
 use clap::Args;
 use std::sync::Arc;
 

@@ -4,8 +4,8 @@ use super::DeviceArgs;
 use crate::graph::run::Redo;
 use crate::lab::{LabError, Workspace};
 use crate::vulkan::GpuOptions;
-use crate::window::{self, WindowOptions};
 use crate::workbench::Options;
+use crate::workbench::hosts::window::{self, WindowOptions};
 use clap::Parser;
 use std::path::PathBuf;
 

@@ -2,6 +2,7 @@
 //! the mistakes in the others.
 
 pub mod excerpt;
+pub mod panics;
 
 use crate::files::read_input_text;
 use excerpt::{excerpt, excerpt_at};

@@ -3,3 +3,4 @@
 pub mod capture;
 pub mod picture;
 pub mod stats;
+pub mod timers;

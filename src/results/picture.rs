@@ -1,11 +1,11 @@
 //! Results as files: PNG for what is display-encoded, EXR for what is linear.
 
+use crate::diagnostics::panics::caught;
 use crate::experiment::MAX_SIZE;
 use crate::files::{FileError, check_input, ending};
 use crate::lab::{LabError, Texels};
 use crate::metrics::colour::srgb_to_linear;
 use crate::metrics::{Kind, Linear, MAX_PIXELS};
-use crate::panics::caught;
 use crate::vulkan::Format;
 use exr::prelude::{
     AnyChannel, AnyChannels, FlatSamples, Image as ExrImage, Layer, LayerAttributes, WritableImage,

@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use glam::Mat4;
 
+use crate::diagnostics::panics::caught;
 use crate::files::ending;
-use crate::panics::caught;
 
 use super::limits::{check_extent, with_size_told};
 use super::progress::{Progress, Watch};

@@ -2,7 +2,7 @@
 
 use crate::diagnostics::{Entries, RawText};
 use crate::experiment::Experiment;
-use crate::timers::Rows;
+use crate::results::timers::Rows;
 use crate::workbench::desired::edit;
 use crate::workbench::engine::Order;
 use crate::workbench::panel::control::CHANGED;

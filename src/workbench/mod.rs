@@ -1,6 +1,6 @@
 //! The workbench: an engine that renders in the background, and the interface that says what it renders.
 //!
-//! Nothing here knows a window system: [`crate::window`] and offscreen screenshots are two hosts of the same interface.
+//! Nothing here knows a window system but the [`hosts`] of the interface: a window, and offscreen screenshots.
 
 mod bar;
 pub mod desired;
@@ -9,6 +9,7 @@ pub mod engine;
 pub mod events;
 mod help;
 mod host;
+pub mod hosts;
 mod layout;
 mod messages;
 mod models;

@@ -1,8 +1,8 @@
 //! Pictures of the sky from files, which are not trusted: sizes and memory are limited, what is no radiance becomes 0.
 
 use super::{Environment, Level, SkyPicture};
+use crate::diagnostics::panics::caught;
 use crate::files::read_input;
-use crate::panics::caught;
 use crate::scene::texture::{MAX_FILE_BYTES, decode_limited};
 use image::ImageFormat;
 use std::path::Path;

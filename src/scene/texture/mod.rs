@@ -12,7 +12,7 @@ use glam::Vec4;
 use indexmap::IndexMap;
 use rayon::prelude::*;
 
-use crate::panics::caught;
+use crate::diagnostics::panics::caught;
 
 use super::progress::Progress;
 use super::{SceneError, Texture, TextureFormat};

@@ -5,8 +5,8 @@ use crate::diagnostics::{At, Loc};
 use crate::experiment::{CameraChoice, EnvironmentChange, Experiment, LightChange};
 use crate::lab::{Lab, LabError};
 use crate::results::capture::{self, Resource, What};
+use crate::results::timers::Rows;
 use crate::scene::{Light, LightKind, Scene};
-use crate::timers::Rows;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@ use super::Run;
 use super::error_worker::{ErrorQuery, ErrorRequest, ErrorResult};
 use super::guard::guarded;
 use super::report::Report;
-use crate::timers::Rows;
+use crate::results::timers::Rows;
 use crate::workbench::desired::save;
 
 impl Run<'_> {

@@ -1,6 +1,6 @@
 //! Work on other threads that must answer: a panic in it becomes an answer too.
 
-use crate::panics::said;
+use crate::diagnostics::panics::said;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The work's result, or what it said when it panicked. What it had in hand is dropped; nothing shared is left half done, as

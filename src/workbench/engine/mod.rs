@@ -16,10 +16,10 @@ mod renderdoc;
 pub mod report;
 mod scenes;
 
+use crate::diagnostics::panics::said;
 use crate::lab::{Lab, LabError, Loaded, Session, Workspace};
-use crate::panics::said;
+use crate::results::timers::Rows;
 use crate::scene::{Scene, SceneError};
-use crate::timers::Rows;
 use crate::vulkan::GpuOptions;
 use crate::workbench::desired::request::{InspectTarget, RenderRequest};
 use builder::{Done, Job, Key};

@@ -1,7 +1,7 @@
 //! Times on the picture: in a corner of each side.
 
 use super::compare::Mode;
-use crate::timers::{Rows, Timers, draw};
+use crate::results::timers::{Rows, Timers, draw};
 use crate::workbench::Workbench;
 use egui::{Painter, Rect};
 

@@ -3,7 +3,7 @@
 use super::compare::{MODES, Mode};
 use super::motion;
 use super::zoom::{Zoom, foot, pixel_at, pixel_text};
-use crate::timers::Rows;
+use crate::results::timers::Rows;
 use crate::workbench::panel::control::spin;
 use crate::workbench::{COMPARISON, Workbench};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, TextureId, Ui, Vec2};

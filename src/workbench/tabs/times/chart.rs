@@ -1,7 +1,7 @@
 //! Stacked bars, one a frame, as one mesh.
 
 use super::history::{History, KEPT};
-use crate::timers::color;
+use crate::results::timers::color;
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Ui, Vec2};
 use std::sync::Arc;

@@ -8,7 +8,7 @@ use super::Tab;
 use crate::files::FileError;
 use crate::graph::run::Redo;
 use crate::results::stats::spread;
-use crate::timers;
+use crate::results::timers;
 use crate::workbench::Workbench;
 use crate::workbench::engine::report::{GraphInfo, PassUses, PictureReport};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};

@@ -1,0 +1,4 @@
+//! Who shows the interface: a window, and screenshots without one.
+
+pub mod screenshot;
+pub mod window;
