@@ -55,6 +55,8 @@ record() {
         pixels) bench configs/default.ron --scene "$sponza" --sizes 1920x1080,3840x2160 --set voxel_dim=256 --rounds 3 ;;
         cells) bench configs/default.ron --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=256,512 \
             --set voxel_capacity=1750000 --set fragment_capacity=2850000 --rounds 3 ;;
+        rooms) bench configs/default.ron --sizes 1920x1080 \
+            --axis "scene=\"cornell\",\"atrium\",\"$sponza\",\"configs/scenes/living-room.ron\",\"street\",\"emitters\",\"foliage\"" --rounds 3 ;;
         moving)
             local way=(render configs/default.ron --scene "$sponza" --size 1920x1080 --set voxel_dim=256 --redo changed
                 --path configs/paths/sponza.ron --step 0.0166667 --warmup 600 --frames 300)
@@ -77,5 +79,5 @@ record() {
     esac
 }
 
-[[ $# -gt 0 ]] || set -- thesis default pixels cells moving scenes lamps sponza voxels
+[[ $# -gt 0 ]] || set -- thesis default pixels cells rooms moving scenes lamps sponza voxels
 for name; do record "$name"; done

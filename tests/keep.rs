@@ -590,14 +590,14 @@ fn a_killed_program_leaves_everything_whole() {
     succeeds(&mut quick(&["capture", "configs/run.ron", "--name", "warm"]));
     let start = Instant::now();
     succeeds(&mut quick(&["capture", "configs/run.ron", "--name", "first"]));
-    let whole = start.elapsed();
+    let mut whole = start.elapsed();
     let is_partial = |name: &String| name.contains(".partial-");
     let writes = |name: &str| project.names("captures").iter().any(|n| n.starts_with(&format!(".{name}.partial-")));
     let mut second = quick(&["capture", "configs/run.ron", "--name", "second"]).stdout(Stdio::null()).spawn().unwrap();
     wait_for(&mut second, || writes("second"));
     let start = Instant::now();
     assert!(second.wait().unwrap().success());
-    let writing = start.elapsed();
+    let mut writing = start.elapsed();
     let mut kept: BTreeMap<String, Vec<u8>> = BTreeMap::new();
     let (mut killed, mut halves) = (0, 0);
     for i in 0..KILLS {
@@ -606,8 +606,13 @@ fn a_killed_program_leaves_everything_whole() {
         // Every other one is killed while it writes, the others at any time.
         let share = f64::from(i) / f64::from(KILLS) * 1.1;
         let any_time = i % 2 == 0;
-        let part = if any_time { whole } else { writing }.mul_f64(share);
-        killed += u32::from(kill(&mut command, || any_time || writes(&name), part));
+        let lasts = if any_time { &mut whole } else { &mut writing };
+        let running = kill(&mut command, || any_time || writes(&name), lasts.mul_f64(share));
+        killed += u32::from(running);
+        if !running {
+            // What was measured on a busier machine, or with the program's end in it, is too long here.
+            *lasts = lasts.mul_f64(0.7);
+        }
         halves += u32::from(writes(&name));
         for summary in capture::list(&folder) {
             let manifest = summary.manifest.unwrap_or_else(|e| panic!("kill {i}: {e}"));

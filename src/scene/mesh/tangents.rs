@@ -1,15 +1,15 @@
 //! Tangents: MikkTSpace where a normal map needs them, otherwise any that is orthogonal to the normal.
 
-use glam::Vec3;
-
 use super::weld;
 use crate::scene::{Mesh, Vertex};
+use bevy_mikktspace::{Geometry, TangentSpace};
+use glam::Vec3;
 
 /// MikkTSpace tangents; vertices whose corners disagree are split.
 pub(super) fn generate(mesh: &mut Mesh) {
     let corners = mesh.indices.iter().map(|&i| mesh.vertices[i as usize]).collect();
     let mut soup = Soup { corners };
-    if !soup.corners.is_empty() && mikktspace::generate_tangents(&mut soup) {
+    if bevy_mikktspace::generate_tangents(&mut soup).is_ok() && !soup.corners.is_empty() {
         (mesh.vertices, mesh.indices) = weld(&soup.corners);
     }
     repair(mesh);
@@ -43,7 +43,7 @@ struct Soup {
     corners: Vec<Vertex>,
 }
 
-impl mikktspace::Geometry for Soup {
+impl Geometry for Soup {
     fn num_faces(&self) -> usize {
         self.corners.len() / 3
     }
@@ -59,7 +59,8 @@ impl mikktspace::Geometry for Soup {
     fn tex_coord(&self, face: usize, vertex: usize) -> [f32; 2] {
         self.corners[face * 3 + vertex].uv
     }
-    fn set_tangent_encoded(&mut self, tangent: [f32; 4], face: usize, vertex: usize) {
-        self.corners[face * 3 + vertex].tangent = tangent;
+    fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
+        // Where a triangle without area has no neighbour to take it from there is none: `repair` makes one.
+        self.corners[face * 3 + vertex].tangent = space.map_or([0.0; 4], |space| space.tangent_encoded());
     }
 }
