@@ -5,11 +5,12 @@ use conelab::diagnostics::Diagnostic;
 use conelab::experiment::Experiment;
 use conelab::graph::Evaluated;
 use conelab::graph::plan::plan;
-use conelab::lab::{LabError, Workspace, any_device, environment, params_of};
+use conelab::lab::{LabError, Loaded, Workspace, any_device, environment, params_of};
 use conelab::scene::Scene;
 use conelab::vulkan::DeviceInfo;
 use insta::assert_snapshot;
 use std::path::PathBuf;
+use std::sync::Arc;
 use tempfile::TempDir;
 
 const GRAPH: &str = r#"(
@@ -170,7 +171,7 @@ impl Bench {
     fn check(&self) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         let home = Workspace { root: self.folder.path().to_path_buf(), cache: None };
         let experiment = Experiment::read(&self.path("configs/run.ron"))?;
-        let (graph, linked, warnings) = home.graph(&experiment.graph)?;
+        let Loaded { graph, linked, warnings } = home.load(&experiment.graph)?;
         if let Some(mistake) = conelab::measure::oracle::mistake(&graph) {
             return Err(vec![mistake]);
         }
@@ -203,6 +204,28 @@ fn a_graph_pins_what_it_declares() {
     let edit = ("Float(name: \"level\", ", "Float(name: \"level\", when: \"methd == fast\", ");
     let said = bench().edit("passes/shared.ron", edit.0, edit.1).findings();
     assert!(said.contains("unknown variable 'methd'") && said.contains("did you mean 'method'?"), "{said}");
+}
+
+#[test]
+fn a_graph_is_read_again_when_one_of_its_files_has_changed() {
+    let bench =
+        bench().edit("passes/graph.ron", "    output:", "    modules: { \"lamp\": \"light.glsl\" },\n    output:");
+    let home = Workspace { root: bench.folder.path().to_path_buf(), cache: None };
+    let read = || home.read("graph.ron");
+    let first = read().unwrap();
+    assert!(Arc::ptr_eq(&first, &read().unwrap()), "nothing has changed");
+    // A shader is no part of it, but whether the file of a module is there.
+    let bench = bench.edit("shaders/include/light.glsl", "2.0", "3.0");
+    assert!(Arc::ptr_eq(&first, &read().unwrap()), "a shader has changed");
+    let bench = bench.edit("passes/shared.ron", "default: 0.5", "default: 0.75");
+    let second = read().unwrap();
+    assert_eq!([&first, &second].map(|g| g.params.get("level").unwrap().to_string()), ["0.5", "0.75"]);
+    let gone = bench.path("shaders/include/light.glsl");
+    std::fs::rename(&gone, gone.with_extension("gone")).unwrap();
+    assert!(read().unwrap_err()[0].message.contains("no shader file 'light.glsl'"));
+    std::fs::rename(gone.with_extension("gone"), &gone).unwrap();
+    std::fs::remove_file(bench.path("passes/shared.ron")).unwrap();
+    assert!(read().is_err(), "an include is gone");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use common::{assert_clean, experiment, floats, lab, mean, prepare, root, scene};
 use conelab::experiment::{CameraChoice, Experiment, PlacedCamera};
 use conelab::graph::Evaluated;
 use conelab::graph::plan::plan;
-use conelab::lab::{Lab, LabError, Session, environment};
+use conelab::lab::{Lab, LabError, Loaded, Session, environment};
 use conelab::vulkan::{DeviceInfo, Features};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -409,7 +409,7 @@ fn the_preview_shows_every_scene_on_the_plainest_device() {
         let mut session = frames(&lab, &experiment, &["display"], 1);
         assert_picture(&floats(&mut session, "display", 0), name);
     }
-    let (graph, linked, warnings) = lab.home.graph("preview.ron").unwrap();
+    let Loaded { graph, linked, warnings } = lab.home.load("preview.ron").unwrap();
     assert_eq!(warnings, []);
     let params = graph.params.clone();
     let device = DeviceInfo::imaginary(Features::default());

@@ -277,7 +277,7 @@ fn experiments_change_the_picture_and_are_written_with_it() {
     assert!(hashes[0] != hashes[1] && hashes[0] != hashes[2]);
     // Written, also to another folder, and read back.
     let defaults =
-        conelab::lab::Workspace { root: root().to_path_buf(), cache: None }.graph("vct.ron").unwrap().0.params.clone();
+        conelab::lab::Workspace { root: root().to_path_buf(), cache: None }.read("vct.ron").unwrap().params.clone();
     for to in [folder.path().join("again.ron"), folder.path().join("deep/again.ron")] {
         write(&changed, &defaults, &to, false).unwrap();
         let found = Experiment::read(&to).unwrap();

@@ -166,8 +166,8 @@ fn check_experiment(home: &Workspace, file: &Path) -> Vec<Diagnostic> {
         Ok(e) => e,
         Err(errors) => return errors,
     };
-    let graph = match home.graph(&experiment.graph) {
-        Ok((graph, ..)) => graph,
+    let graph = match home.load(&experiment.graph) {
+        Ok(loaded) => loaded.graph,
         Err(errors) => return errors,
     };
     match params_of(&graph, &experiment) {

@@ -7,7 +7,7 @@ use crate::graph::Evaluated;
 use crate::graph::outline::outline;
 use crate::graph::plan::plan;
 use crate::graph::report;
-use crate::lab::{LabError, Workspace, any_device, environment, params_of};
+use crate::lab::{LabError, Loaded, Workspace, any_device, environment, params_of};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -54,7 +54,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         _ => None,
     };
     let name = experiment.as_ref().map_or(args.file.as_str(), |e| e.graph.as_str());
-    let (graph, _, warnings) = home.graph(name).map_err(LabError::Input)?;
+    let Loaded { graph, warnings, .. } = home.load(name).map_err(LabError::Input)?;
     for warning in warnings {
         eprintln!("{warning}");
     }

@@ -174,6 +174,11 @@ impl Sources {
         self.files.iter().map(|(p, t)| (p.as_path(), t.as_str()))
     }
 
+    /// Whether all files read are still as they were.
+    pub fn are_current(&self) -> bool {
+        self.files.iter().all(|(path, text)| read_input_text(path, MAX_BYTES).is_ok_and(|now| now == *text))
+    }
+
     /// Line and column of an offset.
     pub fn place(&self, at: At) -> Place {
         let Some((file, text)) = self.files.get(at.file as usize) else { return Place::default() };

@@ -56,6 +56,6 @@ mod tests {
     fn a_panic_is_its_message() {
         assert_eq!(caught(|| 3), Ok(3));
         let told = caught(|| panic!("no {}", "such thing")).unwrap_err();
-        assert!(told.starts_with("its reader gave up (no such thing at src/panics.rs:"), "{told}");
+        assert!(told.starts_with("its reader gave up (no such thing at src/diagnostics/panics.rs:"), "{told}");
     }
 }

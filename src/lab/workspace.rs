@@ -11,8 +11,9 @@ use crate::graph::{Evaluated, Graph};
 use crate::scene::Scene;
 use crate::shader::ShaderCompiler;
 use crate::vulkan::DeviceInfo;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A graph with its shaders compiled and checked: all, or those of the passes that run.
 #[derive(Clone)]
@@ -24,6 +25,9 @@ pub struct Loaded {
     /// What was found and is no error.
     pub warnings: Vec<Diagnostic>,
 }
+
+/// The last graph of each root and path, in this program: an edit of a shader reads none again.
+static LAST: Mutex<BTreeMap<(PathBuf, PathBuf), Arc<Graph>>> = Mutex::new(BTreeMap::new());
 
 /// Where the program's own folders are.
 #[derive(Clone, Debug)]
@@ -85,16 +89,6 @@ impl Workspace {
         if bare || at_home.is_file() { at_home } else { given.to_path_buf() }
     }
 
-    /// A graph with all of its shaders compiled and checked, and warnings; needs no device.
-    ///
-    /// # Errors
-    /// All mistakes.
-    pub fn graph(&self, name: &str) -> Result<(Graph, Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {
-        let graph = self.read(name)?;
-        let (linked, warnings) = self.link(&graph, &Runs::all(&graph, &graph.params))?;
-        Ok((graph, linked, warnings))
-    }
-
     /// Everything that is wrong with a graph and its shaders, or worth knowing, whichever option its modules are set to;
     /// needs no device.
     pub fn check(&self, name: &str) -> Vec<Diagnostic> {
@@ -133,13 +127,14 @@ impl Workspace {
         Ok(self.link(graph, &Runs::all(graph, params))?.0)
     }
 
-    /// [`Workspace::graph`], to be shared.
+    /// A graph with all of its shaders compiled and checked, and warnings; needs no device.
     ///
     /// # Errors
     /// All mistakes.
     pub fn load(&self, name: &str) -> Result<Loaded, Vec<Diagnostic>> {
-        let (graph, linked, warnings) = self.graph(name)?;
-        Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
+        let graph = self.read(name)?;
+        let (linked, warnings) = self.link(&graph, &Runs::all(&graph, &graph.params))?;
+        Ok(Loaded { graph, linked: Arc::new(linked), warnings })
     }
 
     /// [`Workspace::load`] with the shaders of those passes alone that an experiment runs in a scene: a picture waits for no
@@ -155,7 +150,7 @@ impl Workspace {
     ) -> Result<Loaded, Vec<Diagnostic>> {
         let graph = self.read(&experiment.graph)?;
         let (linked, warnings) = self.link(&graph, &runs_of(&graph, experiment, scene, device))?;
-        Ok(Loaded { graph: Arc::new(graph), linked: Arc::new(linked), warnings })
+        Ok(Loaded { graph, linked: Arc::new(linked), warnings })
     }
 
     /// A graph with the shaders that an experiment runs; as it is, if it has them.
@@ -181,12 +176,20 @@ impl Workspace {
         Ok(Loaded { graph: loaded.graph.clone(), linked: Arc::new(linked), warnings })
     }
 
-    /// A graph without its shaders.
+    /// A graph without its shaders; the last one of that name, if its files are as they were.
     ///
     /// # Errors
     /// All mistakes of its files.
-    pub fn read(&self, name: &str) -> Result<Graph, Vec<Diagnostic>> {
-        load(&self.graph_path(name), &self.folders())
+    pub fn read(&self, name: &str) -> Result<Arc<Graph>, Vec<Diagnostic>> {
+        let (path, folders) = (self.graph_path(name), self.folders());
+        let key = (self.root.clone(), path.clone());
+        let known = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(graph) = known().get(&key).filter(|graph| graph.is_current(&folders)) {
+            return Ok(graph.clone());
+        }
+        let graph = Arc::new(load(&path, &folders)?);
+        known().insert(key, graph.clone());
+        Ok(graph)
     }
 
     fn link(&self, graph: &Graph, runs: &Runs) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {

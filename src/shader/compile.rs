@@ -7,7 +7,7 @@ use crate::diagnostics::{Diagnostic, Place, nearest};
 use crate::vulkan::Stage;
 use sha2::{Digest, Sha256};
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
@@ -59,10 +59,26 @@ pub fn find(folder: &Path, name: &str) -> Option<PathBuf> {
     [folder.join("include").join(name), folder.join(name)].into_iter().find(|p| p.is_file())
 }
 
-/// Compiles shaders of one folder.
+/// Compiles shaders of one folder, as its files were when it first read each.
 pub struct ShaderCompiler {
     folder: PathBuf,
     cache: Option<PathBuf>,
+    /// What was read: most files are included by many.
+    read: Mutex<HashMap<String, Read>>,
+}
+
+/// A file's text and what it includes, or why it has none; nothing where there is no such file.
+type Read = Option<Result<Text, Vec<Diagnostic>>>;
+
+/// A text, and the names that it includes.
+#[derive(Clone)]
+struct Text(String, Vec<String>);
+
+impl Text {
+    fn new(text: String) -> Text {
+        let includes = text.lines().filter_map(included).map(String::from).collect();
+        Text(text, includes)
+    }
 }
 
 /// Changes whenever compiled modules of an older program must not be used.
@@ -80,7 +96,7 @@ const MAX_DEPTH: usize = 32;
 impl ShaderCompiler {
     /// A compiler for `folder`, with compiled modules kept in `cache`.
     pub fn new(folder: &Path, cache: Option<&Path>) -> ShaderCompiler {
-        ShaderCompiler { folder: folder.to_path_buf(), cache: cache.map(Path::to_path_buf) }
+        ShaderCompiler { folder: folder.to_path_buf(), cache: cache.map(Path::to_path_buf), read: Mutex::default() }
     }
 
     /// Compiles one file.
@@ -150,31 +166,29 @@ impl ShaderCompiler {
         if texts.contains_key(name) {
             return Ok(());
         }
-        let text = match generated.get(name) {
-            Some(text) => text.clone(),
-            None => self.read(name)?,
+        let Text(text, includes) = match generated.get(name) {
+            Some(text) => Text::new(text.clone()),
+            None => self.read(name).unwrap_or_else(|| text_of(&self.folder.join(name)))?,
         };
-        let includes: Vec<String> = text.lines().filter_map(included).map(String::from).collect();
         texts.insert(name.to_string(), text);
         for include in includes {
             // One that is missing is told by the compiler, with its line.
-            if generated.contains_key(&include) || self.find(&include).is_some() {
+            if generated.contains_key(&include) || self.read(&include).is_some() {
                 self.collect(&include, generated, texts)?;
             }
         }
         Ok(())
     }
 
-    fn read(&self, name: &str) -> Result<String, Vec<Diagnostic>> {
-        let path = self.find(name).unwrap_or_else(|| self.folder.join(name));
-        let fail = |why: String| {
-            vec![Diagnostic::error(Place { file: path.clone(), ..Place::default() }, format!("cannot read it: {why}"))]
-        };
-        let text = crate::files::read_input_text(&path, MAX_BYTES).map_err(|e| fail(e.to_string()))?;
-        if text.contains('\0') {
-            return Err(fail("it holds a zero byte".into()));
+    /// The text of a file, read once; nothing where there is no such file.
+    fn read(&self, name: &str) -> Read {
+        let known = || self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(read) = known().get(name) {
+            return read.clone();
         }
-        Ok(text)
+        let read = self.find(name).map(|path| text_of(&path));
+        known().insert(name.into(), read.clone());
+        read
     }
 
     fn key(&self, source: &Source, texts: &BTreeMap<String, String>) -> String {
@@ -314,6 +328,16 @@ impl ShaderCompiler {
         }
         list
     }
+}
+
+/// The text of a shader file.
+fn text_of(path: &Path) -> Result<Text, Vec<Diagnostic>> {
+    let fail = |why: String| {
+        let place = Place { file: path.to_path_buf(), ..Place::default() };
+        vec![Diagnostic::error(place, format!("cannot read it: {why}"))]
+    };
+    let text = crate::files::read_input_text(path, MAX_BYTES).map_err(|e| fail(e.to_string()))?;
+    if text.contains('\0') { Err(fail("it holds a zero byte".into())) } else { Ok(Text::new(text)) }
 }
 
 /// The member in the compiler's words that a structure has none of that name.

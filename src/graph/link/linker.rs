@@ -4,7 +4,7 @@ use super::fit::resolve;
 use super::layouts::{Declared, Layouts};
 use super::linked::{Bound, BoundCase, Linked, Target};
 use super::members::mistakes;
-use super::place::{at_declaration, at_member, has_word};
+use super::place::{Words, at_declaration, at_member, has_word};
 use super::runs::Runs;
 use super::unused::{Texts, unused};
 use crate::diagnostics::{At, Diagnostic, Severity};
@@ -38,18 +38,18 @@ pub fn link(
     }
     let mut texts: Vec<Texts> = compiled.values().map(|c| c.texts.clone()).collect();
     let mut linked = Vec::new();
+    // Files that are not compiled: those of passes that rest, and of all options of modules.
+    let mut resting: Vec<&String> = graph.params.list.iter().flat_map(|p| &p.files).collect();
     for (i, pass) in graph.passes.iter().enumerate() {
         linker.mark_used(&pass.value);
         linked.push(if runs.has(i) {
             linker.pass(&pass.value, &compiled)
         } else {
-            let files = pass.value.shaders.0.iter().map(|s| &s.value);
-            texts.extend(linker.resting(files, compiler, generated));
+            resting.extend(pass.value.shaders.0.iter().map(|s| &s.value));
             Linked::default()
         });
     }
-    // The files of all options of modules.
-    texts.extend(linker.resting(graph.params.list.iter().flat_map(|p| &p.files), compiler, generated));
+    texts.extend(linker.resting(&resting, compiler, generated));
     let all = (0..graph.passes.len()).all(|i| runs.has(i));
     let place = |d: &Declared<'_>, message: String| at_declaration(shaders, d.shader, d.name, message);
     let members = mistakes(&Layouts::new(graph, &linked), all, place);
@@ -172,17 +172,14 @@ impl<'g> Linker<'g> {
     }
 
     /// What shader files that are not compiled would use, as far as their texts tell; returns these.
-    fn resting<'f>(
-        &mut self,
-        files: impl Iterator<Item = &'f String>,
-        compiler: &ShaderCompiler,
-        generated: &Generated,
-    ) -> Vec<Texts> {
+    fn resting(&mut self, files: &[&String], compiler: &ShaderCompiler, generated: &Generated) -> Vec<Texts> {
         // What cannot be read is told when it is compiled.
-        let texts: Vec<Texts> = files.filter_map(|f| Some(Arc::new(compiler.texts(f, generated).ok()?))).collect();
+        let read = |file: &&String| Some(Arc::new(compiler.texts(file, generated).ok()?));
+        let texts: Vec<Texts> = files.iter().filter_map(read).collect();
+        let files: BTreeMap<&String, &String> = texts.iter().flat_map(|t| t.iter()).collect();
+        let words = Words::of(files.values().map(|text| text.as_str()));
         let names = self.graph.resource_names().chain(self.graph.aliases.iter().map(|a| a.name.as_str()));
-        let named = names.filter(|name| texts.iter().flat_map(|t| t.values()).any(|text| has_word(text, name)));
-        self.used.extend(named.map(String::from));
+        self.used.extend(names.filter(|name| words.has(name)).map(String::from));
         texts
     }
 

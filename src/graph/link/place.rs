@@ -2,6 +2,8 @@
 
 use crate::diagnostics::{Diagnostic, Place};
 use crate::shader::{Compiled, find};
+use foldhash::fast::RandomState;
+use std::collections::HashSet;
 use std::path::Path;
 
 /// An error at the line of a member, `type member;`, before the line where a shader declares its block; there, where
@@ -47,4 +49,49 @@ pub fn has_word(text: &str, name: &str) -> bool {
         let edge = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_');
         edge(text[..i].chars().next_back()) && edge(text[i + name.len()..].chars().next())
     })
+}
+
+/// The words of some texts, and what stands after a point with what stands before it: `params.name`. Texts are long, and
+/// asked for many names.
+pub(super) struct Words<'t>(HashSet<&'t str, RandomState>);
+
+impl<'t> Words<'t> {
+    pub(super) fn of(texts: impl IntoIterator<Item = &'t str>) -> Words<'t> {
+        let mut words = HashSet::default();
+        for text in texts {
+            let (mut start, mut before) = (0, None);
+            for (end, c) in text.char_indices().chain([(text.len(), ' ')]) {
+                if c.is_alphanumeric() || c == '_' {
+                    continue;
+                }
+                words.insert(&text[start..end]);
+                words.extend(before.map(|from: usize| &text[from..end]));
+                before = (c == '.').then_some(start);
+                start = end + c.len_utf8();
+            }
+        }
+        Words(words)
+    }
+
+    /// As [`has_word`].
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.0.contains(name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Words, has_word};
+
+    #[test]
+    fn words_are_those_that_stand_alone() {
+        let text = "uniform Params { float a; } params;\nx = params.a_b + params.é.c - s.params.d; // end";
+        let words = Words::of([text, ""]);
+        for name in
+            ["params", "a", "a_b", "params.a_b", "params.a", "b", "é", "params.é", "é.c", "params.d", "d", "end", "e"]
+        {
+            assert_eq!(words.has(name), has_word(text, name), "{name}");
+        }
+        assert!(words.has("params.a_b") && !words.has("params.a") && !words.has("para"));
+    }
 }

@@ -1,10 +1,10 @@
 //! Warnings for what a graph declares and nobody uses.
 
-use super::place::has_word;
+use super::place::Words;
 use crate::diagnostics::{At, Diagnostic, Severity};
 use crate::graph::definition::Graph;
 use crate::shader::module_include;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 /// The files that a shader is made of: name, text.
@@ -26,12 +26,13 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
         let d = graph.sources.error(at, message);
         findings.push(Diagnostic { severity: Severity::Warning, ..d });
     };
-    let texts: HashSet<&String> =
-        shaders.iter().flat_map(|t| t.iter()).filter(|(f, _)| *f != "params.glsl").map(|(_, t)| t).collect();
-    let in_texts = |in_shader: &str| texts.iter().any(|text| has_word(text, in_shader));
+    // A file is the same in all shaders that include it.
+    let texts: HashMap<&String, &String> = shaders.iter().flat_map(|t| t.iter()).collect();
+    let words =
+        Words::of(texts.iter().filter(|(file, _)| file.as_str() != "params.glsl").map(|(_, text)| text.as_str()));
     let resources = graph.textures.iter().map(|t| (&t.0, t.1.at)).chain(graph.buffers.iter().map(|b| (&b.0, b.1.at)));
     // One option of a module may read what another does not.
-    let aliases = graph.aliases.iter().filter(|a| !in_texts(&a.name)).map(|a| (&a.name, a.at));
+    let aliases = graph.aliases.iter().filter(|a| !words.has(&a.name)).map(|a| (&a.name, a.at));
     for (name, at) in resources.chain(aliases) {
         if !used.contains(name) && !wanted.contains(name.as_str()) {
             warn(at, format!("'{name}' is declared and never used"));
@@ -42,12 +43,12 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
         let in_graph = param.variables().iter().any(|v| variables.contains(v));
         let as_format = graph.textures.iter().any(|t| t.1.value.format.value == param.name);
         let included = param.is_module() && shaders.iter().any(|t| t.contains_key(&module_include(&param.name)));
-        if !in_graph && !as_format && !included && !in_texts(&param.in_shaders()) {
+        if !in_graph && !as_format && !included && !words.has(&param.in_shaders()) {
             warn(param.at, format!("parameter '{}' is declared and never used", param.name));
         }
     }
     for value in &graph.values {
-        if !variables.contains(&value.name) && !in_texts(&format!("params.{}", value.name)) {
+        if !variables.contains(&value.name) && !words.has(&format!("params.{}", value.name)) {
             warn(value.at, format!("value '{}' is declared and never used", value.name));
         }
     }

@@ -129,6 +129,15 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     Ok(graph)
 }
 
+impl Graph {
+    /// Whether [`load`] would read the same again: its files, and those of the modules that it names, are there as they
+    /// were.
+    pub fn is_current(&self, folders: &Folders) -> bool {
+        let is_there = |file: &String| crate::shader::find(&folders.shaders, file).is_some();
+        self.modules.iter().all(|(_, file)| is_there(file)) && self.sources.are_current()
+    }
+}
+
 fn texts(list: &Entries<String>) -> Vec<(String, String)> {
     list.0.iter().map(|(name, text)| (name.value.clone(), text.value.clone())).collect()
 }

@@ -10,7 +10,7 @@ use crate::graph::Graph;
 use crate::graph::link::Linked;
 use crate::graph::link::generated;
 use crate::graph::load::Folders;
-use crate::lab::{Lab, LabError, camera_of, no_texture};
+use crate::lab::{Lab, LabError, Loaded, camera_of, no_texture};
 use crate::results::picture;
 use crate::results::timers::{Rows, Timers, stamped};
 use crate::scene::Scene;
@@ -69,7 +69,7 @@ pub fn take(
     if target.exists() {
         return Err(exists(&target));
     }
-    let (graph, linked, _) = lab.home.graph(&experiment.graph).map_err(LabError::Input)?;
+    let Loaded { graph, linked, .. } = lab.home.load(&experiment.graph).map_err(LabError::Input)?;
     std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
     // The number says later whether the program that writes here still runs.
     let prefix = format!(".{name}.partial-{}-", std::process::id());
