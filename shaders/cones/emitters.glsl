@@ -18,9 +18,13 @@ const int CANDIDATES = 8;
 // which voxels may show larger than it is [voxels].
 const float EMITTER_MARGIN = 0.25;
 const float LAMP = 0.5;
+// A lamp does not light itself: of a bulb of few voxels each side would see others, whose planes lean more or less than they should, and
+// what it gathered would be found by rays that leave the lamp's own light to the drawn places. So near, emitters are the side's own [voxels].
+const float OWN_LAMP = 3.0;
 
 // Share of the light that a ray has met. emitted: the part of it that emitters emit.
 float shareOfRay(RayUse use, vec3 light, float emitted, float distance) {
+    if (distance < use.own) return 1.0 - emitted;
     if (use.density == 0.0 || emitted == 0.0) return 1.0;
     float drawn = use.drawn * emitted * luminance(light) / emitters.power * distance * distance;
     return 1.0 - emitted * drawn / (drawn + use.density);
@@ -36,7 +40,7 @@ RayUse rayTo(EmitterPlace place, vec3 from) {
     float voxel;
     vec3 dir, p = from + place.distance * place.direction;
     cellAlong(volume.maps[cascadeAt(p)], p, place.direction, voxel, dir);
-    return RayUse(place.distance - EMITTER_MARGIN * voxel, 0.0, 0.0, place.distance - LAMP * voxel);
+    return RayUse(place.distance - EMITTER_MARGIN * voxel, 0.0, 0.0, place.distance - LAMP * voxel, 0.0);
 }
 
 #endif
