@@ -25,6 +25,6 @@ for every in "" "--every 16.667"; do
     # shellcheck disable=SC2086 # an option and its value, or nothing
     "$conelab" screenshot --scene "$scene" --size "$size" --click "keep rendering" --pace 300 $every -o "$home/shot.png"
 done
-echo "an edit of the cone shader"
+echo "an edit of the shader of the default's rays"
 "$conelab" screenshot --scene "$scene" --size "$size" -o "$home/shot.png" --times 25 \
-    --edit "$home/shaders/cones/cone.glsl" --from 'params.cone_height * first_cell' --to 'params.cone_height * first_cell * 1.01'
+    --edit "$home/shaders/cones/rays.glsl" --from '0.5698402910' --to '0.5698402911'

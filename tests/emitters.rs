@@ -143,6 +143,50 @@ fn a_small_lamp_lights_its_room() {
     }
 }
 
+/// A closed room with a bulb in its middle, of one voxel and of two and a half: sides of a bulb that lit each other shone with more
+/// than they emit, 1.12 of the room's light in all, and rays that met them left bright blocks all over the room.
+#[test]
+fn a_bulb_of_a_few_voxels_lights_its_room_evenly() {
+    let home = home();
+    let lab = lab(home.path());
+    for radius in [0.08, 0.16] {
+        let file = home.path().join("bulb.ron");
+        let text = format!(
+            "(materials: {{ \"wall\": (base_color: (0.6, 0.6, 0.6, 1.0)), \"bulb\": (base_color: (0.8, 0.8, 0.8, 1.0), emission: (60.0, 60.0, 60.0)) }},
+             meshes: {{ \"all\": [
+                Solid([Box(material: \"wall\", low: (-2.0, -2.0, -2.0), high: (2.0, 2.0, 2.0)), Hollow(material: \"wall\", low: (-1.9, -1.9, -1.9), high: (1.9, 1.9, 1.9))]),
+                Sphere(material: \"bulb\", centre: (0.03, 0.41, -0.02), radius: {radius}, level: 2),
+             ] }},
+             lights: [],
+             cameras: {{ \"default\": (eye: (1.0, -0.6, 1.0), target: (1.7, -1.0, -1.9), fov_y: 70.0) }})"
+        );
+        std::fs::write(&file, text).unwrap();
+        let name = file.to_string_lossy().into_owned();
+        let look = experiment(&name, (64, 48), &[("voxel_dim", "64")]);
+        let keep_on = &mut |_| ControlFlow::Continue(());
+        let truth = gather(&lab, &look, &scene(&name), 64, Goal::Samples(128), keep_on).unwrap();
+        let (mut session, _) = lab.prepare(&look, scene(&name), |_| Ok(vec!["diffuseIndirect".into()])).unwrap();
+        for _ in 0..24 {
+            session.frame(0.0).unwrap();
+        }
+        session.finish().unwrap();
+        let found = floats(&mut session, "diffuseIndirect", 0);
+        let expected = &truth.parts["diffuse"].mean.rgb;
+        let energy = mean(&found) / truth.parts["diffuse"].mean.mean();
+        // Of blocks of 8x8 pixels, which share their rays: noise of the reference goes out.
+        let block = |x: usize, y: usize| {
+            let pixels = (0..64).map(|i| (8 * y + i / 8) * 64 + 8 * x + i % 8);
+            pixels.fold([0.0, 0.0], |[a, b], i| [a + f64::from(found[i][1]), b + f64::from(expected[i][1])])
+        };
+        let ratios = (0..48).map(|i| block(i % 8, i / 8)).map(|[a, b]| a / b / energy);
+        let (least, most) = ratios.fold((f64::MAX, 0f64), |(least, most), r| (least.min(r), most.max(r)));
+        println!("radius {radius} m: energy {energy:.3}, blocks {least:.3} to {most:.3} of their light");
+        assert!((0.96..1.04).contains(&energy), "radius {radius}: energy {energy}");
+        assert!(least > 0.9 && most < 1.1, "radius {radius}: blocks have {least:.3} to {most:.3} of their light");
+        assert_clean(&lab);
+    }
+}
+
 #[test]
 fn no_order_of_a_files_triangles_shows_in_a_hundred_lamps() {
     let lab = lab(root());
