@@ -40,19 +40,19 @@ EmitterPlace bestPlace(vec3 p, vec3 n, uint number, vec4 shift, float drawn, out
     return best;
 }
 
-// What every `of`-th ray or cone gathers, from `first` on, of the mean of all. `emits`: it is of a lamp.
-vec3 gatherAt(vec3 p, vec3 n, bool emits, uint pattern, int first, int of) {
+// What every `of`-th ray or cone gathers, from `first` on, of the mean of all. `lamp`: it is of one.
+vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
     ConeOrigin o = coneOrigin(p, n, n);
     mat3 frame = frameOf(n);
     vec3 sum = vec3(0.0);
     int rays = params.bounce_cones, drawn = BOUNCE_DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? params.bounce_emitter_rays : 0;
-    float candidates = float(drawn * CANDIDATES), own = emits && drawn > 0 ? OWN_LAMP * 2.0 * o.reach : 0.0;
+    float candidates = float(drawn * CANDIDATES), own = lamp && drawn > 0 ? OWN_LAMP * 2.0 * o.reach : 0.0;
     for (int i = first; i < rays + drawn; i += of) {
         RayUse use = MEETS_ALL;
         vec3 d, light;
         if (i < rays) {
             d = frame * cosineSample(evenPoint(uint(i) * 64u + pattern));
-            if (drawn > 0) use = RayUse(1e30, float(rays) * dot(d, n) / PI, candidates, 1e30, own);
+            if (drawn > 0) use = RayUse(1e30, lamp ? LEAVES_ALL : float(rays) * dot(d, n) / PI, candidates, 1e30);
         } else {
             EmitterPlace place = bestPlace(o.surface, n, uint(i - rays) * 64u + pattern, vec4(0.5), candidates, light);
             if (place.cosine == 0.0 || place.distance < own) continue;

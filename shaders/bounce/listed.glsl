@@ -38,7 +38,7 @@ void main() {
             Side s = sideOfSlot(slot, side);
             number = sideNumber(slot, side);
             if (s.normal != vec3(0.0))
-                light = gatherAt(slotPosition(placed.maps[cascadeOf(cell)], cell, base, side, axis), s.normal, s.emission != vec3(0.0), patternOf(uvec3(cell)), int(part), int(BOUNCE_THREADS));
+                light = gatherAt(slotPosition(placed.maps[cascadeOf(cell)], cell, base, side, axis), s.normal, emits(slot, side), patternOf(uvec3(cell)), int(part), int(BOUNCE_THREADS));
         }
         shared_light[part][lane] = light;
         barrier();

@@ -19,6 +19,6 @@ void main() {
         Side s = sideOfSlot(slot, side);
         if (s.normal == vec3(0.0)) continue;
         vec3 p = slotPosition(map, cell, base, side, uint(axisOfSlot(slot)));
-        sideGathered.list[sideNumber(slot, side)] = packLight(gatherAt(p, s.normal, s.emission != vec3(0.0), patternOf(uvec3(cell)), 0, 1), 1.0);
+        sideGathered.list[sideNumber(slot, side)] = packLight(gatherAt(p, s.normal, emits(slot, side), patternOf(uvec3(cell)), 0, 1), 1.0);
     }
 }

@@ -37,6 +37,13 @@ Side sideOfSlot(uint slot, uint side) {
     return s;
 }
 
+// Whether a side is of a lamp: three words where its emission would be many.
+bool emits(uint slot, uint side) {
+    if (SIDES > 1 && voxelSlots.words[sideBase(slot, side) + 3] == 0) side = 1 - side;
+    uint base = sideBase(slot, side);
+    return (voxelSlots.words[base + 7] | voxelSlots.words[base + 8] | voxelSlots.words[base + 9]) != 0;
+}
+
 // Mean cosine between the surfaces' normals and the direction to something, none below 0. Where all normals lean towards it,
 // that of their mean; normals that disagree are taken as spread over all directions, whose mean cosine is 1/4.
 float meanCosine(Side s, vec3 to) {

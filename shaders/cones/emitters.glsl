@@ -19,12 +19,13 @@ const int CANDIDATES = 8;
 const float EMITTER_MARGIN = 0.25;
 const float LAMP = 0.5;
 // A lamp does not light itself: of a bulb of few voxels each side would see others, whose planes lean more or less than they should, and
-// what it gathered would be found by rays that leave the lamp's own light to the drawn places. So near, emitters are the side's own [voxels].
+// what it gathered would be found by rays that leave the lamp's own light to the drawn places. So near, emitters are the side's own [voxels];
+// what lies farther it is lit by as places that are drawn alone.
 const float OWN_LAMP = 3.0;
+const float LEAVES_ALL = 1e-30; // density of rays that have no share of emitted light
 
 // Share of the light that a ray has met. emitted: the part of it that emitters emit.
 float shareOfRay(RayUse use, vec3 light, float emitted, float distance) {
-    if (distance < use.own) return 1.0 - emitted;
     if (use.density == 0.0 || emitted == 0.0) return 1.0;
     float drawn = use.drawn * emitted * luminance(light) / emitters.power * distance * distance;
     return 1.0 - emitted * drawn / (drawn + use.density);
@@ -40,7 +41,7 @@ RayUse rayTo(EmitterPlace place, vec3 from) {
     float voxel;
     vec3 dir, p = from + place.distance * place.direction;
     cellAlong(volume.maps[cascadeAt(p)], p, place.direction, voxel, dir);
-    return RayUse(place.distance - EMITTER_MARGIN * voxel, 0.0, 0.0, place.distance - LAMP * voxel, 0.0);
+    return RayUse(place.distance - EMITTER_MARGIN * voxel, 0.0, 0.0, place.distance - LAMP * voxel);
 }
 
 #endif

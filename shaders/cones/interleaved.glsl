@@ -117,11 +117,11 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
             d = l.direction;
             weight = l.weight;
             if (weight == vec3(0.0)) continue;
-            if (drawn > 0) use = RayUse(1e30, float(lobe) * specularDensity(s, v, d), candidates, 1e30, 0.0);
+            if (drawn > 0) use = RayUse(1e30, float(lobe) * specularDensity(s, v, d), candidates, 1e30);
         } else {
             d = frame * cosineSample(pixelPoint(i));
             if (dot(d, face) <= 0.0) continue; // mapped normals lean
-            if (drawn > 0) use = RayUse(1e30, float(rays) * diffuseDensity(s, d), candidates, 1e30, 0.0);
+            if (drawn > 0) use = RayUse(1e30, float(rays) * diffuseDensity(s, d), candidates, 1e30);
         }
         CONE_BEGINS(is_drawn ? uint(params.diffuse_cones + i - rays) : !mirrors ? uint(i) + 1u : i == rays ? 0u : uint(params.diffuse_cones + i - rays));
         vec4 cone = traceAny(o, d, mirrors ? tan_lobe : tan_half, mirrors ? params.specular_steps : params.diffuse_steps, use);

@@ -21,9 +21,8 @@ struct RayUse {
     float density; // of such rays [1/sr], where places on emitters are drawn too and share their light with them; 0: the ray has all of it
     float drawn; // such places
     float lamp; // emitters that lie farther hide nothing [m]
-    float own; // emitters that lie nearer are the lamp that the ray leaves [m]
 };
 
-const RayUse MEETS_ALL = RayUse(1e30, 0.0, 0.0, 1e30, 0.0);
+const RayUse MEETS_ALL = RayUse(1e30, 0.0, 0.0, 1e30);
 
 #endif
