@@ -153,6 +153,44 @@ fn only_what_is_drawn_knows_the_windows_library() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
+/// A heading as links name it: letters, digits, hyphens and underscores, in lower case, and hyphens for spaces.
+fn anchor(heading: &str) -> String {
+    let kept = heading.to_lowercase().replace(' ', "-");
+    kept.chars().filter(|c| c.is_alphanumeric() || ['-', '_'].contains(c)).collect()
+}
+
+#[test]
+fn every_link_of_the_documents_leads_somewhere() {
+    let root = common::root();
+    let docs = std::fs::read_dir(root.join("docs")).unwrap().map(|e| e.unwrap().path());
+    let pages: Vec<_> = docs.chain(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root.join(name))).collect();
+    let (mut wrong, mut links) = (Vec::new(), 0);
+    for page in pages.iter().filter(|p| p.extension().is_some_and(|e| e == "md")) {
+        let text = std::fs::read_to_string(page).unwrap();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|parts| parts.0) {
+            let (file, heading) = link.split_once('#').unwrap_or((link, ""));
+            if file.contains("://") || link.contains(' ') {
+                continue;
+            }
+            links += 1;
+            let target = if file.is_empty() { page.clone() } else { page.parent().unwrap().join(file) };
+            let found = match (target.exists(), heading) {
+                (there, "") => there,
+                (false, _) => false,
+                (true, _) => {
+                    let text = std::fs::read_to_string(&target).unwrap();
+                    text.lines().any(|l| l.starts_with('#') && anchor(l.trim_start_matches('#').trim()) == heading)
+                }
+            };
+            if !found {
+                wrong.push(format!("{}: {link}", page.display()));
+            }
+        }
+    }
+    assert!(links > 100, "{links} links");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn the_check_sees_groups_and_paths() {
     let text = "use crate::{graph::{plan, run}, lab};\n// crate::window\nlet a = crate::files::read();";
