@@ -163,7 +163,8 @@ fn anchor(heading: &str) -> String {
 fn every_link_of_the_documents_leads_somewhere() {
     let root = common::root();
     let docs = std::fs::read_dir(root.join("docs")).unwrap().map(|e| e.unwrap().path());
-    let pages: Vec<_> = docs.chain(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root.join(name))).collect();
+    let pages: Vec<_> =
+        docs.chain(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root.join(name))).collect();
     let (mut wrong, mut links) = (Vec::new(), 0);
     for page in pages.iter().filter(|p| p.extension().is_some_and(|e| e == "md")) {
         let text = std::fs::read_to_string(page).unwrap();
