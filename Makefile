@@ -61,10 +61,11 @@ slow: ## Run the slow suites
 	@scripts/setup.sh build run test
 	@$(RUN) $(SLOW:%=--test %) $(TESTS)
 
-check: ## Check formatting, lints, graphs, shaders and experiments
+check: ## Check formatting, lints, documentation, graphs, shaders and experiments
 	@scripts/setup.sh build
 	@cargo fmt --check
 	@cargo clippy --release --locked --all-targets -- -D warnings
+	@RUSTDOCFLAGS="-D warnings" cargo doc --release --locked --no-deps
 	@$(CONELAB) check
 
 record: ## Measure again what docs/results.md has tables of, and write them (half an hour of a GPU)

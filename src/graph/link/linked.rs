@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// What a shader's name was found to be.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
-    /// Index in [`EXTERNALS`].
+    /// Index in [`EXTERNALS`](crate::graph::externals::EXTERNALS).
     External(usize),
     /// Index of a buffer.
     Buffer(usize),
