@@ -68,16 +68,15 @@ pub struct ShaderCompiler {
 }
 
 /// A file's text and what it includes, or why it has none; nothing where there is no such file.
-type Read = Option<Result<Text, Vec<Diagnostic>>>;
+type Read = Option<Result<Arc<Text>, Vec<Diagnostic>>>;
 
 /// A text, and the names that it includes.
-#[derive(Clone)]
 struct Text(String, Vec<String>);
 
 impl Text {
-    fn new(text: String) -> Text {
+    fn new(text: String) -> Arc<Text> {
         let includes = text.lines().filter_map(included).map(String::from).collect();
-        Text(text, includes)
+        Arc::new(Text(text, includes))
     }
 }
 
@@ -166,15 +165,15 @@ impl ShaderCompiler {
         if texts.contains_key(name) {
             return Ok(());
         }
-        let Text(text, includes) = match generated.get(name) {
+        let text = match generated.get(name) {
             Some(text) => Text::new(text.clone()),
             None => self.read(name).unwrap_or_else(|| text_of(&self.folder.join(name)))?,
         };
-        texts.insert(name.to_string(), text);
-        for include in includes {
+        texts.insert(name.to_string(), text.0.clone());
+        for include in &text.1 {
             // One that is missing is told by the compiler, with its line.
-            if generated.contains_key(&include) || self.read(&include).is_some() {
-                self.collect(&include, generated, texts)?;
+            if generated.contains_key(include) || self.read(include).is_some() {
+                self.collect(include, generated, texts)?;
             }
         }
         Ok(())
@@ -331,7 +330,7 @@ impl ShaderCompiler {
 }
 
 /// The text of a shader file.
-fn text_of(path: &Path) -> Result<Text, Vec<Diagnostic>> {
+fn text_of(path: &Path) -> Result<Arc<Text>, Vec<Diagnostic>> {
     let fail = |why: String| {
         let place = Place { file: path.to_path_buf(), ..Place::default() };
         vec![Diagnostic::error(place, format!("cannot read it: {why}"))]
