@@ -329,6 +329,8 @@ fn lit(material: Value, sky: f32) -> Scene {
 fn specular_light_is_what_the_formula_says() {
     // Seen and lit along the normal: D F / 4 of GGX with alpha 1/4, times irradiance pi.
     let lobe = 1.0 / (PI * 0.25f64.powi(4)) * 0.25f64.powi(2) / 4.0 * PI;
+    // Light that is scattered more than once, and what is left to the diffuse base.
+    let single = common::ggx::directional_albedo(1.0, 0.5);
     let surface = |metallic: f32, color: [f32; 3], extensions: Value| {
         json!({ "pbrMetallicRoughness": { "baseColorFactor": [color[0], color[1], color[2], 1], "metallicFactor": metallic,
             "roughnessFactor": 0.5 }, "extensions": extensions })
@@ -352,7 +354,10 @@ fn specular_light_is_what_the_formula_says() {
         ),
     ] {
         let scene = lit(material, 0.0);
-        let expected = f0.map(|f| albedo + lobe * f);
+        let expected = f0.map(|f| {
+            let multiple = 1.0 + f * (1.0 / (single.0 + single.1) - 1.0);
+            albedo * (1.0 - (f * single.0 + single.1) * multiple) + lobe * f * multiple
+        });
         let mut found = vec![("reference", centre(&reference(&views(&scene, &[], 1), "direct", 4)))];
         for gbuffer in ["raster", "compute32"] {
             found.push((gbuffer, centre(&method(&views(&scene, &[("gbuffer", gbuffer)], 1), "direct"))));

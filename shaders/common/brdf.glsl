@@ -1,4 +1,4 @@
-// Reflectance of a surface (thesis, Section 4.5.1; Karis 2013, "Real Shading in Unreal Engine 4").
+// Reflectance of a surface. modules/shading_model has the specular lobe and how it lies over the diffuse base.
 // Every function returns the BRDF [1/sr]; irradiance and the cosine are the caller's.
 #ifndef BRDF_GLSL
 #define BRDF_GLSL
@@ -7,20 +7,28 @@ const float PI = 3.14159265359;
 
 struct Surface {
     vec3 normal; // shading normal, facing the viewer
-    vec3 albedo; // diffuse reflectance: base colour * (1 - metallic)
+    vec3 albedo; // diffuse reflectance: base colour * (1 - metallic), less what the lobe above it reflects
     vec3 f0; // reflectance at normal incidence
     float f90; // and at grazing angles: 1, or less of what the author dimmed
     float roughness; // clamped: 0 makes GGX 0/0
+    vec3 multiple; // factor of the lobe for light that is scattered more than once between its facets
 };
 
 // Glass of refractive index 1.5, and nearly everything else that is no metal.
 const vec4 PLAIN_DIELECTRIC = vec4(vec3(0.04), 1.0);
 
+// Puts the lobe over the diffuse base. v: to the viewer.
+Surface layered(Surface s, vec3 v);
+
 // dielectric: f0, and f90 in a, of what is no metal.
-Surface makeSurface(vec3 normal, vec3 base_color, float roughness, float metallic, vec4 dielectric) {
+Surface bareSurface(vec3 normal, vec3 base_color, float roughness, float metallic, vec4 dielectric) {
     vec3 f0 = mix(dielectric.rgb, base_color, metallic);
     float f90 = dielectric.a + (1.0 - dielectric.a) * metallic; // exactly 1 where both are
-    return Surface(normal, base_color * (1.0 - metallic), f0, f90, clamp(roughness, 0.03, 1.0));
+    return Surface(normal, base_color * (1.0 - metallic), f0, f90, clamp(roughness, 0.03, 1.0), vec3(1.0));
+}
+
+Surface makeSurface(vec3 normal, vec3 base_color, float roughness, float metallic, vec4 dielectric, vec3 v) {
+    return layered(bareSurface(normal, base_color, roughness, metallic, dielectric), v);
 }
 
 vec3 fresnel(Surface s, float cosine) {

@@ -23,9 +23,9 @@ vec3 shadingNormal(Material m, Gradient g, vec3 face) {
     return mappedNormal(m, uv, g, normal, tangent, face);
 }
 
-Surface surfaceAt(Material m, Gradient g, vec3 face) {
+Surface surfaceAt(Material m, Gradient g, vec3 face, vec3 v) {
     vec2 rm = roughnessMetallic(m, uv, g);
-    return makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y, dielectric(m));
+    return makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y, dielectric(m), v);
 }
 
 #endif

@@ -38,7 +38,7 @@ GBufferSurface gbufferAt(ivec2 pixel) {
     uint number;
     float metallic = unpackMetallic(emission.a, number);
     vec4 dielectric = number == 0u ? PLAIN_DIELECTRIC : dielectrics.list[number];
-    seen.surface = makeSurface(normal, base.rgb, base.a, metallic, dielectric);
+    seen.surface = makeSurface(normal, base.rgb, base.a, metallic, dielectric, seen.to_viewer);
     seen.emission = emission.rgb;
     return seen;
 }

@@ -87,10 +87,11 @@ vec4 dielectric(Material m) {
     return dielectrics.list[dielectricNumber(m)];
 }
 
-// Tangent-space normal; z is rebuilt, because two-channel formats (BC5) do not store it.
+// Tangent-space normal, not normalised. z is rebuilt, because two-channel formats (BC5) do not store it, and before x and
+// y are scaled (glTF 2.0, normalTextureInfo.scale).
 vec3 tangentNormal(Material m, vec2 uv, Gradient g) {
-    vec2 xy = (sampleTexture(m.normal_texture, uv, g).xy * 2.0 - 1.0) * m.normal_scale;
-    return vec3(xy, sqrt(max(1.0 - dot(xy, xy), 0.0)));
+    vec2 xy = sampleTexture(m.normal_texture, uv, g).xy * 2.0 - 1.0;
+    return vec3(xy * m.normal_scale, sqrt(max(1.0 - dot(xy, xy), 0.0)));
 }
 
 #endif

@@ -12,7 +12,7 @@ vec3 mappedNormal(Material m, vec2 uv, Gradient g, vec3 normal, vec4 tangent, ve
         vec3 x = tangent.xyz - n * dot(n, tangent.xyz);
         if (dot(x, x) > 1e-12) {
             x = normalize(x);
-            n = normalize(mat3(x, cross(n, x) * tangent.w, n) * t);
+            n = normalize(mat3(x, cross(n, x) * sign(tangent.w), n) * t);
         }
     }
     return n * side;

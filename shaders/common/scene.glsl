@@ -80,4 +80,10 @@ vec3 normalToWorld(uint instance, vec3 normal) {
     return mat3(instances.instances[instance].normal_matrix) * normal;
 }
 
+// A mirrored instance turns cross(normal, tangent) around, and so the sign of the bitangent.
+vec4 tangentToWorld(uint instance, vec4 tangent) {
+    mat3 model = mat3(instances.instances[instance].model);
+    return vec4(model * tangent.xyz, determinant(model) < 0.0 ? -tangent.w : tangent.w);
+}
+
 #endif

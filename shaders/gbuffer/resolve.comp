@@ -58,8 +58,7 @@ void main() {
     Material m = materials.materials[draw.material];
     vec3 b = vec3(1.0 - weights.x - weights.y, weights);
     vec3 normal = normalToWorld(draw.instance, mat3(at[0].normal, at[1].normal, at[2].normal) * b);
-    vec4 tangent = mat3x4(at[0].tangent, at[1].tangent, at[2].tangent) * b;
-    tangent.xyz = mat3(instances.instances[draw.instance].model) * tangent.xyz;
+    vec4 tangent = tangentToWorld(draw.instance, mat3x4(at[0].tangent, at[1].tangent, at[2].tangent) * b);
     vec3 face = dot(plane, plane) > 0.0 ? normalize(plane) : normalize(normal);
     if (dot(face, ray) > 0.0) face = -face;
     vec2 rm = roughnessMetallic(m, uv, g);

@@ -18,7 +18,7 @@ void main() {
     VertexAttributes a = loadAttributes(gl_VertexIndex);
     position = p;
     normal = normalToWorld(draw.instance, a.normal);
-    tangent = vec4(mat3(instances.instances[draw.instance].model) * a.tangent.xyz, a.tangent.w);
+    tangent = tangentToWorld(draw.instance, a.tangent);
     uv = a.uv;
     material = draw.material;
 }

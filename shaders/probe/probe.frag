@@ -16,5 +16,5 @@ void main() {
     if (gl_SampleMaskIn[0] == 0 || ivec2(gl_FragCoord.xy) != ivec2(params.probe)) return;
     // Where triangles meet in one depth, the first one is recorded.
     if (atomicCompSwap(coneSamples.claimed, 0u, 1u) != 0u) return;
-    recordCones(surfaceAt(m, g, face), position, face, v);
+    recordCones(surfaceAt(m, g, face, v), position, face, v);
 }

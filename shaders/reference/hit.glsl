@@ -4,6 +4,7 @@
 #include "reference/trace.glsl"
 #include "common/brdf.glsl"
 #include "common/emitters.glsl"
+#include "common/normals.glsl"
 
 struct SurfaceHit {
     vec3 position;
@@ -27,20 +28,11 @@ SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
     face = front ? face : -face;
 
     VertexAttributes a = loadAttributes(corners.vertices.x), b = loadAttributes(corners.vertices.y), c = loadAttributes(corners.vertices.z);
-    vec3 n = normalize(normalToWorld(corners.instance, w.x * a.normal + w.y * b.normal + w.z * c.normal));
-    float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
-    if (m.normal_texture != NO_TEXTURE) {
-        vec3 mapped = tangentNormal(m, uv, g);
-        vec4 tangent = w.x * a.tangent + w.y * b.tangent + w.z * c.tangent;
-        vec3 x = mat3(instances.instances[corners.instance].model) * tangent.xyz;
-        x -= n * dot(n, x);
-        if (dot(x, x) > 1e-12) {
-            x = normalize(x);
-            n = normalize(mat3(x, cross(n, x) * sign(tangent.w), n) * mapped);
-        }
-    }
+    vec3 normal = normalToWorld(corners.instance, w.x * a.normal + w.y * b.normal + w.z * c.normal);
+    vec4 tangent = tangentToWorld(corners.instance, w.x * a.tangent + w.y * b.tangent + w.z * c.tangent);
+    vec3 n = mappedNormal(m, uv, g, normal, tangent, face);
     vec2 rm = roughnessMetallic(m, uv, g);
-    Surface s = makeSurface(n * side, baseColor(m, uv, g).rgb, rm.x, rm.y, dielectric(m));
+    Surface s = makeSurface(n, baseColor(m, uv, g).rgb, rm.x, rm.y, dielectric(m), v);
     return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, uv, g), emitterDensity(t.flags, hit.weights, front));
 }
 

@@ -23,7 +23,7 @@ void main() {
     vec3 face = faceNormal(v);
     // Derivatives end here. Helper invocations at the edges of triangles cover nothing and need no cones.
     if (gl_SampleMaskIn[0] == 0) return;
-    Surface s = surfaceAt(m, g, face);
+    Surface s = surfaceAt(m, g, face, v);
     Shading light = shade(s, position, face, v);
 
     radiance = vec4(light.direct + light.diffuse + light.specular + emission(m, uv, g), 1.0);

@@ -4,6 +4,7 @@
 #define READS_AGE
 #include "shade/kept.glsl"
 #include "shade/gathered.glsl"
+#include "shade/demodulate.glsl"
 
 const uint GATHER_PIXELS = 32; // of a group
 const uint GATHER_THREADS = 4; // of a pixel
@@ -32,6 +33,7 @@ void gatherListed(uint word, bool gathers) {
         GBufferSurface seen = gbufferAt(gathering);
         gatherShare = RayShare(rays, lobe, emitters, int(part), int(GATHER_THREADS));
         light = gather(coneOrigin(seen.position, seen.face, seen.surface.normal), seen.surface, seen.face, seen.to_viewer);
+        light.specular /= max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);
     }
     shared_hemisphere[part][lane] = light.hemisphere;
     shared_specular[part][lane] = light.specular;

@@ -8,6 +8,7 @@
 #include "common/direct.glsl"
 #include "common/sky.glsl"
 #include "shade/filter.glsl"
+#include "shade/demodulate.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -58,7 +59,8 @@ Filtered filtered(ivec2 pixel, GBufferSurface seen) {
         specular += weight * texelFetch(smoothedSpecular, place, 0).rgb;
         specular_weights += weight;
     }
-    return Filtered(diffuse / max(weights, 1e-6), specular / max(specular_weights, 1e-6));
+    specular *= max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE) / max(specular_weights, 1e-6);
+    return Filtered(diffuse / max(weights, 1e-6), specular);
 }
 
 void main() {

@@ -73,7 +73,7 @@ pub struct Vertex {
     pub position: [f32; 3],
     /// Unit length.
     pub normal: [f32; 3],
-    /// Unit length; w is the sign of the bitangent, `cross(normal, tangent) * w` (MikkTSpace).
+    /// Unit length; w is the sign of the bitangent `cross(normal, tangent) * w`, which points up in the normal map.
     pub tangent: [f32; 4],
     /// Where in textures; v grows downwards.
     pub uv: [f32; 2],

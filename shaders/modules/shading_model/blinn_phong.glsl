@@ -1,4 +1,10 @@
 // Blinn and Phong's lobe, its exponent matched to GGX's width, normalised to conserve energy.
+
+// As the thesis has it: the base is not dimmed by the lobe above it, and light that is scattered twice is lost.
+Surface layered(Surface s, vec3 v) {
+    return s;
+}
+
 vec3 specularBrdf(Surface s, vec3 v, vec3 l) {
     float n_h = max(dot(s.normal, normalize(v + l)), 0.0);
     float a2 = pow(s.roughness, 4.0);
@@ -12,4 +18,9 @@ vec3 specularBrdf(Surface s, vec3 v, vec3 l) {
 vec3 lobeWeight(Surface s, mat3 frame, vec3 v, vec3 l, vec3 half_way, float g1) {
     float density = g1 * distribution(half_way.z, s.roughness) / (4.0 * v.z);
     return specularBrdf(s, frame * v, frame * l) * l.z / max(density, 1e-20);
+}
+
+// Mean over all directions of light; the lobe is normalised.
+vec3 sphericalAlbedo(vec3 base, vec3 f0, float f90, float roughness) {
+    return min(base + f0, 1.0);
 }

@@ -1,5 +1,5 @@
 // A cone that stands for the lobe of the BRDF.
-uniform sampler2D specularAlbedo; // of the lobe, from cones/specular_albedo.comp
+#include "common/lobe_albedo.glsl"
 
 // Where a rough lobe's weight lies: between the mirror direction and the normal (Lagarde and de Rousiers 2014, Section
 // 4.9.3, with Smith's term).
@@ -15,6 +15,5 @@ float specularHalfAngle(Surface s) {
 
 // How much of the cone's radiance goes to the viewer: the integral of the BRDF in use.
 vec3 specularWeight(Surface s, vec3 v) {
-    vec2 albedo = textureLod(specularAlbedo, (vec2(sqrt(max(dot(s.normal, v), 0.0)), s.roughness) * 31.0 + 0.5) / 32.0, 0.0).rg;
-    return s.f0 * albedo.r + s.f90 * albedo.g;
+    return lobeReflectance(s, v);
 }

@@ -6,6 +6,9 @@ use bevy_mikktspace::{Geometry, TangentSpace};
 use glam::Vec3;
 
 /// MikkTSpace tangents; vertices whose corners disagree are split.
+///
+/// MikkTSpace's bitangent points along increasing v, which is down in the picture (glTF 2.0, 3.8.3). Normal maps have
+/// +y up (glTF 2.0, `material.normalTexture`), so the sign is negated.
 pub(super) fn generate(mesh: &mut Mesh) {
     let corners = mesh.indices.iter().map(|&i| mesh.vertices[i as usize]).collect();
     let mut soup = Soup { corners };
@@ -61,6 +64,9 @@ impl Geometry for Soup {
     }
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
         // Where a triangle without area has no neighbour to take it from there is none: `repair` makes one.
-        self.corners[face * 3 + vertex].tangent = space.map_or([0.0; 4], |space| space.tangent_encoded());
+        self.corners[face * 3 + vertex].tangent = space.map_or([0.0; 4], |space| {
+            let [x, y, z, w] = space.tangent_encoded();
+            [x, y, z, -w]
+        });
     }
 }
