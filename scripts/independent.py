@@ -49,15 +49,18 @@ class Surface:
         self.face = dr.select(dr.dot(face, view) < 0, -face, face)
         n = dr.normalize(world.mix("normal", mi.Vector3f, triangle, b))
         side = dr.select(dr.dot(n, self.face) < 0, -1.0, 1.0)  # back faces of two-sided surfaces
-        tangent = world.mix("tangent", mi.Vector4f, triangle, b)
-        x = tangent.xyz - n * dr.dot(n, tangent.xyz)
+        right, down = world.picture_axes(triangle, p1 - p0, p2 - p0)
+        x = right - n * dr.dot(n, right)
         scale = world.numbers(material, 10)
         texel = world.texture(material, 3, uv)
-        mx, my = (texel.x * 2 - 1) * scale, (texel.y * 2 - 1) * scale
+        mx, my = texel.x * 2 - 1, texel.y * 2 - 1
         mz = dr.sqrt(dr.maximum(1 - mx * mx - my * my, 0))
+        mx, my = mx * scale, my * scale
         usable = (scale >= 0) & (dr.squared_norm(x) > 1e-12)
         x = dr.normalize(x)
-        mapped = dr.normalize(x * mx + dr.cross(n, x) * dr.sign(tangent.w) * my + n * mz)
+        y = dr.cross(n, x)
+        y = dr.select(dr.dot(y, down) > 0, -y, y)  # green points up in the picture (glTF 2.0)
+        mapped = dr.normalize(x * mx + y * my + n * mz)
         self.n = dr.select(usable, mapped, n) * side
         base = world.numbers(material, 0, mi.Color3f) * mi.Color3f(world.texture(material, 0, uv).xyz)
         rough_metal = world.texture(material, 2, uv)

@@ -22,7 +22,7 @@ class Gltf:
         with open(path, encoding="utf-8") as file:
             self.json = json.load(file)
         self.buffers = [self.read(b["uri"]) for b in self.json.get("buffers", [])]
-        self.soup = {k: [] for k in ("position", "normal", "tangent", "uv", "material")}
+        self.soup = {k: [] for k in ("position", "normal", "uv", "material")}
         self.lights, self.cameras = [], {}
         for root in self.json["scenes"][self.json.get("scene", 0)]["nodes"]:
             self.visit(root, np.eye(4))
@@ -79,12 +79,11 @@ class Gltf:
         index = self.accessor(primitive["indices"]).ravel()
         get = {
             k: self.accessor(primitive["attributes"][n])[index].astype(float)
-            for k, n in (("position", "POSITION"), ("normal", "NORMAL"), ("tangent", "TANGENT"), ("uv", "TEXCOORD_0"))
+            for k, n in (("position", "POSITION"), ("normal", "NORMAL"), ("uv", "TEXCOORD_0"))
         }
         turn = world[:3, :3]
         get["position"] = get["position"] @ turn.T + world[:3, 3]
         get["normal"] = get["normal"] @ np.linalg.inv(turn)
-        get["tangent"][:, :3] = get["tangent"][:, :3] @ turn.T
         get["material"] = np.full(len(index) // 3, primitive["material"])
         for key, values in get.items():
             self.soup[key].append(values)

@@ -22,7 +22,7 @@ class World:
         params.update()
         self.scene = mi.load_dict({"type": "scene", "mesh": mesh})
         store = lambda a, kind=mi.Float: kind(np.ascontiguousarray(a).ravel())
-        self.data = {k: store(soup[k].astype(np.float32)) for k in ("position", "normal", "tangent", "uv")}
+        self.data = {k: store(soup[k].astype(np.float32)) for k in ("position", "normal", "uv")}
         self.material_of = store(soup["material"].astype(np.uint32), mi.UInt32)
         self.sky = sky
         self.lights = gltf.lights
@@ -92,6 +92,14 @@ class World:
         """An attribute at weights b of the second and third corner."""
         at = lambda i: dr.gather(kind, self.data[key], 3 * triangle + i)
         return at(0) * (1 - b.x - b.y) + at(1) * b.x + at(2) * b.y
+
+    def picture_axes(self, triangle, ab, ac):
+        """World directions of a picture's right and down on a triangle with these edges, of any length. They come from
+        positions and texture coordinates: TANGENT in the file is not read, so that a wrong one shows."""
+        a, b, c = (dr.gather(mi.Point2f, self.data["uv"], 3 * triangle + i) for i in range(3))
+        p, q = b - a, c - a
+        turned = dr.sign(p.x * q.y - p.y * q.x)
+        return (ab * q.y - ac * p.y) * turned, (ac * p.x - ab * q.x) * turned
 
     def draw_emitter(self, random):
         """(triangle, weights of its second and third corner, density by area) of a place on the emitting triangles."""

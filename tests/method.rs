@@ -149,10 +149,10 @@ fn a_white_sphere_vanishes_under_a_white_sky() {
     let mut wrong = Vec::new();
     for dim in ["32", "64"] {
         let settings = [("voxel_dim", dim), QUICK];
-        let wanted = ["diffuseIndirect", "occlusion", "surfaceNormal"];
+        let wanted = ["radiance", "occlusion", "surfaceNormal"];
         let mut session = frames(&lab, &experiment("white-sky", (64, 64), &settings), &wanted, 1);
         let covered: Vec<bool> = floats(&mut session, "surfaceNormal", 0).iter().map(|t| t[3] > 0.5).collect();
-        for name in ["diffuseIndirect", "occlusion"] {
+        for name in ["radiance", "occlusion"] {
             let texels = floats(&mut session, name, 0);
             let sphere: Vec<[f32; 4]> = texels.iter().zip(&covered).filter(|(_, c)| **c).map(|(t, _)| *t).collect();
             assert!(sphere.len() > 500, "the sphere covers {} pixels", sphere.len());
