@@ -9,11 +9,12 @@ pub use gather::{Gathered, Goal, Tracer, gather};
 pub use key::{GRAPH, experiment_for};
 
 use crate::experiment::Experiment;
+use crate::graph::Graph;
 use crate::lab::{LabError, Workspace};
 use crate::metrics::{Linear, Noise};
 use crate::scene::Scene;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Turns of a path that hold all light that matters: what methods are compared with where nothing else is asked for.
@@ -73,9 +74,14 @@ pub fn find(
     let traced = experiment_for(home, experiment, bounces)?;
     let loaded = home.load(&traced.graph).map_err(LabError::Input)?;
     let key = key::key(&traced, &loaded, scene)?;
-    let folder = home.root.join("captures/reference").join(&key);
-    match store::read(&folder, traced.size, &loaded.graph)? {
-        Some(sums) => Ok(Some(sums.reference(&loaded.graph, &folder, false)?)),
-        None => Ok(None),
-    }
+    read(&home.root.join("captures/reference").join(&key), traced.size, &loaded.graph)
+}
+
+/// The reference in a folder, if its sums are there.
+///
+/// # Errors
+/// Files that are damaged, or of another size or graph.
+pub fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Option<Reference>, LabError> {
+    let sums = store::read(folder, size, graph)?;
+    sums.map(|sums| sums.reference(graph, folder, false)).transpose()
 }

@@ -50,6 +50,13 @@ struct Record {
     driver: String,
 }
 
+impl Record {
+    /// Whether the file with the sums is one of this folder.
+    fn names_sums(&self) -> bool {
+        self.sums.starts_with("sums-") && !self.sums.contains(['/', '\\'])
+    }
+}
+
 /// Sums over the samples of both halves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
@@ -122,7 +129,7 @@ fn failed(path: &Path, why: impl std::fmt::Display) -> LabError {
     LabError::Request(format!("reference '{}': {why}", path.display()))
 }
 
-/// Keeps sums in a folder, in place of those that are there.
+/// Writes sums into a folder, in place of those that `reference.json` names.
 pub(super) fn write(folder: &Path, sums: &Sums, traced: &Experiment, device: &DeviceInfo) -> Result<(), LabError> {
     let name = format!("sums-{}.exr", sums.samples);
     let file = folder.join(&name);
@@ -144,13 +151,12 @@ pub(super) fn write(folder: &Path, sums: &Sums, traced: &Experiment, device: &De
     };
     let json = folder.join("reference.json");
     let text = serde_json::to_vec_pretty(&record).map_err(|e| failed(&json, e))?;
+    let replaced = read_record(&json).ok().flatten();
     crate::files::write_whole(&json, &text)?;
-    // Earlier sums count no longer. What cannot be deleted only takes room.
-    for entry in std::fs::read_dir(folder).map_err(|e| failed(folder, e))?.flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if name.starts_with("sums-") && name != record.sums {
-            let _ = std::fs::remove_file(entry.path());
-        }
+    // Other sums may belong to a process that has not written its reference.json yet. A file that cannot be deleted
+    // only takes space.
+    if let Some(old) = replaced.filter(|old| old.names_sums() && old.sums != record.sums) {
+        let _ = std::fs::remove_file(folder.join(old.sums));
     }
     Ok(())
 }
@@ -179,16 +185,24 @@ fn encode(sums: &Sums) -> Result<Vec<u8>, exr::error::Error> {
     Ok(out.into_inner())
 }
 
-/// The sums in a folder; `None` when there are none, or none of this size and these parts.
+/// `reference.json` of a folder; `None` without one.
+fn read_record(json: &Path) -> Result<Option<Record>, LabError> {
+    let Ok(text) = read_input(json, MAX_JSON) else { return Ok(None) };
+    serde_json::from_slice(&text).map(Some).map_err(|e| failed(json, format!("{e}; delete the folder")))
+}
+
+/// The sums in a folder; `None` without `reference.json`, or without the sums that it names.
 pub(super) fn read(folder: &Path, size: (u32, u32), graph: &Graph) -> Result<Option<Sums>, LabError> {
     let json = folder.join("reference.json");
-    let Ok(text) = read_input(&json, MAX_JSON) else { return Ok(None) };
-    let record: Record = serde_json::from_slice(&text).map_err(|e| failed(&json, format!("{e}; delete the folder")))?;
-    let plain = record.sums.starts_with("sums-") && !record.sums.contains(['/', '\\']);
-    if record.schema != SCHEMA || record.size != size || !plain {
+    let Some(record) = read_record(&json)? else { return Ok(None) };
+    if record.schema != SCHEMA || record.size != size || !record.names_sums() {
         return Err(failed(&json, "it is not what this program wrote; delete the folder"));
     }
     let file = folder.join(&record.sums);
+    // Another process may have deleted them after its own sums replaced these.
+    if std::fs::symlink_metadata(&file).is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound) {
+        return Ok(None);
+    }
     let wrong = |why: &str| failed(&file, format!("{why}; delete the folder"));
     let bytes = read_bounded(&file, size, graph.parts.len()).map_err(|e| wrong(&e))?;
     if hex(&Sha256::digest(&bytes)) != record.sha256 {
