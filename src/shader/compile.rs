@@ -1,8 +1,10 @@
 //! GLSL to SPIR-V through shaderc. Compiled modules are kept on disk by the content of everything that went into them.
 
 use super::access::decorated;
+use super::macros::check_growth;
 use super::reflect::{Interface, MAX_BINDINGS, reflect};
 use crate::diagnostics::excerpt::excerpt;
+use crate::diagnostics::panics::caught;
 use crate::diagnostics::{Diagnostic, Place, nearest};
 use crate::vulkan::Stage;
 use sha2::{Digest, Sha256};
@@ -52,11 +54,15 @@ pub fn module_include(name: &str) -> String {
 
 /// Path of a shader or include in a folder of shaders; older graphs keep includes in `include/`.
 pub fn find(folder: &Path, name: &str) -> Option<PathBuf> {
-    // Names come from shader text: they stay inside the folder.
-    if Path::new(name).components().any(|c| !matches!(c, std::path::Component::Normal(_))) {
+    if !is_inside(name) {
         return None;
     }
     [folder.join("include").join(name), folder.join(name)].into_iter().find(|p| p.is_file())
+}
+
+/// Whether a name stays inside its folder. Names come from the text of graphs and shaders.
+pub(crate) fn is_inside(name: &str) -> bool {
+    Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)))
 }
 
 /// Compiles shaders of one folder, as its files were when it first read each.
@@ -111,9 +117,9 @@ impl ShaderCompiler {
         }
         let key = self.key(source, &texts);
         let cached = self.cache.as_ref().map(|dir| dir.join(format!("{key}.spv")));
-        let from_cache = cached.as_deref().and_then(crate::files::read_checked).and_then(|b| to_words(&b));
         // A module in the cache that cannot be read is compiled again.
-        let from_cache = from_cache.and_then(|words| reflect(&words, source.stage).ok().map(|i| (words, i)));
+        let from_cache = cached.as_deref().and_then(crate::files::read_checked);
+        let from_cache = from_cache.and_then(|bytes| read_module(&bytes, source.stage));
         let (words, interface) = match from_cache {
             Some(found) => found,
             None => {
@@ -167,7 +173,7 @@ impl ShaderCompiler {
         }
         let text = match generated.get(name) {
             Some(text) => Text::new(text.clone()),
-            None => self.read(name).unwrap_or_else(|| text_of(&self.folder.join(name)))?,
+            None => self.read(name).unwrap_or_else(|| self.missing(name))?,
         };
         texts.insert(name.to_string(), text.0.clone());
         for include in &text.1 {
@@ -188,6 +194,16 @@ impl ShaderCompiler {
         let read = self.find(name).map(|path| text_of(&path));
         known().insert(name.into(), read.clone());
         read
+    }
+
+    /// The error of a file that is not in the folder. A name that leads out of it is not opened: graphs of captures come
+    /// from strangers.
+    fn missing(&self, name: &str) -> Result<Arc<Text>, Vec<Diagnostic>> {
+        if is_inside(name) {
+            return text_of(&self.folder.join(name));
+        }
+        let place = Place { file: self.folder.clone(), ..Place::default() };
+        Err(vec![Diagnostic::error(place, format!("the shader '{name}' leads out of this folder"))])
     }
 
     fn key(&self, source: &Source, texts: &BTreeMap<String, String>) -> String {
@@ -256,6 +272,12 @@ impl ShaderCompiler {
                 }
             }
         });
+        check_growth(texts).map_err(|grown| {
+            let file = self.find(&grown.file).unwrap_or_else(|| PathBuf::from(format!("{} (generated)", grown.file)));
+            let source = texts.get(&grown.file).and_then(|t| t.lines().nth(grown.line.saturating_sub(1) as usize));
+            let place = Place { file, line: grown.line, column: 0 };
+            vec![Diagnostic { source: source.map(|l| l.trim().into()), ..Diagnostic::error(place, grown.message) }]
+        })?;
         let text = texts.get(&source.file).map_or("", String::as_str);
         match compiler.compile_into_spirv(text, kind, &source.file, "main", Some(&options)) {
             Ok(artifact) => Ok(artifact.as_binary().to_vec()),
@@ -375,6 +397,13 @@ fn shortened(message: &str) -> String {
 fn included(line: &str) -> Option<&str> {
     let rest = line.trim_start().strip_prefix('#')?.trim_start().strip_prefix("include")?;
     rest.split('"').nth(1)
+}
+
+/// A module of the cache with its interface; `None` for other bytes, on which the reflector may panic.
+pub fn read_module(bytes: &[u8], stage: Stage) -> Option<(Vec<u32>, Interface)> {
+    let words = to_words(bytes)?;
+    let interface = caught(|| reflect(&words, stage)).ok()?.ok()?;
+    Some((words, interface))
 }
 
 fn to_words(bytes: &[u8]) -> Option<Vec<u32>> {

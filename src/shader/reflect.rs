@@ -2,6 +2,7 @@
 
 use super::access::{Access, accesses, stored_by_each, uniform_members};
 use super::layout::Layout;
+use super::sizes::check_sizes;
 use super::strip::instructions;
 use crate::vulkan::Stage;
 use spirq::prelude::*;
@@ -109,6 +110,7 @@ pub const MAX_BINDINGS: usize = 48;
 /// # Errors
 /// What the module has that conelab cannot bind.
 pub fn reflect(words: &[u32], stage: Stage) -> std::result::Result<Interface, String> {
+    check_sizes(words, &[]).map_err(|e| e.to_string())?;
     let entries = ReflectConfig::new()
         .spv(without_constant_operations(words))
         // All variables: the optimiser has removed unused ones, and the reflector overlooks lengths of arrays.

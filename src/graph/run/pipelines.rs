@@ -5,10 +5,10 @@ use crate::graph::file::{AddressMode, Compare, Cull, FilterMode, PassDecl, Sampl
 use crate::graph::link::{Linked, Target};
 use crate::graph::param::Params;
 use crate::graph::plan::{Plan, Step};
-use crate::shader::{Resource, strip_images, strip_outputs};
+use crate::shader::{MAX_VARIABLE_BYTES, Resource, check_sizes, strip_images, strip_outputs};
 use crate::vulkan::{
     Attachments, BindingDesc, DrawState, Gpu, Pipeline, PipelineDesc, Result, SamplerDesc, Stage, StageDesc,
-    format::Channels, vk,
+    VulkanError, format::Channels, vk,
 };
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -59,6 +59,7 @@ pub(super) fn make_pipelines(
             descs.len() - 1
         })));
     }
+    descs.iter().try_for_each(|(_, desc)| check_variables(desc))?;
     let pipelines: Vec<(bool, (PipelineDesc, Arc<Pipeline>))> = descs
         .into_par_iter()
         .map(|(_, desc)| match kept.iter().find(|(d, _)| *d == desc) {
@@ -68,6 +69,17 @@ pub(super) fn make_pipelines(
         .collect::<Result<_>>()?;
     let built = pipelines.iter().filter(|p| p.0).count();
     Ok(Made { pipelines: pipelines.into_iter().map(|p| p.1).collect(), keys, built })
+}
+
+/// Checks the variables of a pipeline's shaders with the values of constants, on which lengths of arrays may depend.
+fn check_variables(desc: &PipelineDesc) -> Result<()> {
+    let checked = desc.stages.iter().try_for_each(|stage| check_sizes(&stage.spirv, &stage.constants));
+    checked.map_err(|large| VulkanError::Limit {
+        what: format!("the size of the shader variables of pass '{}'", desc.name),
+        asked: format!("{} bytes", large.bytes),
+        limit: format!("{MAX_VARIABLE_BYTES} bytes"),
+        device: "conelab".into(),
+    })
 }
 
 fn pipeline_desc(
