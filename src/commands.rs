@@ -1,6 +1,12 @@
 //! The command line.
 
-/// Like `println!`; [`output::written`] tells whether it could be printed.
+/// Like `eprintln!`, without the control characters that a file's names may hold.
+macro_rules! warn {
+    ($($text:tt)*) => { eprintln!("{}", $crate::diagnostics::excerpt::harmless(&format!($($text)*))) };
+}
+
+/// Like `println!`, without the control characters that a file's names may hold; [`output::written`] tells whether it
+/// could be printed.
 macro_rules! say {
     ($($text:tt)*) => { $crate::commands::output::put(format_args!("{}\n", format_args!($($text)*))) };
 }
@@ -32,11 +38,11 @@ mod view;
 mod voxels;
 
 use crate::diagnostics::excerpt::excerpt;
-use crate::files::FileError;
+use crate::files::{FileError, path_of, spec_of};
 use crate::lab::{Lab, LabError, Workspace};
 use crate::metrics::Metric;
 use crate::vulkan::{GpuOptions, list_devices};
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use output::{is_json_output, write_json, written};
 use std::path::{Path, PathBuf};
@@ -106,6 +112,11 @@ enum Command {
     },
 }
 
+/// Reads a name or a path of any bytes.
+fn spec() -> impl TypedValueParser<Value = String> {
+    OsStringValueParser::new().map(|path| spec_of(path.as_ref()))
+}
+
 /// Which device.
 #[derive(Debug, Args)]
 struct DeviceArgs {
@@ -141,6 +152,7 @@ impl DeviceArgs {
 #[derive(Debug, Args)]
 struct SceneArgs {
     /// A built-in scene's name, a scene RON, or a model file (.obj, .gltf, .glb).
+    #[arg(value_parser = spec())]
     scene: String,
     /// Write the scene to this file (.obj, .gltf or .glb) instead of describing it.
     #[arg(long)]
@@ -205,18 +217,22 @@ fn open_scene(name: &str) -> Result<crate::scene::Scene, LabError> {
         indicatif::ProgressStyle::with_template("{msg:40} {bar:30} {percent}%")
             .unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()),
     );
-    let file = if name.contains('.') { found(Path::new(name)).to_string_lossy().into_owned() } else { name.into() };
-    let scene = crate::scene::Scene::open(&file, &|what, part| {
-        bar.set_message(what.to_string());
+    let scene = crate::scene::Scene::open(&scene_file(name), &|what, part| {
+        bar.set_message(excerpt(what, 40));
         bar.set_position((part.clamp(0.0, 1.0) * 1000.0) as u64);
         std::ops::ControlFlow::Continue(())
     });
     bar.finish_and_clear();
     let scene = scene?;
     for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
+        warn!("warning: {warning}");
     }
     Ok(scene)
+}
+
+/// A scene as the command line or an experiment names it: a built-in's name, or a file here or in the program's folder.
+fn scene_file(name: &str) -> String {
+    if name.contains('.') { spec_of(&found(&path_of(name))) } else { name.into() }
 }
 
 /// A path as short as it can be said here.

@@ -129,6 +129,43 @@ pub fn ending(path: &Path) -> String {
     path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase())
 }
 
+/// Character that stands for byte 0 of a path that is not UTF-8; the last plane is for private use.
+#[cfg(unix)]
+const BYTES: u32 = 0x10_ff00;
+
+/// A path as text. Bytes that are not UTF-8 become characters for private use, from which [`path_of`] restores them.
+pub fn spec_of(path: &Path) -> String {
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        let chunks = path.as_os_str().as_bytes().utf8_chunks();
+        let stand_in = |byte: &u8| char::from_u32(BYTES + u32::from(*byte)).unwrap_or(char::REPLACEMENT_CHARACTER);
+        chunks.fold(String::new(), |mut text, chunk| {
+            text.push_str(chunk.valid());
+            text.extend(chunk.invalid().iter().map(stand_in));
+            text
+        })
+    }
+    #[cfg(not(unix))]
+    path.to_string_lossy().into_owned()
+}
+
+/// The path of a text from [`spec_of`]; of any other text, the text itself.
+pub fn path_of(spec: &str) -> PathBuf {
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStringExt;
+        let bytes =
+            spec.chars().flat_map(|c| match u32::from(c).checked_sub(BYTES).and_then(|b| u8::try_from(b).ok()) {
+                Some(byte) => vec![byte],
+                None => c.encode_utf8(&mut [0; 4]).as_bytes().to_vec(),
+            });
+        std::ffi::OsString::from_vec(bytes.collect()).into()
+    }
+    #[cfg(not(unix))]
+    PathBuf::from(spec)
+}
+
 /// Bytes in hexadecimal.
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
@@ -202,4 +239,20 @@ fn unfit(why: String) -> std::io::Error {
 pub fn read_input_text(path: &Path, most: u64) -> std::io::Result<String> {
     let bytes = read_input(path, most)?;
     String::from_utf8(bytes).map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_of_any_bytes_survive_as_text() {
+        assert_eq!(spec_of(Path::new("a b/\u{e9}.ron")), "a b/\u{e9}.ron");
+        #[cfg(unix)]
+        {
+            use std::os::unix::ffi::OsStrExt;
+            let path = Path::new(std::ffi::OsStr::from_bytes(b"p\xff/\xe9\xfe.ron"));
+            assert_eq!(path_of(&spec_of(path)), path);
+        }
+    }
 }

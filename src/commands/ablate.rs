@@ -66,7 +66,7 @@ fn parameters(args: &AblateArgs) -> Result<(), LabError> {
     let frames = Frames { warmup: args.warmup, count: args.frames.unwrap_or(50) };
     adapt::check_frames(frames.count, frames.warmup, 0.0)?;
     let home = Workspace::find()?;
-    let graph = home.load(&experiment.graph).map_err(LabError::Input)?.graph;
+    let graph = home.load_of(&experiment).map_err(LabError::Input)?.graph;
     let changes = changes(&params_of(&graph, &experiment)?, &args.only)?;
     let scenes = if args.scenes.is_empty() { vec![experiment.scene.clone()] } else { args.scenes.clone() };
     let folder = args.output.clone().unwrap_or_else(|| home.root.join("captures/ablations").join(&experiment.name));

@@ -22,7 +22,7 @@ pub struct ExperimentArgs {
 #[derive(Clone, Debug, Args)]
 pub struct Changes {
     /// Another scene: a built-in name, a scene RON, or a model file.
-    #[arg(long)]
+    #[arg(long, value_parser = super::spec())]
     scene: Option<String>,
     /// Another camera of the scene, or one written out: "(eye: (0, 1, 5), target: (0, 1, 0), fov_y: 60)".
     #[arg(long)]
@@ -86,13 +86,21 @@ impl Changes {
     }
 }
 
+/// The experiment's scene as its file describes it.
+pub fn open_unlit(experiment: &Experiment) -> Result<Scene, LabError> {
+    super::open_scene(&experiment.scene).map_err(|error| match error {
+        LabError::Scene(error) => LabError::of_scene(experiment, error),
+        other => other,
+    })
+}
+
 /// The experiment's scene, lit as the experiment says.
 pub fn open_scene(experiment: &Experiment) -> Result<Scene, LabError> {
-    let mut scene = super::open_scene(&experiment.scene)?;
+    let mut scene = open_unlit(experiment)?;
     let told = scene.warnings.len();
     experiment.adapt_scene(&mut scene)?;
     for warning in scene.warnings.iter().skip(told) {
-        eprintln!("warning: {warning}");
+        warn!("warning: {warning}");
     }
     Ok(scene)
 }

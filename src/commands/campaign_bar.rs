@@ -19,7 +19,7 @@ pub fn bar(points: &str) -> impl FnMut(Progress) {
             bar.reset();
             bar.set_length(todo as u64);
         }
-        Progress::Note(text) => bar.suspend(|| eprintln!("{text}")),
+        Progress::Note(text) => bar.suspend(|| warn!("{text}")),
         Progress::Runs(what) => {
             bar.set_message(what.clone());
             doing = what;
@@ -29,7 +29,7 @@ pub fn bar(points: &str) -> impl FnMut(Progress) {
         }
         Progress::Tried(text) => bar.suspend(|| say!("{text}")),
         Progress::Finished(what, said) => {
-            bar.suspend(|| said.iter().for_each(|text| eprintln!("{what}: {}", first_line(text))));
+            bar.suspend(|| said.iter().for_each(|text| warn!("{what}: {}", first_line(text))));
             bar.inc(1);
         }
         Progress::Ends => bar.finish_and_clear(),

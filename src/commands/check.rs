@@ -4,14 +4,16 @@ use crate::campaign::bench::check_record;
 use crate::campaign::{stability, sweep};
 use crate::diagnostics::{Diagnostic, Severity, Sources};
 use crate::experiment::Experiment;
-use crate::files::read_input_text;
+use crate::files::{read_input_text, spec_of};
 use crate::graph::file::GraphFile;
-use crate::lab::{LabError, Workspace, params_of};
+use crate::lab::{LabError, Workspace, camera_of, params_of};
 use crate::measure::oracle;
-use crate::scene::SceneError;
+use crate::scene::{Scene, SceneError};
 use clap::Args;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Arguments of `check`.
 #[derive(Debug, Args)]
@@ -44,11 +46,11 @@ const MAX_BYTES: u64 = 4 << 20;
 
 /// What a file is, by the names of its first fields: experiments name a graph, scenes hold models or lights,
 /// camera paths hold keys, sweeps name experiments, suites of stability name methods. Recorded times end in `.json`.
-pub fn kind(path: &str) -> FileKind {
-    if path.ends_with(".json") {
+pub fn kind(path: &Path) -> FileKind {
+    if path.extension().is_some_and(|e| e == "json") {
         return FileKind::Times;
     }
-    let text = read_input_text(path.as_ref(), MAX_BYTES).unwrap_or_default();
+    let text = read_input_text(path, MAX_BYTES).unwrap_or_default();
     let has = |field: &str| {
         text.lines().any(|l| l.trim_start().trim_start_matches('(').trim_start().starts_with(&format!("{field}:")))
     };
@@ -107,41 +109,28 @@ pub fn run(args: &CheckArgs) -> Result<(), LabError> {
     if all {
         files = own_files(&home);
     }
-    let mut wrong = 0;
+    let (mut wrong, mut scenes) = (0, BTreeMap::new());
     for file in &files {
-        let name = file.to_string_lossy();
-        let findings = match kind(&name) {
-            FileKind::Graph => check_graph(&home, &name),
-            FileKind::Path => crate::camera_path::CameraPath::read(file).err().unwrap_or_default(),
-            FileKind::Experiment => check_experiment(&home, file),
-            campaign @ (FileKind::Sweep | FileKind::Stability | FileKind::Times) => {
-                let checked = match campaign {
-                    FileKind::Sweep => sweep::check(&home, file),
-                    FileKind::Stability => stability::check(&home, file),
-                    _ => check_record(&home, file),
-                };
-                match checked {
-                    Err(LabError::Input(errors)) => errors,
-                    Err(e) => {
-                        wrong += 1;
-                        say!("{e}");
-                        Vec::new()
-                    }
-                    Ok(()) => Vec::new(),
-                }
+        let name = spec_of(file);
+        let checked = match kind(file) {
+            FileKind::Graph => Ok(check_graph(&home, &name)),
+            FileKind::Path => crate::camera_path::CameraPath::read(file).map_err(LabError::Input).map(|_| Vec::new()),
+            FileKind::Experiment => check_experiment(&home, file, &mut scenes).map(|()| Vec::new()),
+            FileKind::Sweep => sweep::check(&home, file).map(|()| Vec::new()),
+            FileKind::Stability => stability::check(&home, file).map(|()| Vec::new()),
+            FileKind::Times => check_record(&home, file).map(|()| Vec::new()),
+            FileKind::Scene => open(&name).map(|_| Vec::new()).map_err(LabError::Scene),
+        };
+        let findings = match checked {
+            Ok(findings) | Err(LabError::Input(findings)) => findings,
+            // Models are no part of the program; asked for by name, they must be there.
+            Err(LabError::Scene(SceneError::NoModel { message, .. })) if all => {
+                say!("{}: not checked: {message}", file.display());
+                Vec::new()
             }
-            FileKind::Scene => {
-                match crate::scene::Scene::open(&name, &|_, _| ControlFlow::Continue(())) {
-                    // Models are no part of the program; asked for by name, they must be there.
-                    Err(SceneError::NoModel { message, .. }) if all => {
-                        say!("{name}: not checked: {message}");
-                    }
-                    Err(e) => {
-                        wrong += 1;
-                        say!("{e}");
-                    }
-                    Ok(_) => {}
-                }
+            Err(e) => {
+                wrong += 1;
+                say!("{e}");
                 Vec::new()
             }
         };
@@ -161,17 +150,20 @@ fn check_graph(home: &Workspace, name: &str) -> Vec<Diagnostic> {
     findings
 }
 
-fn check_experiment(home: &Workspace, file: &Path) -> Vec<Diagnostic> {
-    let experiment = match Experiment::read(file) {
-        Ok(e) => e,
-        Err(errors) => return errors,
+/// Everything that would keep an experiment from being rendered, except the device. `scenes` holds those opened so far.
+fn check_experiment(home: &Workspace, file: &Path, scenes: &mut BTreeMap<String, Arc<Scene>>) -> Result<(), LabError> {
+    let experiment = Experiment::read(file).map_err(LabError::Input)?;
+    let graph = home.load_of(&experiment).map_err(LabError::Input)?.graph;
+    params_of(&graph, &experiment)?;
+    let scene = match scenes.get(&experiment.scene) {
+        Some(scene) => scene.clone(),
+        None => Arc::new(open(&experiment.scene).map_err(|error| LabError::of_scene(&experiment, error))?),
     };
-    let graph = match home.load(&experiment.graph) {
-        Ok(loaded) => loaded.graph,
-        Err(errors) => return errors,
-    };
-    match params_of(&graph, &experiment) {
-        Err(LabError::Input(errors)) => errors,
-        _ => Vec::new(),
-    }
+    scenes.insert(experiment.scene.clone(), scene.clone());
+    camera_of(&experiment, &*experiment.adapted(scene)?)?;
+    Ok(())
+}
+
+fn open(name: &str) -> Result<Scene, SceneError> {
+    Scene::open(&super::scene_file(name), &|_, _| ControlFlow::Continue(()))
 }

@@ -83,7 +83,7 @@ pub fn run(args: &FitArgs) -> Result<(), LabError> {
         None => home.root.join("captures/fit").join(format!("{}.ron", experiment.name)),
     };
     let given = args.vary.iter().map(|text| axis("--vary", text, "NAME=VALUE,VALUE")).collect::<Result<Vec<_>, _>>()?;
-    let axes = fit::axes(&home.load(&experiment.graph).map_err(LabError::Input)?.graph, &given)?;
+    let axes = fit::axes(&home.load_of(&experiment).map_err(LabError::Input)?.graph, &given)?;
     let folder = output.with_extension("");
     let request = Request {
         experiment: &experiment,

@@ -3,6 +3,7 @@
 use crate::campaign::settings::named;
 use crate::diagnostics::nearest;
 use crate::experiment::Experiment;
+use crate::files::path_of;
 use crate::graph::Evaluated;
 use crate::graph::outline::outline;
 use crate::graph::plan::plan;
@@ -15,9 +16,10 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub struct GraphArgs {
     /// Graph file (passes/vct.ron) or experiment (configs/default.ron).
+    #[arg(value_parser = super::spec())]
     file: String,
     /// The scene whose counts decide repetitions.
-    #[arg(long)]
+    #[arg(long, value_parser = super::spec())]
     scene: Option<String>,
     /// Picture size; the experiment's, or 1280x720, when absent.
     #[arg(long, value_name = "WxH")]
@@ -48,15 +50,18 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
     if let Some(path) = &args.json {
         super::writable(path, &["json"])?;
     }
-    let file = super::found(args.file.as_ref());
-    let experiment = match crate::commands::check::kind(&file.to_string_lossy()) {
+    let file = super::found(&path_of(&args.file));
+    let experiment = match crate::commands::check::kind(&file) {
         crate::commands::check::FileKind::Experiment => Some(Experiment::read(&file).map_err(LabError::Input)?),
         _ => None,
     };
-    let name = experiment.as_ref().map_or(args.file.as_str(), |e| e.graph.as_str());
-    let Loaded { graph, warnings, .. } = home.load(name).map_err(LabError::Input)?;
+    let loaded = match &experiment {
+        Some(experiment) => home.load_of(experiment),
+        None => home.load(&args.file),
+    };
+    let Loaded { graph, warnings, .. } = loaded.map_err(LabError::Input)?;
     for warning in warnings {
-        eprintln!("{warning}");
+        warn!("{warning}");
     }
     if args.params {
         say_part!("{}", report::params(&graph.params));
@@ -76,8 +81,10 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         Some(text) => super::adapt::parse_size(text)?,
         None => experiment.as_ref().map_or((1280, 720), |e| e.size),
     };
-    let scene_name = args.scene.clone().or(experiment.as_ref().map(|e| e.scene.clone())).unwrap_or("cornell".into());
-    let scene = super::open_scene(&scene_name)?;
+    let scene = match (&args.scene, &experiment) {
+        (None, Some(experiment)) => super::adapt::open_unlit(experiment)?,
+        (name, _) => super::open_scene(name.as_deref().unwrap_or("cornell"))?,
+    };
     let device = any_device();
     let set = Evaluated::new(&graph, &params, environment(&scene, size, &device));
     if args.params {

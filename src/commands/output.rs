@@ -1,5 +1,6 @@
 //! What commands print. An error of standard output is an error of the command, unless its reader has gone away.
 
+use crate::diagnostics::excerpt::harmless;
 use crate::lab::LabError;
 use std::fmt::Arguments;
 use std::io::{Error, ErrorKind, Write};
@@ -13,8 +14,9 @@ static FAILED: Mutex<Option<Error>> = Mutex::new(None);
 /// Whether standard output is for JSON: what is said to people goes to standard error.
 static JSON_ALONE: AtomicBool = AtomicBool::new(false);
 
-/// Prints for people.
+/// Prints for people. Names in a scene's file may hold escape sequences, which a terminal must not obey.
 pub fn put(text: Arguments) {
+    let text = harmless(&text.to_string());
     match JSON_ALONE.load(Relaxed) {
         true => eprint!("{text}"),
         false => keep(write!(std::io::stdout(), "{text}")),

@@ -91,7 +91,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         Ok(shown.iter().chain(&frames_of).map(|s| s.1.0.clone()).collect())
     })?;
     for warning in warnings {
-        eprintln!("{warning}");
+        warn!("{warning}");
     }
     if shown.is_none() && frames_of.is_none() {
         return Err(LabError::Request(
@@ -127,7 +127,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         failed.extend(not_finite(&session.texels(&shown.0, shown.1, shown.2)?, &shown.0));
     }
     for message in &failed {
-        eprintln!("warning: {message}");
+        warn!("warning: {message}");
     }
     if let Some((path, shown)) = &shown {
         let timers = args.timers.filter(|_| !exr).map(|rows| timers(rows, &lab, &session, &times));
@@ -142,7 +142,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
         let what = if exr && resource.is_none() { format!(" ('{name}', linear)") } else { String::new() };
         say!("wrote {}{what}", path.display());
         if let Some(part) = part_asked_for(&session).filter(|p| exr && resource.is_none() && p.texture != *name) {
-            eprintln!("warning: '{name}' is the whole light; --resource {} writes '{}' alone", part.texture, part.name);
+            warn!("warning: '{name}' is the whole light; --resource {} writes '{}' alone", part.texture, part.name);
         }
     }
     if let Some(path) = &args.json {

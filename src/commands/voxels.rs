@@ -74,7 +74,7 @@ pub fn run(args: &VoxelsArgs) -> Result<(), LabError> {
         writable(json, &["json"])?;
     }
     let home = Workspace::find()?;
-    let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
+    let loaded = home.load_of(&experiment).map_err(LabError::Input)?;
     let wanted = oracle::wanted(&loaded.graph)?;
     let scene = Arc::new(adapt::open_scene(&experiment)?);
     let triangles = oracle::triangles_of(&scene, experiment.time);

@@ -1,8 +1,16 @@
 //! Text of files that nobody has read yet, made fit to be shown.
 
+/// A text without the control characters that a terminal obeys; tabs and ends of lines stay.
+pub fn harmless(text: &str) -> String {
+    text.chars().map(plain).collect()
+}
+
+fn plain(c: char) -> char {
+    if c.is_control() && c != '\n' && c != '\t' { char::REPLACEMENT_CHARACTER } else { c }
+}
+
 /// At most so many characters, with a mark where there are more, and nothing in it that a terminal would obey.
 pub fn excerpt(text: &str, most: usize) -> String {
-    let plain = |c: char| if c.is_control() && c != '\n' { '\u{fffd}' } else { c };
     let mut out: String = text.chars().take(most).map(|c| if c == '\t' { ' ' } else { plain(c) }).collect();
     if text.chars().nth(most).is_some() {
         out.push_str(" ...");

@@ -5,7 +5,7 @@ pub mod excerpt;
 pub mod panics;
 
 use crate::files::read_input_text;
-use excerpt::{excerpt, excerpt_at};
+use excerpt::{excerpt, excerpt_at, harmless};
 use ron::extensions::Extensions;
 use serde::de::{Deserialize, Deserializer, Error as _};
 use std::cell::RefCell;
@@ -83,7 +83,7 @@ const MAX_LINE: usize = 240;
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.place.file.display())?;
+        write!(f, "{}", harmless(&self.place.file.to_string_lossy()))?;
         // What the command line gives has no lines.
         let option = self.place.file.to_string_lossy().starts_with("--");
         if self.place.line > 0 && !option {
@@ -256,6 +256,9 @@ thread_local! {
 /// Marks an error that was already reported where it stands.
 const REPORTED: &str = "(reported)";
 
+/// What a file with more nested brackets than the parser reads is told.
+pub const TOO_DEEP: &str = "brackets are nested too deeply; remove brackets around this";
+
 fn explain(error: &ron::Error) -> (String, Option<String>) {
     match error {
         ron::Error::NoSuchStructField { expected, found, .. } => {
@@ -269,6 +272,7 @@ fn explain(error: &ron::Error) -> (String, Option<String>) {
             String::from("expected a comma"),
             Some(String::from("one is missing before this, or a whole number has a point")),
         ),
+        ron::Error::ExceededRecursionLimit => (TOO_DEEP.into(), None),
         ron::Error::Message(text) => (text.clone(), None),
         other => (other.to_string(), None),
     }

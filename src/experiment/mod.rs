@@ -3,6 +3,7 @@
 
 mod adapt;
 mod fields;
+mod places;
 mod read;
 mod spans;
 mod write;

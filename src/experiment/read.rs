@@ -4,10 +4,11 @@ use super::{
     CameraChoice, DEFAULT_CAMERA, DEFAULT_SIZE, EnvironmentChange, Experiment, LightChange, PlacedCamera, check_size,
 };
 use crate::diagnostics::{Diagnostic, Entries, Loc, RawText, Severity, Sources};
+use crate::files::{path_of, spec_of};
 use glam::Vec3;
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 impl<'de> Deserialize<'de> for CameraChoice {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -150,6 +151,6 @@ pub(super) fn in_folder(folder: &Path, change: EnvironmentChange) -> Environment
 
 /// Names stay; files are looked up beside the experiment first.
 pub(super) fn scene_path(folder: &Path, scene: &str) -> String {
-    let beside: PathBuf = folder.join(scene);
-    if scene.contains('.') && beside.is_file() { beside.to_string_lossy().into_owned() } else { scene.to_string() }
+    let beside = folder.join(path_of(scene));
+    if scene.contains('.') && beside.is_file() { spec_of(&beside) } else { scene.to_string() }
 }

@@ -87,6 +87,15 @@ impl LabError {
         move |why| LabError::Make { what, why: why.to_string() }
     }
 
+    /// The error of an experiment's scene. If the scene is missing, the place is the experiment's line.
+    pub fn of_scene(experiment: &Experiment, error: SceneError) -> LabError {
+        let found = match &error {
+            SceneError::NotFound { .. } | SceneError::Read { .. } => experiment.error_in("scene", error.to_string()),
+            _ => None,
+        };
+        found.map_or(LabError::Scene(error), |found| LabError::Input(vec![found]))
+    }
+
     /// An error where the validation layer had messages.
     ///
     /// # Errors
@@ -272,7 +281,11 @@ pub fn viewpoint_of(experiment: &Experiment, scene: &Scene) -> Result<Viewpoint,
             None if scene.cameras.is_empty() => Ok(Viewpoint::around(scene)),
             None => {
                 let hint = nearest(name, scene.cameras.keys().map(String::as_str)).unwrap_or_default();
-                Err(LabError::Request(format!("scene '{}' has no camera '{name}' ({hint})", scene.name)))
+                let message = format!("scene '{}' has no camera '{name}' ({hint})", scene.name);
+                Err(match experiment.error_in("camera", &message) {
+                    Some(found) => LabError::Input(vec![found]),
+                    None => LabError::Request(message),
+                })
             }
         },
         CameraChoice::Placed(placed) => {

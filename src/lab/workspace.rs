@@ -3,6 +3,7 @@
 use super::{LabError, environment, params_of};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::experiment::Experiment;
+use crate::files::path_of;
 use crate::graph::link::{Linked, link};
 use crate::graph::link::{Runs, runs};
 use crate::graph::load::{Folders, load};
@@ -80,13 +81,13 @@ impl Workspace {
 
     /// The file of a graph: a bare name is looked up among the graphs, a path from here, then from the program's folder.
     pub fn graph_path(&self, name: &str) -> PathBuf {
-        let given = Path::new(name);
+        let given = path_of(name);
         if given.is_file() {
-            return given.to_path_buf();
+            return given;
         }
         let bare = given.components().count() == 1;
-        let at_home = if bare { self.root.join("passes").join(name) } else { self.root.join(given) };
-        if bare || at_home.is_file() { at_home } else { given.to_path_buf() }
+        let at_home = if bare { self.root.join("passes").join(&given) } else { self.root.join(&given) };
+        if bare || at_home.is_file() { at_home } else { given }
     }
 
     /// Everything that is wrong with a graph and its shaders, or worth knowing, whichever option its modules are set to;
@@ -137,6 +138,15 @@ impl Workspace {
         Ok(Loaded { graph, linked: Arc::new(linked), warnings })
     }
 
+    /// [`Workspace::load`] of an experiment's graph.
+    ///
+    /// # Errors
+    /// As [`Workspace::load`]; a missing graph is an error at the experiment's line.
+    pub fn load_of(&self, experiment: &Experiment) -> Result<Loaded, Vec<Diagnostic>> {
+        self.read_of(experiment)?;
+        self.load(&experiment.graph)
+    }
+
     /// [`Workspace::load`] with the shaders of those passes alone that an experiment runs in a scene: a picture waits for no
     /// other, and a mistake in another does not keep it away. [`Workspace::complete`] makes up for what is left out.
     ///
@@ -148,7 +158,7 @@ impl Workspace {
         scene: &Scene,
         device: &DeviceInfo,
     ) -> Result<Loaded, Vec<Diagnostic>> {
-        let graph = self.read(&experiment.graph)?;
+        let graph = self.read_of(experiment)?;
         let (linked, warnings) = self.link(&graph, &runs_of(&graph, experiment, scene, device))?;
         Ok(Loaded { graph, linked: Arc::new(linked), warnings })
     }
@@ -190,6 +200,20 @@ impl Workspace {
         let graph = Arc::new(load(&path, &folders)?);
         known().insert(key, graph.clone());
         Ok(graph)
+    }
+
+    fn read_of(&self, experiment: &Experiment) -> Result<Arc<Graph>, Vec<Diagnostic>> {
+        self.read(&experiment.graph).map_err(|errors| {
+            let path = self.graph_path(&experiment.graph);
+            if path.exists() {
+                return errors;
+            }
+            let located = |e: Diagnostic| {
+                let found = experiment.error_in("graph", format!("graph '{}': {}", path.display(), e.message));
+                found.map_or(e.clone(), |found| found.help(e.help))
+            };
+            errors.into_iter().map(located).collect()
+        })
     }
 
     fn link(&self, graph: &Graph, runs: &Runs) -> Result<(Vec<Linked>, Vec<Diagnostic>), Vec<Diagnostic>> {

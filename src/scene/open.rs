@@ -8,7 +8,7 @@ use std::time::Duration;
 use glam::Mat4;
 
 use crate::diagnostics::panics::caught;
-use crate::files::ending;
+use crate::files::{ending, path_of};
 
 use super::limits::{check_extent, with_size_told};
 use super::progress::{Progress, Watch};
@@ -18,7 +18,8 @@ use super::{Material, Scene, SceneError, builtin, defaults, file, gltf, obj};
 const ASK: Duration = Duration::from_millis(20);
 
 impl Scene {
-    /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb).
+    /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb). A path that may not be UTF-8 is
+    /// given as [`crate::files::spec_of`] writes it.
     ///
     /// A model without lights gets a sun and a sky, one without cameras a camera `default`. `progress` is called with
     /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
@@ -57,7 +58,7 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
     if builtin::is_one(spec) {
         return builtin::open(spec, progress);
     }
-    let path = Path::new(spec);
+    let path = &path_of(spec);
     if ending(path) == "ron" {
         return file::load(path, progress);
     }

@@ -42,7 +42,7 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
         writable(path, &["json"])?;
     }
     let home = Workspace::find()?;
-    let loaded = home.load(&experiment.graph).map_err(LabError::Input)?;
+    let loaded = home.load_of(&experiment).map_err(LabError::Input)?;
     if loaded.graph.ablation.is_empty() {
         let message = format!("graph '{}' has no `ablation`: steps from an ideal to the method", loaded.graph.name);
         return Err(LabError::Request(message));

@@ -1,7 +1,7 @@
 //! Pictures from files, experiments and captures.
 
-use super::super::{DeviceArgs, open_scene, shown, validated};
-use crate::commands::adapt::Changes;
+use super::super::{DeviceArgs, shown, validated};
+use crate::commands::adapt::{Changes, open_unlit};
 use crate::experiment::{Experiment, FIELDS};
 use crate::lab::{Lab, LabError, Workspace, parts_of};
 use crate::measure::comparison::Side;
@@ -48,7 +48,7 @@ impl<'a> Sources<'a> {
     pub(super) fn cached(&self, bounces: u32) -> Result<Option<Side>, LabError> {
         let Some((experiment, scene)) = self.rendered.first() else { return Ok(None) };
         if let Some((other, _)) = self.rendered.iter().find(|(other, _)| !same_view(experiment, other)) {
-            eprintln!(
+            warn!(
                 "warning: '{}' and '{}' differ in scene, camera, time or light, and are compared all the same",
                 experiment.name, other.name
             );
@@ -74,7 +74,7 @@ impl<'a> Sources<'a> {
         let experiment = changes.read(path)?;
         let scene = match self.scenes.get(&experiment.scene) {
             Some(scene) => scene.clone(),
-            None => Arc::new(open_scene(&experiment.scene)?),
+            None => Arc::new(open_unlit(&experiment)?),
         };
         self.scenes.insert(experiment.scene.clone(), scene.clone());
         let scene = experiment.adapted(scene)?;
@@ -93,11 +93,11 @@ impl<'a> Sources<'a> {
             Ok(parts.into_iter().map(|p| p.texture).collect())
         })?;
         for warning in warnings {
-            eprintln!("{warning}");
+            warn!("{warning}");
         }
         session.run(self.frames.unwrap_or(session.settling_frames()))?;
         for message in session.failed_checks()? {
-            eprintln!("warning: {}: {message}", path.display());
+            warn!("warning: {}: {message}", path.display());
         }
         self.rendered.push((experiment, scene));
         session.parts()
