@@ -4,7 +4,7 @@ use super::DeviceArgs;
 use super::adapt::{self, ExperimentArgs, parse_resource};
 use crate::experiment::checked_name;
 use crate::lab::{Lab, LabError, Workspace};
-use crate::results::capture::{Resource, What, free_name, sweep_partials, take};
+use crate::results::capture::{Resource, What, sweep_partials, take};
 use crate::results::timers::Rows;
 use clap::Args;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub struct CaptureArgs {
     #[command(flatten)]
     experiment: ExperimentArgs,
-    /// Name of the capture; the experiment's, with a number where that is taken, when absent.
+    /// Name of the capture. Without it: the experiment's name, with a number if another capture has that name.
     #[arg(long)]
     name: Option<String>,
     /// Keep this texture too; may be given many times.
@@ -46,13 +46,11 @@ pub fn run(args: &CaptureArgs) -> Result<(), LabError> {
         frames: args.frames,
         step: args.step,
         timers: args.timers.unwrap_or_default(),
+        numbered: args.name.is_none(),
     };
     let home = Workspace::find()?;
     let folder = home.root.join("captures");
-    let name = match &args.name {
-        Some(name) => checked_name(name)?,
-        None => free_name(&folder, &checked_name(&experiment.name)?),
-    };
+    let name = checked_name(args.name.as_ref().unwrap_or(&experiment.name))?;
     sweep_partials(&folder);
     let scene = adapt::open_scene(&experiment)?;
     let lab = Lab::open(home, args.device.options())?;

@@ -11,6 +11,9 @@ use std::path::PathBuf;
 pub struct ReplayArgs {
     /// Folder of a capture, for example captures/default.
     capture: PathBuf,
+    /// Refuse captures of more frames than this; a stranger's capture may ask for a million.
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    max_frames: usize,
     /// Write the new pictures to this folder.
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -18,9 +21,23 @@ pub struct ReplayArgs {
     device: DeviceArgs,
 }
 
+/// A replay of more frames than this prints their number first.
+const MANY_FRAMES: usize = 100;
+
 /// Renders a capture again and says what differs.
 pub fn run(args: &ReplayArgs) -> Result<(), LabError> {
     let manifest = Manifest::read(&args.capture)?;
+    let frames = manifest.frames;
+    if frames > args.max_frames {
+        return Err(LabError::Request(format!(
+            "'{}' asks for {frames} frames, more than {}; give --max-frames {frames} to render them",
+            args.capture.display(),
+            args.max_frames
+        )));
+    }
+    if frames > MANY_FRAMES {
+        eprintln!("rendering {frames} frames of {}x{} pixels", manifest.size[0], manifest.size[1]);
+    }
     // Told first: what has changed in the folder may be why it cannot be rendered.
     for change in changes(&args.capture, &manifest) {
         say!("{change}");

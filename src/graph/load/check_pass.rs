@@ -4,7 +4,7 @@ use super::check::{Check, files_of};
 use crate::diagnostics::{At, Loc, nearest};
 use crate::files::read_input_text;
 use crate::graph::file::{Bind, Command, CopyDecl, Dispatch, Draw, PassDecl, Topology};
-use crate::shader::MAX_BYTES;
+use crate::shader::{MAX_BYTES, is_inside};
 use crate::vulkan::{Format, Stage};
 
 impl Check<'_> {
@@ -102,6 +102,10 @@ impl Check<'_> {
                 self.error(shader.at, format!("pass '{name}' has two {stage:?} shaders"));
             }
             stages.push(stage);
+            if !is_inside(&shader.value) {
+                self.error(shader.at, format!("shader '{}' leads out of the folder of shaders", shader.value));
+                continue;
+            }
             let path = self.folders.shaders.join(&shader.value);
             // The compiler's own words for this are pages of built-in functions.
             if read_input_text(&path, MAX_BYTES).is_ok_and(|text| !text.contains("#version")) {

@@ -4,7 +4,7 @@ use super::findings::Findings;
 use crate::diagnostics::excerpt::chain;
 use crate::diagnostics::{At, Diagnostic, Place};
 use crate::graph::file::GraphFile;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// Where graphs and shaders are found.
 #[derive(Clone, Debug)]
@@ -70,7 +70,15 @@ impl<'f> Include<'f> {
         };
         self.stack.push(path.to_path_buf());
         for name in &parsed.include.0 {
-            self.file(&self.folders.passes.join(&name.value), Some(name.at));
+            // A capture's graph comes from strangers: it may not quote files from elsewhere.
+            match Path::new(&name.value).components().all(|c| matches!(c, Component::Normal(_))) {
+                true => self.file(&self.folders.passes.join(&name.value), Some(name.at)),
+                false => {
+                    let message = format!("the include '{}' leads out of the folder of graphs", name.value);
+                    self.found.partial = true;
+                    self.error(Some(name.at), message);
+                }
+            }
         }
         self.stack.pop();
         self.files.push(parsed);

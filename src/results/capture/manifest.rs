@@ -1,12 +1,13 @@
 //! `capture.json`: what a capture says about itself. It may come from anywhere and is not trusted.
 
-use super::{EXPERIMENT, MANIFEST, failed};
+use super::{EXPERIMENT, MANIFEST, SOURCES, failed};
 use crate::experiment::check_size;
-use crate::files::hex;
+use crate::files::{check_input, hex};
 use crate::lab::LabError;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+use std::fs::FileType;
 use std::io::Read;
 use std::path::{Component, Path};
 
@@ -102,6 +103,10 @@ impl Manifest {
         for file in self.files.keys() {
             inside(folder, file)?;
         }
+        // Graphs and shaders name further files, which need not be in the list.
+        for link in below(&folder.join(SOURCES), &|kind| kind.is_symlink()).unwrap_or_default() {
+            inside(folder, &format!("{SOURCES}/{link}"))?;
+        }
         for image in &self.images {
             if !self.files.contains_key(&image.file) {
                 return Err(format!("it has no checksum of the picture '{}'", image.file));
@@ -139,8 +144,9 @@ fn inside(folder: &Path, file: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// SHA-256 of a file, in hexadecimal.
+/// SHA-256 of a regular file, in hexadecimal. A pipe in a stranger's capture would block for ever.
 pub(super) fn hash_file(path: &Path) -> std::io::Result<String> {
+    check_input(path, u64::MAX)?;
     let mut file = std::fs::File::open(path)?;
     let mut hash = Sha256::new();
     let mut part = vec![0; 1 << 16];
@@ -154,6 +160,11 @@ pub(super) fn hash_file(path: &Path) -> std::io::Result<String> {
 
 /// All files below a folder by their paths in it, links left out.
 pub(super) fn files_below(folder: &Path) -> std::io::Result<Vec<String>> {
+    below(folder, &|kind| kind.is_file())
+}
+
+/// Entries of some kind below a folder by their paths in it; links are not followed.
+fn below(folder: &Path, wanted: &dyn Fn(FileType) -> bool) -> std::io::Result<Vec<String>> {
     let mut list = Vec::new();
     let mut open = vec![String::new()];
     while let Some(at) = open.pop() {
@@ -164,7 +175,7 @@ pub(super) fn files_below(folder: &Path) -> std::io::Result<Vec<String>> {
             let kind = entry.file_type()?;
             if kind.is_dir() {
                 open.push(path);
-            } else if kind.is_file() {
+            } else if wanted(kind) {
                 list.push(path);
             }
         }

@@ -15,7 +15,7 @@ pub use scene_hash::scene_hash;
 pub use take::{Resource, What, free_name, take};
 
 use crate::experiment::Experiment;
-use crate::files::FileError;
+use crate::files::{FileError, spec_of};
 use crate::graph::Graph;
 use crate::lab::{Lab, LabError, Texels, Workspace};
 use crate::results::stats::{self, Stats};
@@ -40,7 +40,7 @@ fn experiment_of(folder: &Path, manifest_name: &str) -> Result<Experiment, LabEr
     if Path::new(&experiment.graph).file_name() != Some(experiment.graph.as_ref()) {
         return Err(failed(&folder.join(EXPERIMENT), "its graph must be a bare file name"));
     }
-    experiment.graph = folder.join(SOURCES).join("passes").join(&experiment.graph).to_string_lossy().into_owned();
+    experiment.graph = spec_of(&folder.join(SOURCES).join("passes").join(&experiment.graph));
     experiment.name = manifest_name.into();
     Ok(experiment)
 }

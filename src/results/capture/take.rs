@@ -18,6 +18,7 @@ use crate::shader::ShaderCompiler;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// A texture of the graph.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,6 +42,8 @@ pub struct What {
     pub step: f64,
     /// The GPU's times to keep on a second picture, timers.png.
     pub timers: Rows,
+    /// Append a number to the name if another capture has it, as [`free_name`] does.
+    pub numbered: bool,
 }
 
 /// The first of `name`, `name-2`, `name-3` and so on that no capture in `folder` has.
@@ -51,7 +54,8 @@ pub fn free_name(folder: &Path, name: &str) -> String {
 }
 
 /// Renders an experiment afresh and keeps pictures, sources, settings and measurements in `folder/name`. Nothing is
-/// there before all of it is. `scene` is the scene as it was opened, or as the experiment has changed it.
+/// there before all of it is. `scene` is the scene as it was opened, or as the experiment has changed it. Returns the
+/// folder of the capture.
 ///
 /// # Errors
 /// A capture of that name exists; everything that can be wrong with the experiment; no room or permission.
@@ -65,11 +69,10 @@ pub fn take(
 ) -> Result<PathBuf, LabError> {
     let name = checked_name(name)?;
     check_frames(what.frames.unwrap_or(1), what.step).map_err(LabError::Request)?;
-    let target = folder.join(&name);
-    if target.exists() {
-        return Err(exists(&target));
+    if !what.numbered && folder.join(&name).exists() {
+        return Err(exists(&folder.join(&name)));
     }
-    let Loaded { graph, linked, .. } = lab.home.load(&experiment.graph).map_err(LabError::Input)?;
+    let Loaded { graph, linked, .. } = lab.home.load_of(experiment).map_err(LabError::Input)?;
     std::fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
     // The number says later whether the program that writes here still runs.
     let prefix = format!(".{name}.partial-{}-", std::process::id());
@@ -119,7 +122,7 @@ pub fn take(
         version: stats.version.clone(),
         device: stats.device.name.clone(),
         driver: stats.device.driver.clone(),
-        when: humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string(),
+        when: rfc3339(SystemTime::now()),
         experiment: experiment.name.clone(),
         graph: graph_file,
         scene: SceneRecord { spec: experiment.scene.clone(), name: scene_name, sha256 },
@@ -131,11 +134,30 @@ pub fn take(
     };
     write(&path.join(MANIFEST), &json(&manifest)?)?;
     make_readable(path).map_err(|e| failed(path, e))?;
-    // A folder that is not empty is never replaced by renaming.
-    std::fs::rename(path, &target).map_err(|e| if target.exists() { exists(&target) } else { failed(&target, e) })?;
+    let target = publish(path, folder, &name, what.numbered)?;
     // The folder has another name now: there is nothing left to clean up.
     let _ = partial.keep();
     Ok(target)
+}
+
+/// Renames a finished capture. Renaming never replaces a folder that has files.
+fn publish(finished: &Path, folder: &Path, name: &str, numbered: bool) -> Result<PathBuf, LabError> {
+    loop {
+        let target = folder.join(if numbered { free_name(folder, name) } else { name.into() });
+        match std::fs::rename(finished, &target) {
+            Ok(()) => return Ok(target),
+            // Another process took the name since it was found free.
+            Err(_) if numbered && target.exists() => {}
+            Err(_) if target.exists() => return Err(exists(&target)),
+            Err(e) => return Err(failed(&target, e)),
+        }
+    }
+}
+
+/// A time in UTC as RFC 3339, within the years 1970 to 9999: a board without a battery may start in 1969.
+fn rfc3339(time: SystemTime) -> String {
+    const LAST: Duration = Duration::from_secs(253_402_300_799);
+    humantime::format_rfc3339_seconds(time.clamp(UNIX_EPOCH, UNIX_EPOCH + LAST)).to_string()
 }
 
 fn exists(target: &Path) -> LabError {
@@ -228,4 +250,17 @@ fn images_of(graph: &Graph, resources: &[Resource]) -> Result<Vec<Image>, LabErr
         return Err(LabError::Request(message));
     }
     Ok(images)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clocks_outside_the_calendar_have_a_date() {
+        let day = Duration::from_secs(86_400);
+        assert_eq!(rfc3339(UNIX_EPOCH - 1000 * day), "1970-01-01T00:00:00Z");
+        assert_eq!(rfc3339(UNIX_EPOCH + day), "1970-01-02T00:00:00Z");
+        assert_eq!(rfc3339(UNIX_EPOCH + 4_000_000 * day), "9999-12-31T23:59:59Z");
+    }
 }

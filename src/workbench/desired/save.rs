@@ -92,7 +92,6 @@ pub fn take(
     timers: Rows,
 ) -> Result<PathBuf, LabError> {
     let resources = resources.into_iter().map(|name| Resource { name, mip: 0, layer: 0 }).collect();
-    let what = What { resources, timers, ..What::default() };
-    let name = capture::free_name(folder, &experiment.name);
-    capture::take(lab, experiment, scene, &what, folder, &name)
+    let what = What { resources, timers, numbered: true, ..What::default() };
+    capture::take(lab, experiment, scene, &what, folder, &experiment.name)
 }
