@@ -61,6 +61,54 @@ fn a_colour_of_one_number_is_grey_and_of_two_is_left_out() {
 }
 
 #[test]
+fn materials_that_no_library_defines_are_named() {
+    let folder = folder();
+    write(&folder, "page.mtl", "<html>404 not found</html>\n");
+    for text in [format!("mtllib page.mtl\n{TRIANGLE}"), TRIANGLE.into()] {
+        let scene = open(write(&folder, "a.obj", text)).unwrap();
+        tells(&scene.warnings.join("\n"), &["a.obj: no material library defines 'a'; they are grey"]);
+    }
+    let many: String = (0..20).map(|i| format!("usemtl m{i}\nf 1 2 3\n")).collect();
+    let warnings = open(write(&folder, "many.obj", format!("{TRIANGLE}{many}"))).unwrap().warnings.join("\n");
+    tells(&warnings, &["defines 'a', 'm0', 'm1', 'm10'", " and 13 more; they"]);
+    write(&folder, "a.mtl", "newmtl a\nKd 1 0 0\n");
+    let scene = open(write(&folder, "known.obj", format!("mtllib a.mtl\n{TRIANGLE}"))).unwrap();
+    assert_eq!(scene.warnings, [""; 0]);
+}
+
+#[test]
+fn a_model_in_many_places_is_read_once() {
+    let folder = folder();
+    write(&folder, "a.obj", TRIANGLE);
+    let at = |i: usize| format!("transform: (translate: ({}, 0, 0))", i * 30);
+    let models: String = (0..12)
+        .map(|i| format!("(builtin: \"atrium\", {0}, lights: false, cameras: false), (file: \"a.obj\", {0}),", at(i)))
+        .collect();
+    let path = write(&folder, "many.ron", format!("(models: [{models}])"));
+    let opened = |name: &str| Scene::open(name, &|_, _| ControlFlow::Continue(())).unwrap();
+    let (scene, one) = (opened(&path.to_string_lossy()), opened("atrium"));
+    assert_eq!(scene.meshes.len(), one.meshes.len() + 1);
+    assert_eq!(scene.instances.len(), 12 * (one.instances.len() + 1));
+    assert_eq!((scene.textures.len(), scene.materials.len()), (one.textures.len(), one.materials.len() + 1));
+    assert!(scene.bounds().1.x > 11.0 * 30.0);
+}
+
+#[test]
+fn messages_speak_of_files_and_name_only_what_happened() {
+    let folder = folder();
+    let deep = format!("(meshes: {{\"a\": {}{}}})", "[Solid(".repeat(1000), ")]".repeat(1000));
+    error(write(&folder, "deep.ron", &deep), &["deep.ron:1:", "brackets are nested too deeply"]);
+    let experiment = write(&folder, "e.ron", format!("(graph: {}{})", "[".repeat(1000), "]".repeat(1000)));
+    let told = conelab(root()).arg("check").arg(experiment).output().unwrap();
+    let told = String::from_utf8(told.stdout).unwrap();
+    assert!(told.contains("brackets are nested too deeply") && !told.contains("serde"), "{told}");
+    let flat = TRIANGLE.replace("v 0 1 0", "v 2 0 0") + "v 0 1 0\nf 1 2 4\n";
+    let warnings = open(write(&folder, "flat.obj", flat)).unwrap().warnings.join("\n");
+    tells(&warnings, &["flat.obj: dropped 1 triangles without area"]);
+    assert!(!warnings.contains("NaN"), "{warnings}");
+}
+
+#[test]
 fn one_line_may_name_several_material_libraries() {
     let folder = folder();
     write(&folder, "a.mtl", "newmtl a\nKd 1 0 0\n");

@@ -23,8 +23,13 @@ pub(super) fn with_size_told(mut scene: Scene) -> Scene {
     scene
 }
 
-/// What of a scene is farther away, moved by a frame.
+/// Checks that everything of a scene, moved by a frame, is near enough.
 pub(super) fn check_extent(scene: &Scene, frame: Mat4) -> Result<(), String> {
+    check_placed(scene, scene.bounds(), frame)
+}
+
+/// [`check_extent`] of a scene whose bounds are known.
+pub(super) fn check_placed(scene: &Scene, (low, high): (Vec3, Vec3), frame: Mat4) -> Result<(), String> {
     let fits = |point: Vec3| frame.transform_point3(point).abs().max_element() <= MAX_COORDINATE;
     let far = |what: &str| {
         Err(format!(
@@ -34,7 +39,6 @@ pub(super) fn check_extent(scene: &Scene, frame: Mat4) -> Result<(), String> {
     if let Some(instance) = scene.instances.iter().find(|instance| !instance.transform.is_finite()) {
         return Err(format!("'{}' has a placement that is not finite", instance.name));
     }
-    let (low, high) = scene.bounds();
     let corner = |i: usize| Vec3::new([low, high][i & 1].x, [low, high][i >> 1 & 1].y, [low, high][i >> 2].z);
     if !(0..8).map(corner).all(fits) {
         return far(&format!("its triangles reach {:.1e} m,", low.abs().max(high.abs()).max_element()));

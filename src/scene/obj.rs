@@ -3,6 +3,7 @@
 mod library;
 
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
 use std::io::{BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
 
@@ -26,12 +27,14 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let folder = path.parent().unwrap_or(Path::new(""));
     let warnings = RefCell::new(Vec::new());
     let lines_read = Cell::new(0);
-    let mut reader = CountLines { inner: Cursor::new(text.as_bytes()), lines: &lines_read, progress };
+    let used = RefCell::new(BTreeSet::new());
+    let mut reader = CountLines { inner: Cursor::new(text.as_bytes()), lines: &lines_read, used: &used, progress };
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
     let load_mtl = |names: &Path| Ok(library::load(folder, names, &warnings));
     let (models, materials) = tobj::load_obj_buf(&mut reader, &options, load_mtl)
         .map_err(|error| fail(format!("{error} at or before line {}. Export it again", lines_read.get())))?;
     let mut warnings = warnings.into_inner();
+    warnings.extend(undefined(&used.into_inner(), materials.as_deref().unwrap_or_default(), path));
 
     progress.step("materials", 0.4)?;
     let mut requests = Requests::default();
@@ -208,10 +211,24 @@ fn texture_file(value: &str) -> PathBuf {
     PathBuf::from(rest.replace('\\', "/"))
 }
 
-/// A reader that knows how many lines it gave, for error messages, and fails when nobody waits for more.
+/// A warning about materials that the model uses and no library defines.
+fn undefined(used: &BTreeSet<String>, defined: &[tobj::Material], path: &Path) -> Option<String> {
+    let names: Vec<String> =
+        used.iter().filter(|name| !defined.iter().any(|m| m.name == **name)).map(|n| format!("'{n}'")).collect();
+    let shown = names.iter().take(MAX_NAMES).cloned().collect::<Vec<_>>().join(", ");
+    let more = if names.len() > MAX_NAMES { format!(" and {} more", names.len() - MAX_NAMES) } else { String::new() };
+    let path = path.display();
+    (!names.is_empty()).then(|| format!("{path}: no material library defines {shown}{more}; they are grey"))
+}
+
+/// Names of materials in one warning.
+const MAX_NAMES: usize = 8;
+
+/// A reader that counts lines for error messages, collects the names of used materials, and fails once cancelled.
 struct CountLines<'a, R> {
     inner: R,
     lines: &'a Cell<usize>,
+    used: &'a RefCell<BTreeSet<String>>,
     progress: Progress<'a>,
 }
 
@@ -235,6 +252,12 @@ impl<R: BufRead> BufRead for CountLines<'_, R> {
         let begin = line.len();
         let read = self.inner.read_line(line)?;
         without_color(line, begin);
+        if let Some(name) = line[begin..].strip_prefix("usemtl ").map(str::trim).filter(|n| !n.is_empty()) {
+            let mut used = self.used.borrow_mut();
+            if !used.contains(name) {
+                used.insert(name.into());
+            }
+        }
         self.lines.set(self.lines.get() + usize::from(read > 0));
         Ok(read)
     }

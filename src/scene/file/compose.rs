@@ -1,19 +1,34 @@
-//! Adding a model to a scene: indices are shifted, everything is placed.
+//! Adding models to a scene: indices are shifted, everything is placed.
 
-use glam::Mat4;
+use glam::{Mat4, Vec3};
 
 use super::ModelEntry;
-use crate::scene::{Instance, Scene};
+use crate::scene::{Environment, Instance, Scene};
 
-/// Adds a model, placed and moved as its entry says.
-pub(super) fn add(scene: &mut Scene, model: Scene, entry: &ModelEntry) {
+/// A model whose meshes, materials and textures a scene has: it can be placed many times.
+pub(super) struct Added {
+    /// Instances, lights and cameras, with the scene's numbers of meshes.
+    pub model: Scene,
+    /// Its extent before it is placed.
+    pub bounds: (Vec3, Vec3),
+}
+
+impl Added {
+    /// Radiance and picture of the model's own sky.
+    pub fn sky(&self) -> (Vec3, Option<Environment>) {
+        (self.model.sky, self.model.environment.clone())
+    }
+}
+
+/// Moves what a model has of meshes, materials, textures and warnings into a scene.
+pub(super) fn add(scene: &mut Scene, mut model: Scene) -> Added {
+    let bounds = model.bounds();
     let first_mesh = scene.meshes.len() as u32;
     let first_material = scene.materials.len() as u32;
     let first_texture = scene.textures.len() as u32;
-    let frame = entry.transform;
-    scene.textures.extend(model.textures);
-    scene.warnings.extend(model.warnings);
-    for mut material in model.materials {
+    scene.textures.append(&mut model.textures);
+    scene.warnings.append(&mut model.warnings);
+    for mut material in std::mem::take(&mut model.materials) {
         for texture in [
             &mut material.base_color_texture,
             &mut material.metallic_roughness_texture,
@@ -24,21 +39,27 @@ pub(super) fn add(scene: &mut Scene, model: Scene, entry: &ModelEntry) {
         }
         scene.materials.push(material);
     }
-    for mut mesh in model.meshes {
+    for mut mesh in std::mem::take(&mut model.meshes) {
         mesh.submeshes.iter_mut().for_each(|submesh| submesh.material += first_material);
         scene.meshes.push(mesh);
     }
-    for mut instance in model.instances {
-        instance.mesh += first_mesh;
+    model.instances.iter_mut().for_each(|instance| instance.mesh += first_mesh);
+    Added { model, bounds }
+}
+
+/// Adds instances, lights and cameras of a model, placed and moved as its entry says.
+pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
+    let frame = entry.transform;
+    for mut instance in model.instances.iter().cloned() {
         place(&mut instance, entry, &model.name, &mut scene.warnings);
         scene.instances.push(instance);
     }
-    for mut light in model.lights.into_iter().filter(|_| entry.lights) {
+    for mut light in model.lights.iter().filter(|_| entry.lights).cloned() {
         light.position = frame.transform_point3(light.position);
         light.direction = frame.transform_vector3(light.direction).normalize_or(light.direction);
         scene.lights.push(light);
     }
-    for (name, mut camera) in model.cameras.into_iter().filter(|_| entry.cameras) {
+    for (name, mut camera) in model.cameras.iter().filter(|_| entry.cameras).map(|(n, c)| (n.clone(), *c)) {
         camera.eye = frame.transform_point3(camera.eye);
         camera.target = frame.transform_point3(camera.target);
         camera.up = frame.transform_vector3(camera.up).normalize_or(camera.up);

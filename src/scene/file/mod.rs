@@ -4,18 +4,22 @@ mod compose;
 mod format;
 mod parts;
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
 use glam::{Mat4, Vec3};
 use ron::extensions::Extensions;
 
+use crate::diagnostics::TOO_DEEP;
 use crate::diagnostics::excerpt::excerpt;
 use crate::files::read_input_text;
 
-use super::limits::check_extent;
+use super::limits::{check_extent, check_placed};
 use super::progress::Progress;
 use super::shapes::Problem;
 use super::{Environment, Scene, SceneError, builtin, defaults, environment, open};
+use compose::Added;
 use format::{EnvironmentEntry, ModelEntry, SceneFile, SkyOf};
 
 /// Scene files larger than this are refused.
@@ -40,16 +44,22 @@ pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene,
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut scene = Scene { name: file.name.clone().unwrap_or(name), ..Scene::default() };
     let (mut sky, mut picture) = (None, None);
+    // A model that stands in several places is read once, and its meshes are shared.
+    let mut added: BTreeMap<(bool, &str), Added> = BTreeMap::new();
     for (i, entry) in file.models.iter().enumerate() {
-        let model = load_model(entry, path, text, progress.share(i, file.models.len() + 1))?;
+        let named = entry.builtin.as_deref().or(entry.file.as_deref()).unwrap_or_default();
+        let share = progress.share(i, file.models.len() + 1);
+        let known = match added.entry((entry.builtin.is_some(), named)) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => new.insert(compose::add(&mut scene, load_model(entry, path, text, share)?)),
+        };
         if i == 0 {
-            (sky, picture) = (Some(model.sky), model.environment.clone());
+            let own = known.sky();
+            (sky, picture) = (Some(own.0), own.1);
         }
-        check_extent(&model, entry.transform).map_err(|message| {
-            let named = entry.file.as_deref().or(entry.builtin.as_deref()).unwrap_or_default();
-            in_file(path, text, named, format!("'{named}', placed: {message}"))
-        })?;
-        compose::add(&mut scene, model, entry);
+        check_placed(&known.model, known.bounds, entry.transform)
+            .map_err(|message| in_file(path, text, named, format!("'{named}', placed: {message}")))?;
+        compose::add_placed(&mut scene, &known.model, entry);
     }
     progress.share(file.models.len(), file.models.len() + 1).step(&scene.name, 0.0)?;
     let own = parts::build(&file, progress);
@@ -58,7 +68,8 @@ pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene,
         false => in_file(path, text, &near, message),
     })?;
     check_extent(&own, Mat4::IDENTITY).map_err(|message| in_file(path, text, "", message))?;
-    compose::add(&mut scene, own, &ModelEntry::default());
+    let own = compose::add(&mut scene, own).model;
+    compose::add_placed(&mut scene, &own, &ModelEntry::default());
     match &file.environment {
         Some(entry) => {
             scene.environment = Some(open_environment(entry, path, text, &mut scene.warnings)?);
@@ -166,6 +177,7 @@ fn describe(error: &ron::Error) -> String {
     let (kind, found, expected) = match error {
         ron::Error::NoSuchStructField { found, expected, .. } => ("field", found, *expected),
         ron::Error::NoSuchEnumVariant { found, expected, .. } => ("kind", found, *expected),
+        ron::Error::ExceededRecursionLimit => return TOO_DEEP.into(),
         other => return other.to_string(),
     };
     let score = |known: &&&str| strsim::damerau_levenshtein(&known.to_lowercase(), &found.to_lowercase());

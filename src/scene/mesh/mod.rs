@@ -35,10 +35,10 @@ impl Dropped {
         if self.not_finite + self.no_area == 0 {
             return None;
         }
-        Some(format!(
-            "{file}: dropped {} triangles with NaN or infinite vertices and {} triangles without area",
-            self.not_finite, self.no_area
-        ))
+        let kinds = [(self.not_finite, "with NaN or infinite vertices"), (self.no_area, "without area")];
+        let some = kinds.iter().filter(|(count, _)| *count > 0);
+        let list: Vec<String> = some.map(|(count, what)| format!("{count} triangles {what}")).collect();
+        Some(format!("{file}: dropped {}", list.join(" and ")))
     }
 }
 
