@@ -25,7 +25,7 @@ OUT := captures/demo
 help: ## Say what there is
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1	\2/p' $(MAKEFILE_LIST) | expand -t 14
 
-demo: ## Render the built-in atrium, lit by voxel cones, on any Vulkan device
+demo: ## Render the built-in atrium, lit through voxels, on any Vulkan device
 	@scripts/setup.sh build run
 	@cargo build --release --locked
 	@$(CONELAB) devices
@@ -34,7 +34,7 @@ demo: ## Render the built-in atrium, lit by voxel cones, on any Vulkan device
 	@$(CONELAB) render configs/default.ron --scene atrium --size $(SIZE) $(ARGS) \
 		--set view=voxels --set voxel_view=color -o $(OUT)/voxels.png
 	@printf '\nLook at:\n  %s\n  %s\n  %s\n' \
-		'$(OUT)/atrium.png   the atrium by direct light and voxel cones' \
+		'$(OUT)/atrium.png   the atrium by direct light and light that bounced' \
 		'$(OUT)/voxels.png   the voxels that stand for the scene, coloured by albedo' \
 		'$(OUT)/stats.json   times of every pass, memory of every resource, all settings'
 
