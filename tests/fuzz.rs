@@ -1,10 +1,12 @@
 //! Mutated files of every kind that the program reads: each opens or is refused, without a panic, within ten seconds and
-//! two gigabytes.
+//! two gigabytes. A scene that opens can be rendered, and some are exported and read back.
 //!
 //! A short run by default. CONELAB_FUZZ is another number of inputs and CONELAB_FUZZ_SEED another place to begin; an input
 //! that fails is kept under `target/tmp/fuzz`, and its number is its seed.
 
 mod common;
+#[path = "fuzz/holds.rs"]
+mod holds;
 #[path = "fuzz/mutate.rs"]
 mod mutate;
 #[path = "fuzz/seeds.rs"]
@@ -18,27 +20,41 @@ use conelab::campaign::sweep::{self, Sweep};
 use conelab::experiment::Experiment;
 use conelab::graph::Graph;
 use conelab::graph::load::{Folders, load};
+use conelab::measure::reference;
 use conelab::results::capture;
 use conelab::scene::Scene;
+use conelab::shader::{check_sizes, read_module, strip_outputs};
+use conelab::vulkan::Stage;
 use mutate::{Random, mutated};
 use seeds::{Kind, Seed};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Inputs where nobody says how many.
 const INPUTS: usize = 20_000;
 /// Where nobody says how many: no longer than this.
 const SHORT: Duration = Duration::from_secs(45);
+/// One accepted scene of so many is exported and read back.
+const EXPORTED: usize = 8;
 const LONGEST: Duration = Duration::from_secs(10);
 const MAX_MEMORY: u64 = 2 << 30;
 
-/// Reads a file as the program would; what it says where it refuses it.
-fn read(kind: Kind, path: &Path, graph: &Graph) -> Result<(), String> {
+/// Begins the message about an accepted file that holds what it must not.
+const HOLDS: &str = "accepted, but ";
+
+/// The graphs that experiments and references are of.
+struct Graphs {
+    method: Arc<Graph>,
+    reference: Arc<Graph>,
+}
+
+/// Reads a file as the program would; what it says where it refuses it. `thorough`: an accepted scene is exported too.
+fn read(kind: Kind, path: &Path, graphs: &Graphs, thorough: bool) -> Result<(), String> {
     let told =
         |errors: Vec<conelab::diagnostics::Diagnostic>| errors.iter().map(ToString::to_string).collect::<String>();
     match kind {
@@ -47,7 +63,14 @@ fn read(kind: Kind, path: &Path, graph: &Graph) -> Result<(), String> {
                 Scene::open(&path.to_string_lossy(), &|_, _| ControlFlow::Continue(())).map_err(|e| e.to_string())?;
             drop(scene.summary());
             let warnings = scene.warnings.join("\n");
-            if warnings.contains("gave up") { Err(warnings) } else { Ok(()) }
+            if warnings.contains("gave up") {
+                return Err(warnings);
+            }
+            let folder = path.parent().unwrap();
+            let model = path.extension().is_some_and(|e| e != "ron");
+            let exported = || thorough.then(|| holds::loss(&scene, folder)).flatten();
+            let wrong = holds::mistake(&scene, bytes_of(folder), model).or_else(exported);
+            wrong.map_or(Ok(()), |wrong| Err(format!("{HOLDS}{wrong}")))
         }
         Kind::Graph => {
             let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
@@ -55,7 +78,7 @@ fn read(kind: Kind, path: &Path, graph: &Graph) -> Result<(), String> {
         }
         Kind::Experiment => {
             let experiment = Experiment::read(path).map_err(told)?;
-            experiment.params_over(&graph.params).map(drop).map_err(|e| e.to_string())
+            experiment.params_over(&graphs.method.params).map(drop).map_err(|e| e.to_string())
         }
         Kind::Sweep => {
             let sweep = Sweep::read(path).map_err(told)?;
@@ -67,11 +90,39 @@ fn read(kind: Kind, path: &Path, graph: &Graph) -> Result<(), String> {
             [-1.0, 0.0, 0.5, 1e9].iter().for_each(|time| assert!(path.at(*time).fov_y > 0.0));
             Ok(())
         }
-        Kind::Capture => capture::Manifest::read(path.parent().unwrap()).map(drop).map_err(|e| e.to_string()),
+        Kind::Capture => {
+            let folder = path.parent().unwrap();
+            let manifest = capture::Manifest::read(folder).map_err(|e| e.to_string())?;
+            assert!(capture::changes(folder, &manifest).len() <= manifest.files.len() + 2);
+            assert!(capture::list(folder.parent().unwrap()).iter().any(|s| s.folder == folder));
+            Experiment::read(&folder.join("experiment.ron")).map_err(told)?;
+            let folders = Folders { passes: folder.join("graph/passes"), shaders: folder.join("graph/shaders") };
+            load(&folders.passes.join("graph.ron"), &folders).map(drop).map_err(told)
+        }
+        Kind::Reference => {
+            let read = reference::read(path.parent().unwrap(), seeds::REFERENCE, &graphs.reference);
+            let Some(reference) = read.map_err(|e| e.to_string())? else { return Err("no sums".into()) };
+            let size = reference.parts.values().all(|p| p.mean.rgb.len() == 12);
+            if size && reference.samples == 32 { Ok(()) } else { Err(format!("{HOLDS}it has other samples")) }
+        }
+        Kind::Module => match read_module(&std::fs::read(path).unwrap(), Stage::Fragment) {
+            Some((words, _)) if check_sizes(&words, &[]).is_err() => Err(format!("{HOLDS}it is too large")),
+            Some((words, _)) => {
+                drop(strip_outputs(&words, &[0]));
+                Ok(())
+            }
+            None => Err("no module".into()),
+        },
         Kind::Points => sweep::collect(&[path.parent().unwrap().into()]).map(drop).map_err(|e| e.to_string()),
         Kind::Times => bench::Record::read(path).map(drop).map_err(|e| e.to_string()),
         Kind::Picture => conelab::results::picture::read_linear(path).map(drop).map_err(|e| e.to_string()),
     }
+}
+
+/// Bytes of the files in a folder.
+fn bytes_of(folder: &Path) -> usize {
+    let entries = std::fs::read_dir(folder).unwrap().flatten();
+    entries.filter_map(|e| e.metadata().ok()).filter(|m| m.is_file()).map(|m| m.len() as usize).sum()
 }
 
 /// Largest memory that this process has had, bytes.
@@ -93,15 +144,17 @@ struct Run {
     failures: Mutex<Vec<String>>,
 }
 
-fn one(run: &Run, seed: &Seed, folder: &Path, bytes: &[u8], number: usize, graph: &Graph) {
+fn one(run: &Run, seed: &Seed, folder: &Path, bytes: &[u8], number: usize, graphs: &Graphs) {
     std::fs::write(folder.join(seed.mutated), bytes).unwrap();
     let begun = Instant::now();
-    let result = catch_unwind(AssertUnwindSafe(|| read(seed.kind, &folder.join(seed.opened), graph)));
+    let thorough = number % EXPORTED == 0;
+    let result = catch_unwind(AssertUnwindSafe(|| read(seed.kind, &folder.join(seed.opened), graphs, thorough)));
     let name = format!("{} in {}", seed.mutated, seed.opened);
     let mut wrong = None;
     let mut ok = false;
     match result {
         Ok(Ok(())) => ok = true,
+        Ok(Err(text)) if text.starts_with(HOLDS) => wrong = Some(text),
         Ok(Err(text)) => {
             if let Some((_, rest)) = text.split_once("gave up (") {
                 let what = rest.split(')').next().unwrap_or_default().to_owned();
@@ -141,11 +194,12 @@ fn mutated_files_are_read_or_refused() {
     let (inputs, first) = (asked.unwrap_or(INPUTS), number("CONELAB_FUZZ_SEED").unwrap_or(0));
     let seeds = seeds::all();
     let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
-    let graph = load(&folders.passes.join("vct.ron"), &folders).unwrap();
+    let graph = |name: &str| Arc::new(load(&folders.passes.join(name), &folders).unwrap());
+    let graphs = Graphs { method: graph("vct.ron"), reference: graph("reference.ron") };
     let whole = tempfile::tempdir().unwrap();
     seeds::write(whole.path());
     for Seed { kind, opened, mutated, .. } in &seeds {
-        assert_eq!(read(*kind, &whole.path().join(opened), &graph), Ok(()), "{mutated}, as it is");
+        assert_eq!(read(*kind, &whole.path().join(opened), &graphs, true), Ok(()), "{mutated}, as it is");
     }
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
     let run = Run {
@@ -159,7 +213,7 @@ fn mutated_files_are_read_or_refused() {
     let ended = |number: usize| number >= inputs || asked.is_none() && begun.elapsed() > SHORT;
     std::thread::scope(|scope| {
         for thread in 0..threads {
-            let (run, seeds, graph, ended) = (&run, &seeds, &graph, &ended);
+            let (run, seeds, graphs, ended) = (&run, &seeds, &graphs, &ended);
             scope.spawn(move || {
                 let folder = tempfile::tempdir().unwrap();
                 seeds::write(folder.path());
@@ -173,7 +227,7 @@ fn mutated_files_are_read_or_refused() {
                     let other = &seeds[random.below(seeds.len())].bytes;
                     let bytes = mutated(&mut random, &seed.bytes, other);
                     run.busy[thread].store(begun.elapsed().as_millis() as u64 + 1, Relaxed);
-                    one(run, seed, folder.path(), &bytes, first + number, graph);
+                    one(run, seed, folder.path(), &bytes, first + number, graphs);
                     run.busy[thread].store(0, Relaxed);
                     std::fs::write(folder.path().join(seed.mutated), &seed.bytes).unwrap();
                 }

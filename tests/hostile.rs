@@ -77,6 +77,43 @@ fn materials_that_no_library_defines_are_named() {
 }
 
 #[test]
+fn cameras_look_somewhere_and_lights_are_numbers() {
+    let folder = folder();
+    let gltf = |x: &str, outer: &str, strength: &str| {
+        gltf_with_buffer("a.bin").replacen("\"nodes\":[0]", "\"nodes\":[0,1,2]", 1).replacen(
+            "\"nodes\":[{\"mesh\":0}],",
+            &format!(
+                "\"nodes\":[{{\"mesh\":0,\"translation\":[{x},0,0]}},{{\"camera\":0,\"translation\":[{x},0,9]}},\
+                 {{\"extensions\":{{\"KHR_lights_punctual\":{{\"light\":0}}}}}}],\"cameras\":[{{\"type\":\"perspective\",\
+                 \"perspective\":{{\"yfov\":0.8,\"znear\":0.1}}}}],\"extensionsUsed\":[\"KHR_lights_punctual\"],\
+                 \"extensions\":{{\"KHR_lights_punctual\":{{\"lights\":[{{\"type\":\"spot\",\"intensity\":{strength},\
+                 \"spot\":{{\"innerConeAngle\":0.1,\"outerConeAngle\":{outer}}}}}]}}}},"
+            ),
+            1,
+        )
+    };
+    let corners: [f32; 9] = [0.0, 0.0, 0.0, 1e3, 0.0, 0.0, 0.0, 1e3, 0.0];
+    write(&folder, "a.bin", corners.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>());
+    // One metre beside 100,000 km is no distance for 32-bit numbers.
+    let far = open(write(&folder, "far.gltf", gltf("1e8", "0.5", "1"))).unwrap();
+    assert_eq!((far.cameras.len(), far.warnings.len()), (2, 0), "{:?}", far.warnings);
+    assert!(far.cameras.values().all(|c| (c.target - c.eye).try_normalize().is_some()), "{:?}", far.cameras);
+    for (outer, strength, told) in [
+        ("1e39", "1", "cone angles that do not obey 0 <= inner <= outer <= 90 degrees"),
+        ("0.05", "1", "cone angles"),
+        ("0.5", "1e39", "intensity that is negative or too large"),
+        ("0.5", "-1", "intensity"),
+    ] {
+        let scene = open(write(&folder, "light.gltf", gltf("0", outer, strength))).unwrap();
+        tells(&scene.warnings.join("\n"), &["light 'node 2' has", told, "it is left out"]);
+        let export = folder.path().join("export.gltf");
+        scene.export(&export).unwrap();
+        let text = std::fs::read_to_string(export).unwrap();
+        assert!(!text.contains("null") && scene.lights.len() == 1, "{text}");
+    }
+}
+
+#[test]
 fn a_model_in_many_places_is_read_once() {
     let folder = folder();
     write(&folder, "a.obj", TRIANGLE);

@@ -49,8 +49,14 @@ fn place(scene: &Scene, which: usize, (along, above): (f32, f32)) -> Camera {
     let length = extent.dot(axis);
     let mut eye = centre + axis * (along * length);
     eye.y = low.y + above * extent.y;
-    let target = eye - axis * along.signum() * if length > 0.0 { length } else { 1.0 };
+    let reach = if length > 0.0 { length } else { 1.0 };
+    let target = eye - axis * along.signum() * reach.max(least_reach(eye));
     Camera { eye, target, up: Vec3::Y, fov_y: 58.3, near: near_plane(extent.length()), far: f32::INFINITY }
+}
+
+/// Least distance of a camera's target that 32-bit numbers keep apart from its eye.
+pub(super) fn least_reach(eye: Vec3) -> f32 {
+    4.0 * f32::EPSILON * eye.abs().max_element()
 }
 
 /// Distance of the near plane in a scene with the given diagonal: so small that it hides nothing. Under reversed depth

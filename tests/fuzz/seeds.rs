@@ -1,13 +1,20 @@
 //! Whole files of every kind, to be mutated.
 
 use super::common::root;
+use conelab::graph::link::generated;
+use conelab::graph::load::{Folders, load};
 use conelab::metrics::Linear;
 use conelab::scene::Scene;
+use conelab::shader::{ShaderCompiler, Source};
+use conelab::vulkan::Stage;
 use ddsfile::{AlphaMode, D3D10ResourceDimension, Dds, DxgiFormat, NewDxgiParams};
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage};
 use image::{DynamicImage, ImageFormat, Rgb32FImage, RgbaImage};
+use sha2::{Digest, Sha256};
 use std::io::Cursor;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::LazyLock;
 
 /// Who reads a file.
 #[derive(Clone, Copy)]
@@ -19,6 +26,8 @@ pub enum Kind {
     Suite,
     Path,
     Capture,
+    Reference,
+    Module,
     Points,
     Times,
     Picture,
@@ -32,7 +41,7 @@ pub struct Seed {
     pub bytes: Vec<u8>,
 }
 
-const FILES: [(Kind, &str, &str); 34] = [
+const FILES: [(Kind, &str, &str); 44] = [
     (Kind::Scene, "room.obj", "room.obj"),
     (Kind::Scene, "room.obj", "room.mtl"),
     (Kind::Scene, "small.obj", "small.obj"),
@@ -44,6 +53,9 @@ const FILES: [(Kind, &str, &str); 34] = [
     (Kind::Scene, "small.obj", "bc1.dds"),
     (Kind::Scene, "small.obj", "bc7.dds"),
     (Kind::Scene, "small.obj", "plain.dds"),
+    (Kind::Scene, "small.obj", "t.ktx2"),
+    (Kind::Scene, "lit.gltf", "lit.gltf"),
+    (Kind::Scene, "lit.gltf", "t.ktx2"),
     (Kind::Scene, "room.gltf", "room.gltf"),
     (Kind::Scene, "room.gltf", "room.bin"),
     (Kind::Scene, "moving.gltf", "moving.gltf"),
@@ -62,7 +74,14 @@ const FILES: [(Kind, &str, &str); 34] = [
     (Kind::Suite, "motion.ron", "motion.ron"),
     (Kind::Path, "atrium.ron", "atrium.ron"),
     (Kind::Capture, "capture/capture.json", "capture/capture.json"),
+    (Kind::Capture, "capture/capture.json", "capture/experiment.ron"),
+    (Kind::Capture, "capture/capture.json", "capture/graph/passes/graph.ron"),
+    (Kind::Capture, "capture/capture.json", "capture/graph/shaders/fill.comp"),
+    (Kind::Reference, "reference/reference.json", "reference/reference.json"),
+    (Kind::Reference, "reference/reference.json", "reference/sums-32.exr"),
+    (Kind::Module, "module.spv", "module.spv"),
     (Kind::Points, "points/sweep.json", "points/sweep.json"),
+    (Kind::Points, "points/sweep.json", "points/points/0123456789abcdef0123456789abcdef.json"),
     (Kind::Times, "times.json", "times.json"),
     (Kind::Picture, "sky.exr", "sky.exr"),
     (Kind::Picture, "sky.hdr", "sky.hdr"),
@@ -126,9 +145,24 @@ pub fn write(folder: &Path) {
     }
     let times = std::fs::read_dir(root().join("configs/times")).unwrap().flatten().next().unwrap();
     std::fs::copy(times.path(), folder.join("times.json")).unwrap();
-    ["capture", "points"].iter().for_each(|name| std::fs::create_dir_all(folder.join(name)).unwrap());
+    let folders = ["capture/graph/passes", "capture/graph/shaders", "points/points", "reference"];
+    folders.iter().for_each(|name| std::fs::create_dir_all(folder.join(name)).unwrap());
     put("capture/capture.json", CAPTURE.as_bytes());
+    put("capture/picture.png", &encoded(&picture, ImageFormat::Png));
+    put(
+        "capture/experiment.ron",
+        b"(graph: \"graph.ron\", scene: \"furnace\", size: (8, 8), params: {\"level\": 0.25})",
+    );
+    put("capture/graph/passes/graph.ron", GRAPH.as_bytes());
+    put("capture/graph/shaders/fill.comp", FILL.as_bytes());
     put("points/sweep.json", POINTS.as_bytes());
+    put("points/points/0123456789abcdef0123456789abcdef.json", POINT.as_bytes());
+    put("t.ktx2", &ktx2());
+    put("lit.gltf", LIT.as_bytes());
+    let (sums, record) = reference();
+    put("reference/sums-32.exr", &sums);
+    put("reference/reference.json", record.as_bytes());
+    put("module.spv", &MODULE);
 }
 
 fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
@@ -157,6 +191,42 @@ fn dds(format: DxgiFormat) -> Vec<u8> {
     bytes
 }
 
+/// Size of the reference's pictures.
+pub const REFERENCE: (u32, u32) = (4, 3);
+
+/// The sums of a reference, and what names them.
+fn reference() -> (Vec<u8>, String) {
+    let size = (REFERENCE.0 as usize, REFERENCE.1 as usize);
+    let mut layers = exr::prelude::SmallVec::new();
+    for layer in PARTS.iter().flat_map(|part| [format!("{part}.0"), format!("{part}.1")]) {
+        let values = |i: usize| FlatSamples::F32(vec![if i == 3 { 16.0 } else { i as f32 + 0.5 }; 12]);
+        let list = [("R", 0), ("G", 1), ("B", 2), ("A", 3)].map(|(name, i)| AnyChannel::new(name, values(i)));
+        let channels = AnyChannels::sort(list.into_iter().collect());
+        layers.push(Layer::new(size, LayerAttributes::named(layer.as_str()), Encoding::FAST_LOSSLESS, channels));
+    }
+    let mut out = Cursor::new(Vec::new());
+    let window = exr::meta::header::ImageAttributes::with_size(size);
+    Image::from_layers(window, layers).write().non_parallel().to_buffered(&mut out).unwrap();
+    let bytes = out.into_inner();
+    let sha256: String = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+    let record = format!(
+        "{{\"schema\":\"conelab-reference-2\",\"sums\":\"sums-32.exr\",\"sha256\":\"{sha256}\",\"samples\":32,\
+         \"size\":[4,3],\"noise\":{{}},\"experiment\":\"e\",\"scene\":\"s\",\"params\":{{\"seed\":\"1\"}},\
+         \"device\":\"d\",\"driver\":\"e\"}}"
+    );
+    (bytes, record)
+}
+
+/// A KTX2 file of 4x4 texels with one level (KTX 2.0, sections 3 and 4).
+fn ktx2() -> Vec<u8> {
+    let mut out = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
+    // R8G8B8A8, size, layers, faces, levels, no compression; index of the descriptor, no key and no global data; a level.
+    let words = [37u32, 1, 4, 4, 0, 0, 1, 1, 0, 104, 4, 0, 0, 0, 0, 0, 0, 108, 0, 64, 0, 64, 0, 4];
+    out.extend(words.iter().flat_map(|w| w.to_le_bytes()));
+    out.resize(108 + 64, 128);
+    out
+}
+
 const SMALL_OBJ: &str = "mtllib small.mtl room.mtl\no a\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0 1 0.5 0.2\nvt 0 0\nvt 1 0\nvt 1 1\n\
     vn 0 0 1\ns 1\ng b\nusemtl m\nf 1/1/1 2/2/1 3/3/1\nusemtl n\nf -4/1 -2/2 -1/3\nl 1 2\np 1\nusemtl o\nf 1 2 3 4\n\
     usemtl p\nf 4//1 3//1 1//1\n";
@@ -173,9 +243,55 @@ const SCENE: &str = "(name: \"x\", models: [(file: \"small.obj\", transform: (tr
     sky: (0.2, 0.3, 0.4), cameras: {\"default\": (eye: (0.5, 1.8, 6), target: (0, 1, 0), fov_y: 50, near: 0.1, far: 50)})";
 
 const CAPTURE: &str = r#"{"schema":"conelab-capture-1","version":"0.1.0","device":"d","driver":"e","when":"2026-01-01T00:00:00Z",
-    "experiment":"default","graph":"vct.ron","scene":{"spec":"cornell","name":"cornell","sha256":"00"},"size":[96,64],
-    "frames":1,"step":0.0,"images":[{"file":"display.png","texture":"display","mip":0,"layer":0}],
-    "files":{"display.png":"00","experiment.ron":"00","passes/vct.ron":"00"}}"#;
+    "experiment":"small","graph":"graph.ron","scene":{"spec":"furnace","name":"furnace","sha256":"00"},"size":[8,8],
+    "frames":1,"step":0.0,"images":[{"file":"picture.png","texture":"image","mip":0,"layer":0}],
+    "files":{"picture.png":"00","experiment.ron":"00","graph/passes/graph.ron":"00","graph/shaders/fill.comp":"00"}}"#;
+
+const GRAPH: &str = r#"(
+    params: [
+        Float(name: "level", default: 0.5, range: (0.0, 1.0), help: "Level."),
+        Choice(name: "mode", options: ["plain", "odd"], help: "Mode."),
+    ],
+    textures: { "image": (size: ("width", "height"), format: "rgba8") },
+    output: "image",
+    passes: [(name: "fill", when: "mode == plain", shaders: ["fill.comp"], dispatch: Cover("image"))],
+)"#;
+
+const FILL: &str = "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"params.glsl\"\n\
+    layout(local_size_x = 8, local_size_y = 8) in;\nlayout(rgba8) uniform writeonly image2D image;\n\
+    void main() { imageStore(image, ivec2(gl_GlobalInvocationID.xy), vec4(params.level)); }\n";
+
+/// Parts of the graph of references.
+const PARTS: [&str; 5] = ["diffuse", "direct", "occlusion", "specular", "total"];
+
+/// A shader as the cache keeps it.
+static MODULE: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
+    let graph = load(&folders.passes.join("preview.ron"), &folders).unwrap();
+    let source = Source { file: "preview/preview.frag".into(), stage: Stage::Fragment };
+    let compiled = ShaderCompiler::new(&folders.shaders, None).compile(&source, &generated(&graph, &graph.params));
+    compiled.unwrap().words.iter().flat_map(|w| w.to_le_bytes()).collect()
+});
+
+/// A triangle with a texture of another format, a spot and a camera.
+const LIT: &str = r#"{"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual","KHR_texture_basisu"],"scene":0,
+    "scenes":[{"nodes":[0,1,2]}],"nodes":[{"mesh":0,"scale":[1,2,1]},{"camera":0,"translation":[0.2,0.3,4]},
+    {"translation":[0,0,3],"extensions":{"KHR_lights_punctual":{"light":0}}}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.25,1,1],"metallicFactor":0.5,"roughnessFactor":0.5,
+    "baseColorTexture":{"index":0}},"normalTexture":{"index":0,"scale":0.5},"emissiveFactor":[0.1,0.2,0.3],
+    "alphaMode":"MASK","alphaCutoff":0.5,"extensions":{"KHR_materials_ior":{"ior":1.4}}}],
+    "textures":[{"source":0,"extensions":{"KHR_texture_basisu":{"source":0}}}],"images":[{"uri":"t.ktx2"}],
+    "cameras":[{"type":"perspective","perspective":{"yfov":0.8,"znear":0.1,"zfar":50.0}}],
+    "accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3,"min":[0,0,0],"max":[1,1,0]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,
+    "uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+    "extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","color":[1,0.5,0.25],"intensity":20.0,
+    "spot":{"innerConeAngle":0.3,"outerConeAngle":0.6}}]}}}"#;
+
+const POINT: &str = r#"{"schema":"conelab-point-1","id":"0123456789abcdef0123456789abcdef","experiment":"(graph: \"g\")",
+    "subject":{"scene":"s","sha256":"00","camera":"c","size":[8,8],"time":"0.0"},
+    "device":{"name":"d","driver":"e","api":"1.3","kind":"cpu"},"outcome":{"failed":"no such scene"}}"#;
 
 const POINTS: &str = r#"{"schema":"conelab-sweep-1","name":"cones","text":"","names":["cone_count"],
     "frames":{"warmup":1,"count":1},"points":[{"id":"0123456789abcdef0123456789abcdef","labels":{"cone_count":"5"}},

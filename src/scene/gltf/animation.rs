@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use ::gltf::Document;
 use ::gltf::animation::{Interpolation, Property};
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec3, Vec4};
 
 use super::accessors;
 use super::buffers::Buffers;
@@ -80,7 +80,11 @@ pub(super) fn tracks(
                 }
                 Property::Rotation if track.rotation.is_none() => {
                     let values = accessors::floats::<4>(&sampler.output(), buffers)?;
-                    let unit = |q: [f32; 4]| Quat::from_array(q).normalize();
+                    // Numbers near the largest have no finite length, and all of zero turn nothing.
+                    let unit = |q: [f32; 4]| {
+                        let q = Vec4::from_array(q);
+                        (q / q.abs().max_element()).try_normalize().map_or(Quat::IDENTITY, Quat::from_vec4)
+                    };
                     track.rotation = Some(curve(&name, times, values, interpolation, unit)?);
                 }
                 Property::Translation | Property::Rotation => {

@@ -1,6 +1,7 @@
 //! The node hierarchy, flattened: instances, lights and cameras in the world.
 
 use std::collections::HashMap;
+use std::f32::consts::FRAC_PI_2;
 
 use ::gltf::camera::Projection;
 use ::gltf::khr_lights_punctual::Kind;
@@ -8,6 +9,7 @@ use ::gltf::{Document, Node};
 use glam::{Mat4, Quat, Vec3};
 
 use super::animation::Track;
+use crate::scene::defaults::least_reach;
 use crate::scene::{Animation, Camera, Instance, Keyframe, Light, LightKind, Scene};
 
 /// A node to visit: what is above it.
@@ -73,14 +75,21 @@ pub(super) fn place(
                 Some(moving) => (moving.below, Some(moving.animation.clone())),
                 None => (world, None),
             };
-            keyframes += animation.as_ref().map_or(0, |a| a.keyframes.len());
+            let keys = animation.as_ref().map_or(&[][..], |a: &Animation| &a.keyframes);
+            if !keys.iter().all(|k| k.translation.is_finite() && k.rotation.is_finite()) {
+                return Err(format!("node '{name}' has a motion that is not finite. Export it again"));
+            }
+            keyframes += keys.len();
             if keyframes > MAX_KEYFRAMES {
                 return Err(format!("its moving meshes have more than {MAX_KEYFRAMES} keyframes in all"));
             }
             placed.instances.push(Instance { name: name.clone(), mesh: mesh.index() as u32, transform, animation });
         }
         if let Some(light) = node.light() {
-            placed.lights.push(read_light(&light, &name, world));
+            match read_light(&light, &name, world) {
+                Ok(light) => placed.lights.push(light),
+                Err(why) => warnings.push(format!("light '{name}' {why}; it is left out")),
+            }
         }
         if let Some(camera) = node.camera() {
             match read_camera(&camera.projection(), world) {
@@ -110,22 +119,30 @@ fn start_moving(node: &Node, parent: Mat4, track: &Track) -> Option<Moving> {
     Some(Moving { animation, below: Mat4::from_scale(Vec3::from_array(scale) * size) })
 }
 
-fn read_light(light: &::gltf::khr_lights_punctual::Light, name: &str, world: Mat4) -> Light {
+fn read_light(light: &::gltf::khr_lights_punctual::Light, name: &str, world: Mat4) -> Result<Light, &'static str> {
+    let color = Vec3::from_array(light.color()) * light.intensity();
+    if !color.is_finite() || color.min_element() < 0.0 {
+        return Err("has a colour or intensity that is negative or too large");
+    }
     let kind = match light.kind() {
         Kind::Directional => LightKind::Directional,
         Kind::Point => LightKind::Point,
         Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-            LightKind::Spot { inner: inner_cone_angle, outer: outer_cone_angle }
+            let in_order = 0.0 <= inner_cone_angle && inner_cone_angle <= outer_cone_angle;
+            if !in_order || outer_cone_angle > FRAC_PI_2 + 1e-6 {
+                return Err("has cone angles that do not obey 0 <= inner <= outer <= 90 degrees");
+            }
+            LightKind::Spot { inner: inner_cone_angle, outer: outer_cone_angle.min(FRAC_PI_2) }
         }
     };
-    Light {
+    Ok(Light {
         name: light.name().unwrap_or(name).to_owned(),
         kind,
-        color: Vec3::from_array(light.color()) * light.intensity(),
+        color,
         position: world.w_axis.truncate(),
         direction: world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Y),
         shadow: true,
-    }
+    })
 }
 
 fn read_camera(projection: &Projection, world: Mat4) -> Option<Camera> {
@@ -138,7 +155,7 @@ fn read_camera(projection: &Projection, world: Mat4) -> Option<Camera> {
     let usable = fov_y > 0.0 && fov_y < 180.0 && near > 0.0 && near.is_finite() && far > near;
     usable.then(|| Camera {
         eye,
-        target: eye + world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z),
+        target: eye + world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Z) * least_reach(eye).max(1.0),
         up: world.transform_vector3(Vec3::Y).normalize_or(Vec3::Y),
         fov_y,
         near,
