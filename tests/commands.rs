@@ -242,10 +242,11 @@ fn files_that_are_missing_or_broken() {
         = help: give the path of an experiment, for example configs/default.ron
     ");
     assert_snapshot!(experiment(&out.write("empty.ron", "")), @"OUT/empty.ron:1:1: error: Expected opening `(` for struct `ExperimentFile`");
-    assert_snapshot!(experiment(&out.write("other.ron", "(graph: \"vtc.ron\", scene: \"cornell\")")), @r"
-    passes/vtc.ron: error: cannot read it: No such file or directory (os error 2)
+    assert_snapshot!(experiment(&out.write("other.ron", "(graph: \"vtc.ron\", scene: \"cornell\")")), @r#"
+    OUT/other.ron:1:9: error: graph 'passes/vtc.ron': cannot read it: No such file or directory (os error 2)
+        | (graph: "vtc.ron", scene: "cornell")
         = help: did you mean 'vct.ron'?
-    ");
+    "#);
     let scene = |name: &str, content: &[u8]| {
         let path = out.write(name, content);
         out.tidy(&fails(&mut render(path.to_str().unwrap(), &png)))
