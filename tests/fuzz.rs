@@ -147,7 +147,7 @@ struct Run {
 fn one(run: &Run, seed: &Seed, folder: &Path, bytes: &[u8], number: usize, graphs: &Graphs) {
     std::fs::write(folder.join(seed.mutated), bytes).unwrap();
     let begun = Instant::now();
-    let thorough = number % EXPORTED == 0;
+    let thorough = number.is_multiple_of(EXPORTED);
     let result = catch_unwind(AssertUnwindSafe(|| read(seed.kind, &folder.join(seed.opened), graphs, thorough)));
     let name = format!("{} in {}", seed.mutated, seed.opened);
     let mut wrong = None;

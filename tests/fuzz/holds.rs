@@ -86,7 +86,7 @@ fn mesh(m: &Mesh, materials: usize) -> Option<&'static str> {
     let used = |i: &u32| m.vertices.get(*i as usize);
     let mut next = 0;
     let runs = m.submeshes.iter().all(|s| {
-        let follows = s.first_index == next && s.index_count % 3 == 0 && (s.material as usize) < materials;
+        let follows = s.first_index == next && s.index_count.is_multiple_of(3) && (s.material as usize) < materials;
         next = s.first_index.saturating_add(s.index_count);
         follows
     });
