@@ -1755,7 +1755,7 @@ fn groups_of_passes() {
     assert_snapshot!(group("(name: \"s\", passes: [FILL]),"), @r#"
     passes/graph.ron:20:10: error: unknown field 'name'
         |         (name: "s", passes: [(name: "fill", shaders: ["fill.comp"], dispatch: Indirect("work", 0)),]),
-        = help: known: passes, settles, stage, when
+        = help: known: converges, passes, settles, stage, when
     "#);
     assert_snapshot!(group("(when: \"method == rows\", passes: [FILL]),"), @r#"
     passes/graph.ron:20:16: error: unknown variable 'rows' in 'method == rows'

@@ -101,7 +101,7 @@ pub fn run(args: &RenderArgs) -> Result<(), LabError> {
     session.set_redo(args.redo);
     let mut times = Vec::new();
     let alone = args.frames.is_none() && args.sequence.is_none() && args.path.is_none() && args.step == 0.0;
-    let warmup = args.warmup.unwrap_or(if alone { session.settling_frames() - 1 } else { 0 });
+    let warmup = args.warmup.unwrap_or(if alone { session.converging_frames() - 1 } else { 0 });
     let bar = indicatif::ProgressBar::new((warmup + frames) as u64);
     for number in 0..warmup + frames {
         if let Some(path) = &path {

@@ -40,6 +40,9 @@ pub fn summary(graph: &Graph, plan: &Plan) -> String {
         passes.dedup();
         let _ = writeln!(out, "after {} still frames rest: {}", settling.frames, passes.join(", "));
     }
+    if plan.convergence.fresh > 1 {
+        let _ = writeln!(out, "converges in {} frames", plan.convergence.fresh);
+    }
     let _ = writeln!(out, "\nmemory, MiB");
     let star = |res: Res| if plan.is_transient(res) { "*" } else { "" };
     let named = |res: Res| (format!("{}{}", graph.name_of(res), star(res)), plan.bytes_of(res));

@@ -1,27 +1,40 @@
 //! A graph that runs in a scene: frames, what changes between them, and what is read of them.
 
-use super::{Lab, LabError, ReusableParts, Session, Texels, no_texture, view};
+use super::{Lab, LabError, ReusableParts, Session, Texels, Viewpoint, no_texture, view};
 use crate::experiment::PlacedCamera;
+use crate::graph::Evaluated;
 use crate::graph::link::{Layouts, runs, table};
 use crate::graph::param::Params;
 use crate::graph::plan::plan;
 use crate::graph::run::{FrameTimes, Redo};
 use crate::graph::table::Table;
-use crate::graph::{Evaluated, Res};
 use crate::scene::{Camera, Light};
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
-/// Frames until what graphs gather over frames has settled, near enough to be looked at.
-const SETTLE: usize = 32;
 
 impl Session {
-    /// Frames until a picture has settled: 1 where no frame uses what the frame before left.
-    pub fn settling_frames(&self) -> usize {
-        let history =
-            self.program.plan.steps.iter().flat_map(|s| &s.uses).any(|u| matches!(u.res, Res::Texture(_, true)));
-        if history { SETTLE } else { 1 }
+    /// Frames from a fresh start until the picture has converged; 1 if no pass gathers over frames.
+    pub fn converging_frames(&self) -> usize {
+        self.program.plan.convergence.fresh as usize
+    }
+
+    /// Frames after which the picture has converged once something but the camera changed, at most.
+    pub fn frames_after_change(&self) -> usize {
+        self.program.plan.convergence.changed as usize
+    }
+
+    /// Forgets what frames left: the next frame is like the first one of a new session. Returns the times of the frames
+    /// that finished meanwhile.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn restart(&mut self) -> Result<Vec<FrameTimes>, LabError> {
+        let finished = self.program.restart()?;
+        self.viewpoint = Viewpoint::new(&self.viewpoint.camera);
+        (self.frame, self.still_frames, self.sent_params) = (0, 0, false);
+        Ok(finished)
     }
 
     /// Parts for the session that will replace this one; this one runs on until then.
@@ -73,12 +86,13 @@ impl Session {
             return Ok(false);
         }
         let mut plan = plan(&set, &self.linked, &self.wanted, &lab.gpu.info).map_err(LabError::Input)?;
-        // When passes rest is nothing that anything is made by.
+        // No resource or pipeline depends on when passes rest or converge.
         let settling = std::mem::replace(&mut plan.settling, self.program.plan.settling.clone());
+        let convergence = std::mem::replace(&mut plan.convergence, self.program.plan.convergence);
         if plan != self.program.plan {
             return Ok(false);
         }
-        self.program.plan.settling = settling;
+        (self.program.plan.settling, self.program.plan.convergence) = (settling, convergence);
         self.params = params.clone();
         self.values = set.values;
         self.sent_params = false;

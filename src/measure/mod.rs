@@ -24,7 +24,8 @@ use std::sync::Arc;
 /// Frames of a measurement: warm-up and measured ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Frames {
-    /// Frames that run first, at least ([`WarmUp`]): caches fill, clocks rise, and what gathers over time settles.
+    /// Frames that run first, at least ([`WarmUp`]): caches fill and clocks rise. More run if the picture has not
+    /// converged by the last frame measured.
     pub warmup: usize,
     /// Frames measured, at least 1.
     pub count: usize,
@@ -183,7 +184,8 @@ pub fn timed(
     let shown = graph.output.clone().or_else(|| graph.hdr.clone());
     let wanted = shown.into_iter().chain(extra.iter().cloned()).collect();
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;
-    let warmup = WarmUp::of(&lab.gpu.info, frames.warmup)
+    let least = session.converging_frames().saturating_sub(frames.count);
+    let warmup = WarmUp::of(&lab.gpu.info, frames.warmup.max(least))
         .run(&mut || Ok::<_, LabError>(session.frame(0.0)?.map_or(0.0, |times| times.gpu_ms)))?;
     let mut times = Vec::new();
     for _ in 0..frames.count {
@@ -208,7 +210,7 @@ fn parts_alone(
     // The timed session's scene is on the device already: another upload of it would cost memory.
     let reuse = warm.scored.as_ref().filter(|s| Arc::ptr_eq(&s.0, scene)).map(|s| &s.1).or(warm.timed.as_ref());
     let mut session = lab.build(experiment, loaded, scene.clone(), wanted, reuse)?;
-    session.run(frames.warmup + frames.count)?;
+    session.run(session.converging_frames().max(frames.warmup + frames.count))?;
     let out = session.parts()?;
     warm.scored = Some((scene.clone(), session.share()));
     Ok(out)

@@ -33,9 +33,11 @@ impl Workbench {
         };
         let comparing = || self.comparing.then(|| ("comparing A and B".into(), self.sent_at));
         // Light that gathers over frames goes on after the first picture.
-        let finished = self.sides.iter().filter_map(|s| s.picture.as_ref()).map(|p| p.finished).max();
-        let settling =
-            || Some(("the next frame of light that settles".into(), finished.filter(|_| self.engine.works())?));
-        of(0).or_else(|| of(1)).or_else(comparing).or_else(settling)
+        let pictures = || self.sides.iter().filter_map(|s| s.picture.as_ref());
+        let finished = pictures().map(|p| p.finished).max().filter(|_| self.engine.works());
+        let slowest = pictures().max_by_key(|p| p.left);
+        let frame = slowest.map_or((0, 0), |p| (p.asked.saturating_sub(p.left), p.asked));
+        let converging = || finished.map(|since| (format!("converging, frame {} of {}", frame.0, frame.1), since));
+        of(0).or_else(|| of(1)).or_else(comparing).or_else(converging)
     }
 }

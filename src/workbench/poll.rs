@@ -94,6 +94,7 @@ impl Workbench {
             Report::Set { side, .. } => {
                 self.mended(side);
             }
+            Report::Restarted => self.times.restarted(),
             Report::Picture(picture) => self.picture_came(picture),
             Report::Pixels { side, frame, bytes } => {
                 let Some(picture) = self.sides[side].picture.as_mut().filter(|p| p.frame == frame) else { return };

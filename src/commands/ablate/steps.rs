@@ -60,7 +60,7 @@ pub fn run(args: &AblateArgs) -> Result<(), LabError> {
         }
         let wanted = names.iter().map(|n| n.texture.clone()).collect();
         let mut session = lab.build(&set, &loaded, scene.clone(), wanted, None)?;
-        session.run(args.frames.unwrap_or(session.settling_frames()))?;
+        session.run(args.frames.unwrap_or(session.converging_frames()))?;
         let parts = session.parts()?;
         if let Some(folder) = &args.pictures {
             for (part, light) in &parts {

@@ -95,7 +95,7 @@ impl<'a> Sources<'a> {
         for warning in warnings {
             warn!("{warning}");
         }
-        session.run(self.frames.unwrap_or(session.settling_frames()))?;
+        session.run(self.frames.unwrap_or(session.converging_frames()))?;
         for message in session.failed_checks()? {
             warn!("warning: {}: {message}", path.display());
         }

@@ -41,6 +41,8 @@ pub struct Group {
     pub when: Option<Ex>,
     /// Frames after which they rest; see [`PassDecl::settles`].
     pub settles: Option<Ex>,
+    /// Frames after which they have converged; see [`PassDecl::converges`].
+    pub converges: Option<Ex>,
     /// The passes, or groups again.
     pub passes: Items<PassItem>,
 }
@@ -55,6 +57,7 @@ pub fn ungrouped(items: Items<PassItem>) -> Vec<Loc<PassDecl>> {
                 pass.value.stage = pass.value.stage.take().or_else(|| group.stage.clone());
                 pass.value.outer.splice(0..0, group.when.clone());
                 pass.value.settles = pass.value.settles.take().or_else(|| group.settles.clone());
+                pass.value.converges = pass.value.converges.take().or_else(|| group.converges.clone());
             }
             passes
         }
@@ -86,6 +89,9 @@ pub struct PassDecl {
     /// It gathers over frames, and rests once nothing has changed for so many but what it leaves to itself. Those of a group
     /// rest together.
     pub settles: Option<Ex>,
+    /// Frames from a fresh start until what it gathers over frames has converged; as many as `settles` when absent. The
+    /// passes of a group count once.
+    pub converges: Option<Ex>,
     /// Shader files.
     #[serde(default)]
     pub shaders: Items<String>,
@@ -133,6 +139,11 @@ impl PassDecl {
         self.outer.iter().chain(&self.own)
     }
 
+    /// The expressions that count frames.
+    pub fn over_frames(&self) -> impl Iterator<Item = &Ex> {
+        self.settles.iter().chain(&self.converges)
+    }
+
     /// What tables of times count it under.
     pub fn stage(&self) -> &str {
         self.stage.as_deref().unwrap_or(&self.name.value)
@@ -154,7 +165,8 @@ impl PassDecl {
 
     /// All its expressions.
     pub fn expressions(&self) -> Vec<&Ex> {
-        let mut list: Vec<&Ex> = self.conditions().chain(&self.settles).chain(&self.repeat).chain(&self.mip).collect();
+        let mut list: Vec<&Ex> =
+            self.conditions().chain(self.over_frames()).chain(&self.repeat).chain(&self.mip).collect();
         if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = self.dispatch.as_ref().map(|d| &d.value) {
             list.extend([x, y, z]);
         }

@@ -19,7 +19,7 @@ impl Check<'_> {
                 format!("pass '{name}' does several things: dispatch, draw, clear and copy exclude each other"),
             ),
         }
-        self.exprs(pass.conditions().chain(&pass.settles).chain(&pass.repeat).chain(&pass.mip));
+        self.exprs(pass.conditions().chain(pass.over_frames()).chain(&pass.repeat).chain(&pass.mip));
         if pass.repeat.is_some() && pass.each_mip.is_some() {
             self.error(at, format!("pass '{name}' has both repeat and each_mip"));
         }

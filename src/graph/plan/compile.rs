@@ -1,10 +1,10 @@
 //! A frame's plan, from sizes over steps to what is left of them.
 
-use super::data::{BufferPlan, Plan, Step, TexturePlan};
+use super::data::{BufferPlan, Convergence, Plan, Step, TexturePlan};
 use super::numbers::Numbers;
 use super::steps::Planner;
 use super::uses::{Use, UseKind, merge};
-use super::{layout, live, needs, settle, sizes, transient};
+use super::{converge, layout, live, needs, settle, sizes, transient};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::graph::definition::Res;
 use crate::graph::evaluated::Evaluated;
@@ -40,7 +40,7 @@ pub fn plan(
     }
     let mut buffers = sizes::buffers(&mut numbers, &layouts, wanted, device);
     let (mut steps, mut dropped) = (Vec::new(), Vec::new());
-    let mut settles = BTreeMap::new();
+    let (mut settles, mut converges) = (BTreeMap::new(), BTreeMap::new());
     // What passes write that are left out.
     let mut missing: Vec<Res> = Vec::new();
     let mut instead: Vec<(usize, usize)> = Vec::new();
@@ -64,6 +64,9 @@ pub fn plan(
         if let Some(ex) = &pass.value.settles {
             settles.insert(number, (ex.at, planner.numbers.count(ex, 1, "settles")));
         }
+        if let Some(ex) = &pass.value.converges {
+            converges.insert(number, (ex.at, planner.numbers.count(ex, 1, "converges")));
+        }
     }
     let mut numbers = planner.numbers;
     // The last first: of two filters that are off, who reads the second reads what the first would have read.
@@ -83,11 +86,12 @@ pub fn plan(
     if !numbers.errors.is_empty() {
         return Err(numbers.errors);
     }
-    let (settling, transients) = (Vec::new(), Vec::new());
-    let mut plan = Plan { textures, buffers, steps, settling, transients, missing, dropped, max_edge };
+    let (settling, convergence, transients) = (Vec::new(), Convergence::default(), Vec::new());
+    let mut plan = Plan { textures, buffers, steps, settling, convergence, transients, missing, dropped, max_edge };
     let mut errors = Vec::new();
     live::prune(graph, linked, &mut plan, wanted);
     layout::layouts(graph, &mut plan, &mut errors);
+    plan.convergence = converge::frames(&plan, &settles, &converges);
     match settle::find(graph, &plan, &settles) {
         Ok(settling) => plan.settling = settling,
         Err(found) => errors.extend(found),

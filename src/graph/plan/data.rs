@@ -160,6 +160,8 @@ pub struct Plan {
     pub steps: Vec<Step>,
     /// Those that gather over frames.
     pub settling: Vec<Settling>,
+    /// Frames until the picture has converged.
+    pub convergence: Convergence,
     /// What shares memory.
     pub transients: Vec<Transient>,
     /// What passes write that are off: it begins with zeros, whatever another program left in it.
@@ -168,6 +170,15 @@ pub struct Plan {
     pub dropped: Vec<(usize, String)>,
     /// Edge length above which triangles must be split, if needed.
     pub max_edge: Option<f64>,
+}
+
+/// Frames until everything that passes gather over frames has converged, one group of passes after the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Convergence {
+    /// From a fresh start; 1 if no pass gathers over frames.
+    pub fresh: u32,
+    /// After a change while frames go on, at most: passes replace what they gathered before it.
+    pub changed: u32,
 }
 
 /// Steps that rest together.

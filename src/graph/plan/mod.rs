@@ -1,6 +1,7 @@
 //! From a graph and its shaders to what runs in a frame.
 
 mod compile;
+mod converge;
 mod data;
 mod layout;
 mod live;
@@ -15,7 +16,9 @@ mod transient;
 mod uses;
 
 pub use compile::plan;
-pub use data::{AttachmentPlan, BindingPlan, BufferPlan, Plan, Settling, Step, TexturePlan, Transient, Work};
+pub use data::{
+    AttachmentPlan, BindingPlan, BufferPlan, Convergence, Plan, Settling, Step, TexturePlan, Transient, Work,
+};
 pub use places::Places;
 pub use schedule::{Barrier, Schedule, schedule};
 pub use transient::pack;

@@ -1,6 +1,7 @@
 //! Passes that gather over frames: those that a `settles` names rest together once nothing has changed for so many frames but
 //! what they leave to themselves, and keep what they have. Which changes count follows from what they read.
 
+use super::converge::Declared;
 use super::data::{Plan, Settling, Step};
 use super::uses::{Use, parts};
 use crate::diagnostics::{At, Diagnostic};
@@ -11,11 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 ///
 /// # Errors
 /// Passes among them that meddle with what others write, or read it where it may be missing.
-pub(super) fn find(
-    graph: &Graph,
-    plan: &Plan,
-    frames: &BTreeMap<usize, (At, u32)>,
-) -> Result<Vec<Settling>, Vec<Diagnostic>> {
+pub(super) fn find(graph: &Graph, plan: &Plan, frames: &Declared) -> Result<Vec<Settling>, Vec<Diagnostic>> {
     let steps = &plan.steps;
     let mut groups: BTreeMap<At, (u32, Vec<usize>)> = BTreeMap::new();
     for (i, step) in steps.iter().enumerate() {

@@ -303,6 +303,26 @@ impl Program {
         }
     }
 
+    /// Forgets everything that frames left, as if none had run.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn restart(&mut self) -> Result<Vec<FrameTimes>> {
+        let finished = self.finish_all()?;
+        (self.frame, self.ran, self.contents) = (0, 0, None);
+        self.set_redo(self.redo);
+        self.resting.clone_from(&self.schedule.ends[1]);
+        self.initialise(&Parts::default())?;
+        Ok(finished)
+    }
+
+    /// Whether all passes that gather over frames rest: further frames make the same picture until something changes.
+    pub fn is_at_rest(&self) -> bool {
+        let frames = self.plan.settling.iter().fold(0, |sum: u32, group| sum.saturating_add(group.frames));
+        let declared = frames > 0 && frames == self.plan.convergence.changed;
+        declared && self.contents.as_ref().is_some_and(|contents| contents.is_at_rest(&self.plan))
+    }
+
     /// What frames do.
     pub fn redo(&self) -> Redo {
         self.redo

@@ -234,6 +234,11 @@ impl Contents {
         frame
     }
 
+    /// Whether every group of steps that settles rests from the next frame on, unless something changes.
+    pub(super) fn is_at_rest(&self, plan: &Plan) -> bool {
+        plan.settling.iter().zip(&self.still).all(|(group, still)| still.frames >= group.frames)
+    }
+
     fn walk(&self, plan: &Plan, flow: &Flow, resting: &[bool]) -> Walk {
         let mut now = self.held.clone();
         let mut inputs: Vec<Vec<u64>> = vec![Vec::new(); plan.settling.len()];

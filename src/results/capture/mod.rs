@@ -68,7 +68,7 @@ fn render(
         chosen = wanted(graph)?;
         Ok(chosen.iter().map(|i| i.texture.clone()).collect())
     })?;
-    let frames = frames.unwrap_or(if step == 0.0 { session.settling_frames() } else { 1 });
+    let frames = frames.unwrap_or(if step == 0.0 { session.converging_frames() } else { 1 });
     let mut times = Vec::new();
     for _ in 0..frames {
         times.extend(session.frame(step)?);

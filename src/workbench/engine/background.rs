@@ -29,7 +29,7 @@ impl Run<'_> {
             experiment: save::still(&self.desired, desired, "error", self.clock.now, scene),
             scene: scene.clone(),
             lights: self.desired.lights.clone(),
-            frames: session.settling_frames(),
+            frames: session.converging_frames(),
         };
         let _ = self.error_requests.send(request);
     }

@@ -1,5 +1,6 @@
 //! Frames that are left to render, and the reports about them.
 
+use super::converge::Need;
 use super::renderdoc;
 use super::report::{PictureReport, Report};
 use super::{LONG, Run, Submitted};
@@ -18,6 +19,7 @@ impl Run<'_> {
         if self.awaits_build() {
             return Ok(());
         }
+        self.restart_together()?;
         let stepping = self.tick();
         let rest = !(self.desired.continuous || stepping);
         if !rest && self.is_ahead() && self.last_rendered.elapsed() < UNSEEN {
@@ -57,7 +59,7 @@ impl Run<'_> {
         if clock.steps != self.clock.steps {
             self.clock.now += clock.step.unwrap_or(1.0 / 60.0) * clock.steps.saturating_sub(self.clock.steps) as f64;
             self.clock.steps = clock.steps;
-            self.request_frames(1);
+            self.request_frames(Need::Light);
         }
         goes
     }
@@ -93,7 +95,8 @@ impl Run<'_> {
         session.program.read_back(self.desired.bytes || !shares);
         session.program.hand_over(shared);
         let mut finished: Vec<FrameTimes> = session.frame(delta)?.into_iter().collect();
-        side.frames_left -= 1;
+        self.count_frame(number);
+        let side = &mut self.sides[number];
         if !rest {
             side.frames_left = side.frames_left.max(1);
         }
@@ -101,6 +104,7 @@ impl Run<'_> {
         // for the next change.
         let waits = side.frames_left == 0 || captured.is_some() || self.waited;
         let ahead = u64::from(!(software || side.last_ms > LONG || waits));
+        let Some(session) = &mut side.session else { return Ok(()) };
         finished.extend(session.program.finish_to(ahead)?);
         if let Some(begun) = captured {
             self.out.send(Report::Trouble(renderdoc::end(begun)));
@@ -124,6 +128,8 @@ impl Run<'_> {
                 preview: side.preview,
                 frame: submitted.frame,
                 finished: Instant::now(),
+                left: side.frames_left,
+                asked: side.frames_asked,
                 time: submitted.time,
                 size: submitted.size.into(),
                 bytes,

@@ -6,6 +6,7 @@
 
 mod background;
 mod builder;
+mod converge;
 pub mod error_worker;
 mod frames;
 pub(crate) mod guard;
@@ -23,6 +24,7 @@ use crate::scene::{Scene, SceneError};
 use crate::vulkan::GpuOptions;
 use crate::workbench::desired::request::{InspectTarget, RenderRequest};
 use builder::{Done, Job, Key};
+use converge::Need;
 use crossbeam_channel::{Receiver, Sender, select, unbounded};
 use error_worker::{ErrorQuery, ErrorRequest};
 use pulse::Pulse;
@@ -182,8 +184,14 @@ struct Side {
     last_ms: f64,
     /// The last request that the session, or the failure to build one, answers.
     answered: u64,
-    /// Frames still to render before the side rests.
+    /// Frames still to render until its picture has converged.
     frames_left: u32,
+    /// Of these, frames that are rendered even if the picture has converged before.
+    least_left: u32,
+    /// Frames that were left when they were last asked for.
+    frames_asked: u32,
+    /// Whether no frame has run since its histories were empty.
+    fresh: bool,
     lights: bool,
     checked: Option<Key>,
     inspected: Option<InspectTarget>,
@@ -212,6 +220,8 @@ struct Run<'a> {
     loaded: Sender<Result<Arc<Scene>, SceneError>>,
     clock: Clocked,
     turn: usize,
+    /// Whether A and B start anew together once both show what is requested.
+    restarts: bool,
     renderdoc: bool,
     last_read_back: Instant,
     last_rendered: Instant,
@@ -303,6 +313,7 @@ fn session(
         loaded: loaded_out,
         clock: Clocked { now: 0.0, last: Instant::now(), steps: 0, jumps: 0 },
         turn: 0,
+        restarts: false,
         renderdoc: false,
         last_read_back: Instant::now(),
         last_rendered: Instant::now(),
@@ -395,10 +406,10 @@ impl Run<'_> {
                 }
                 Order::Capture(side, name, resources, timers) => self.capture(side, name, resources, timers),
                 Order::MeasureError(side, query) => self.measure_error(side, query),
-                Order::Frames(count) => self.request_frames(count),
+                Order::Frames(count) => self.request_frames(Need::Frames(count)),
                 Order::RenderDoc => {
                     self.renderdoc = true;
-                    self.request_frames(1);
+                    self.request_frames(Need::Frames(1));
                 }
                 Order::Reconcile | Order::Quit | Order::Restart => {}
             }
@@ -426,6 +437,7 @@ impl Run<'_> {
                 side.lights = true;
             }
         }
+        let unseen_sides = RenderRequest { sides: old.sides.clone(), ..RenderRequest::default() };
         // Files, parameters and sizes ask for frames when what they lead to has been built. While another scene is loaded,
         // and when it cannot be, the one before answers.
         let new = &self.desired;
@@ -438,8 +450,15 @@ impl Run<'_> {
             bytes: new.bytes,
             ..old
         };
-        if unseen != self.desired {
-            self.request_frames(1);
+        let need = Need::between(&unseen, &self.desired);
+        let pairs = |request: &RenderRequest| match &request.sides {
+            [Some(a), Some(b)] => Some(a == b),
+            _ => None,
+        };
+        let (before, now) = (pairs(&unseen_sides), pairs(&self.desired));
+        self.restarts |= now.is_some() && (before.is_none() || now == Some(true) && before == Some(false));
+        if let Some(need) = need {
+            self.request_frames(need);
         }
         for i in 0..2 {
             if self.desired.sides[i].is_none() {
@@ -451,14 +470,6 @@ impl Run<'_> {
             self.reconcile(i)?;
         }
         Ok(())
-    }
-
-    /// Asks for frames: as many as it takes until graphs with history have settled.
-    fn request_frames(&mut self, least: u32) {
-        for side in &mut self.sides {
-            let settle = side.session.as_ref().map_or(1, |s| s.settling_frames()) as u32;
-            side.frames_left = side.frames_left.max(least.max(settle));
-        }
     }
 }
 

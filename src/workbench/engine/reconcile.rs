@@ -2,6 +2,7 @@
 
 use super::Run;
 use super::builder::{Done, Job, Key};
+use super::converge::Need;
 use super::report::{GraphInfo, PassUses, Report};
 use crate::diagnostics::{Diagnostic, Place};
 use crate::lab::{LabError, Loaded, Session, params_of};
@@ -66,7 +67,8 @@ impl Run<'_> {
                     side.failed = None;
                     side.answered = self.number;
                     self.out.send(Report::Set { side: number, params });
-                    self.request_frames(1);
+                    self.request_frames_of(1 - number, Need::Frames(1));
+                    self.request_frames_of(number, Need::Light);
                     return Ok(());
                 }
                 Ok(None) => {}
@@ -108,6 +110,8 @@ impl Run<'_> {
         match done.result {
             Ok((mut session, loaded)) => {
                 let side = &mut self.sides[number];
+                side.fresh = side.fresh || side.session.is_none() || side.preview;
+                let need = side.key.as_ref().map_or(Need::Light, |key| need(key, &done.key));
                 if let Some(mut old) = side.session.take() {
                     let finished = old.finish()?;
                     self.report_frames(number, finished);
@@ -132,7 +136,8 @@ impl Run<'_> {
                     let info = Arc::new(info);
                     self.out.send(Report::Built { side: number, info, change, ms, revision, objects });
                 }
-                self.request_frames(1);
+                self.request_frames_of(1 - number, Need::Frames(1));
+                self.request_frames_of(number, need);
             }
             Err(error) if done.preview => {
                 // Whatever is wrong will be said by the graph itself; here is none to fall back to.
@@ -168,6 +173,12 @@ impl Run<'_> {
         self.out.send(Report::Failed { side: number, diagnostics, revision });
         Ok(())
     }
+}
+
+/// What a build needs that takes the place of another one.
+fn need(old: &Key, new: &Key) -> Need {
+    let same = Key { size: new.size, wanted: new.wanted.clone(), ..old.clone() };
+    if same == *new { Need::View } else { Need::Light }
 }
 
 fn info(session: &Session, loaded: &Loaded) -> GraphInfo {

@@ -81,6 +81,10 @@ pub struct PictureReport {
     pub frame: u64,
     /// When it was finished, as the engine saw it.
     pub finished: Instant,
+    /// Frames that follow until the picture has converged, at most.
+    pub left: u32,
+    /// Frames from the change until the picture has converged, at most.
+    pub asked: u32,
     /// Time of the scene, s.
     pub time: f64,
     /// Width and height.
@@ -134,6 +138,8 @@ pub enum Report {
         /// The values.
         params: Params,
     },
+    /// A and B start anew together: their pictures and times so far are not of the same frames.
+    Restarted,
     /// A frame has finished.
     Picture(PictureReport),
     /// The pixels of a side's frame, now in main memory too.

@@ -74,6 +74,14 @@ impl Times {
         }
     }
 
+    /// A and B start anew together.
+    pub fn restarted(&mut self) {
+        for side in &mut self.sides {
+            *side = History::new(std::mem::take(&mut side.passes));
+        }
+        (self.made, self.medians) = (None, [None, None]);
+    }
+
     /// Median times of a side. They are worked out anew as often as the table, so that a frame of the interface does not sort the
     /// times of every pass.
     pub fn medians(&mut self, ui: &egui::Context, side: usize) -> Arc<Medians> {

@@ -1,0 +1,96 @@
+//! How many frames each side needs until its picture has converged.
+
+use super::Run;
+use super::report::Report;
+use crate::lab::LabError;
+use crate::workbench::desired::request::RenderRequest;
+
+/// Frames that a change needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Need {
+    /// So many, whether or not they change the picture.
+    Frames(u32),
+    /// As many as from a fresh start: voxels keep what they have gathered, and pixels gather anew.
+    View,
+    /// As many as it takes to replace all that was gathered before.
+    Light,
+}
+
+impl Need {
+    /// What a new request needs; nothing if both are the same.
+    pub(super) fn between(old: &RenderRequest, new: &RenderRequest) -> Option<Need> {
+        if old == new {
+            return None;
+        }
+        let lit = |r: &RenderRequest| (r.lights.clone(), r.clock, r.environment.clone(), r.scene.clone());
+        Some(match () {
+            () if lit(old) != lit(new) => Need::Light,
+            () if (&old.camera, &old.path) != (&new.camera, &new.path) => Need::View,
+            () => Need::Frames(1),
+        })
+    }
+}
+
+impl Run<'_> {
+    /// Asks both sides for frames.
+    pub(super) fn request_frames(&mut self, need: Need) {
+        (0..2).for_each(|number| self.request_frames_of(number, need));
+    }
+
+    /// Asks a side for the frames that it needs.
+    pub(super) fn request_frames_of(&mut self, number: usize, need: Need) {
+        let side = &mut self.sides[number];
+        let session = side.session.as_ref();
+        let (fresh, changed) = session.map_or((1, 1), |s| (s.converging_frames(), s.frames_after_change()));
+        let count = |frames: usize| u32::try_from(frames).unwrap_or(u32::MAX);
+        let frames = match need {
+            Need::Frames(least) if !side.fresh => least,
+            Need::Frames(least) => least.max(count(fresh)),
+            Need::Light if !side.fresh => count(changed),
+            Need::View | Need::Light => count(fresh),
+        };
+        if frames >= side.frames_left {
+            (side.frames_left, side.frames_asked) = (frames, frames);
+        }
+        side.least_left = side.least_left.max(if let Need::Frames(least) = need { least } else { 1 });
+    }
+
+    /// Counts a frame that a side has begun. Frames after which the picture cannot change any more are left out.
+    pub(super) fn count_frame(&mut self, number: usize) {
+        let side = &mut self.sides[number];
+        side.fresh = false;
+        side.least_left = side.least_left.saturating_sub(1);
+        side.frames_left = side.frames_left.saturating_sub(1);
+        if side.session.as_ref().is_some_and(|s| s.program.is_at_rest()) {
+            side.frames_left = side.frames_left.min(side.least_left);
+        }
+    }
+
+    /// Starts A and B anew together when both show what is requested, so that equal settings give equal pictures and the
+    /// times of both are of the same frames.
+    pub(super) fn restart_together(&mut self) -> Result<(), LabError> {
+        let shows = |number: usize| {
+            let side = &self.sides[number];
+            let desired = self.desired.sides[number].as_ref();
+            side.session.is_some() && desired.is_some_and(|d| side.key.as_ref() == Some(&self.key(d, number)))
+        };
+        if !self.restarts || !(shows(0) && shows(1)) {
+            return Ok(());
+        }
+        self.restarts = false;
+        for number in 0..2 {
+            let Some(session) = &mut self.sides[number].session else { continue };
+            let finished = session.restart()?;
+            self.report_frames(number, finished);
+            let side = &mut self.sides[number];
+            (side.fresh, side.lights) = (true, true);
+        }
+        self.out.send(Report::Restarted);
+        self.request_frames(Need::Light);
+        let most = self.sides[0].frames_left.max(self.sides[1].frames_left);
+        for side in &mut self.sides {
+            (side.frames_left, side.frames_asked, side.least_left) = (most, most, most);
+        }
+        Ok(())
+    }
+}
