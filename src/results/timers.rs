@@ -42,8 +42,12 @@ pub struct Timers {
     pub rows: Vec<(String, f64)>,
     /// First to last command on the GPU, ms.
     pub total: f64,
+    /// What the times are over several frames.
+    pub statistic: &'static str,
 }
 
+/// What follows the name of a pass that was skipped.
+const SKIPPED: &str = " (skipped)";
 const WIDTH: f32 = 226.0;
 const LINE: f32 = 14.0;
 const MARGIN: f32 = 6.0;
@@ -71,7 +75,16 @@ impl Timers {
             title.push(format!("off: {}", params.off.join(", ")));
         }
         let total = rows.iter().map(|r: &(String, f64)| r.1).sum();
-        Timers { title, rows, total }
+        Timers { title, rows, total, statistic: "median" }
+    }
+
+    /// Marks the rows of passes that were skipped, by their numbers.
+    pub fn mark_skipped(&mut self, graph: &Graph, numbers: &[usize]) {
+        let name = |number: &usize| graph.passes.get(*number).map(|p| p.value.name.value.as_str());
+        let skipped: Vec<&str> = numbers.iter().filter_map(name).collect();
+        for row in self.rows.iter_mut().filter(|row| skipped.contains(&row.0.as_str())) {
+            row.0.push_str(SKIPPED);
+        }
     }
 
     /// The longest of its times, ms: that of the longest bar.
@@ -101,13 +114,19 @@ pub fn draw(painter: &Painter, picture: Rect, right: bool, timers: &Timers, long
         painter.text(at.right_center(), Align2::RIGHT_CENTER, format!("{ms:.3}"), numbers.clone(), color);
     };
     let total = line(timers.title.len() as f32);
-    painter.text(total.left_center(), Align2::LEFT_CENTER, "GPU ms, median", font.clone(), Color32::WHITE);
+    painter.text(
+        total.left_center(),
+        Align2::LEFT_CENTER,
+        format!("GPU ms, {}", timers.statistic),
+        font.clone(),
+        Color32::WHITE,
+    );
     number(total, timers.total, Color32::WHITE);
     for (i, (name, ms)) in rows.iter().enumerate() {
         let at = line(lines + i as f32);
         let part = if longest > 0.0 { (ms / longest).clamp(0.0, 1.0) as f32 } else { 0.0 };
         let bar = Rect::from_min_size(at.min + Vec2::new(0.0, 1.0), Vec2::new(at.width() * part, LINE - 2.0));
-        painter.rect_filled(bar, 1.0, color(name).gamma_multiply(0.55));
+        painter.rect_filled(bar, 1.0, color(name.trim_end_matches(SKIPPED)).gamma_multiply(0.55));
         let names = Rect::from_min_max(at.min, Pos2::new(at.right() - 44.0, at.bottom()));
         painter.with_clip_rect(names.intersect(painter.clip_rect())).text(
             at.left_center() + Vec2::new(3.0, 0.0),

@@ -70,6 +70,8 @@ impl Workbench {
         while let Ok((side, of, found)) = self.effects.made.1.try_recv() {
             self.effects.working = false;
             self.effects.known[side] = Some((of, found));
+            // The panel may be painted already, and nothing else may ask for another frame.
+            ui.ctx().request_repaint();
         }
         let same = |a: &Of, b: &Of| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1;
         let unknown = [0, 1].map(|side| {
@@ -78,7 +80,10 @@ impl Workbench {
             (!is_known).then_some((side, of))
         });
         // What is asked for and does not run yet counts as unknown too.
-        self.effects.old = [0, 1].map(|side| unknown[side].is_some() || self.sides[side].behind(self.sent_number));
+        let old = [0, 1].map(|side| unknown[side].is_some() || self.sides[side].behind(self.sent_number));
+        if std::mem::replace(&mut self.effects.old, old) != old {
+            ui.ctx().request_repaint();
+        }
         let outdated = unknown.into_iter().flatten().next();
         let Some((side, of)) = outdated else {
             self.effects.waiting = None;

@@ -21,20 +21,22 @@ impl Workbench {
     }
 
     fn timers_of(&mut self, context: &egui::Context, side: usize) -> Timers {
-        let medians = self.times.medians(context, side);
+        let both = self.desired.sides[1].is_some();
+        let means = self.times.means(context, side, both);
         let (Some(info), Some(picture)) = (&self.sides[side].info, &self.sides[side].picture) else {
             return Timers::default();
         };
         let device = self.device.as_ref().map_or("", |d| d.name.as_str());
-        let mut timers =
-            Timers::new(self.view.timers, &info.graph, &info.params, device, picture.size, &medians.passes);
+        let mut timers = Timers::new(self.view.timers, &info.graph, &info.params, device, picture.size, &means.passes);
+        timers.mark_skipped(&info.graph, &means.rests);
+        timers.rows.push((means.outside.0.into(), means.outside.1));
         if self.desired.sides[1].is_some() {
             timers.title[0].insert_str(0, ["A: ", "B: "][side.min(1)]);
         }
         if let Some((metric, error)) = self.chart.known_error(side, self.sent_number) {
             timers.title.push(format!("{metric} {error:.3e}"));
         }
-        timers.total = medians.total;
+        (timers.total, timers.statistic) = (means.total, "mean");
         timers
     }
 }

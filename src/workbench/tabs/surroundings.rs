@@ -130,7 +130,10 @@ impl Workbench {
             ui.add(egui::Slider::new(rotation, 0.0..=360.0).suffix(" deg").text("rotation"));
             intensity(ui, sky);
         }
-        self.picture_file(ui);
+        if self.picture_file(ui) {
+            // What is shown here belongs to the sky before.
+            return;
+        }
         for (i, light) in lights.iter_mut().enumerate() {
             let name = if light.name.is_empty() { format!("light {}", i + 1) } else { light.name.clone() };
             egui::CollapsingHeader::new(name).id_salt(("light", i)).default_open(i < 3).show(ui, |ui| one(ui, light));
@@ -143,22 +146,25 @@ impl Workbench {
         }
     }
 
-    /// Another picture for the sky, by its file's name.
-    fn picture_file(&mut self, ui: &mut Ui) {
+    /// Another picture for the sky, by its file's name. Whether one was asked for: the scene's light is not edited then.
+    fn picture_file(&mut self, ui: &mut Ui) -> bool {
         ui.horizontal(|ui| {
             let field = egui::TextEdit::singleline(&mut self.view.picture).hint_text("sky.hdr or sky.exr");
             let field = ui.add(field.desired_width(180.0));
             crate::workbench::panel::control::named(&field, egui::WidgetType::TextEdit, "picture of the sky");
             let done = field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
             let clicked = ui.button("load").on_hover_text("A picture of the sky; empty: the scene's own").clicked();
-            if (done || clicked) && self.view.picture.trim() != self.desired.environment {
+            let asked = (done || clicked) && self.view.picture.trim() != self.desired.environment;
+            if asked {
                 if self.missing_scene().is_none() {
                     self.before_loading = Some(self.state());
                 }
                 self.desired.environment = self.view.picture.trim().into();
                 self.desired.lights = None;
             }
-        });
+            asked
+        })
+        .inner
     }
 }
 

@@ -76,7 +76,7 @@ impl Workbench {
             ui.weak(self.waiting_text());
             return;
         };
-        let times = self.times.medians(ui.ctx(), side);
+        let times = self.times.means(ui.ctx(), side, self.desired.sides[1].is_some());
         let chosen = self.nodes.chosen.clone();
         let response = ui.allocate_response(ui.available_size(), Sense::click_and_drag());
         let area = response.rect;
@@ -195,7 +195,7 @@ impl Workbench {
     /// All passes, or those that are searched for: what runs with its time, the others with why not.
     fn pass_list(&mut self, ui: &mut Ui, side: usize, info: &Arc<GraphInfo>) {
         let needle = folded(&self.nodes.search);
-        let times = self.times.medians(ui.ctx(), side);
+        let times = self.times.means(ui.ctx(), side, self.desired.sides[1].is_some());
         let mut found = None;
         for (number, pass) in info.graph.passes.iter().enumerate() {
             let name = &pass.value.name.value;
@@ -240,7 +240,9 @@ impl Workbench {
         let pass = &info.graph.passes[number].value;
         ui.strong(name);
         ui.label(format!("stage: {}", pass.stage()));
-        if let Some((_, ms)) = self.times.medians(ui.ctx(), side).passes.iter().find(|t| t.0 == number) {
+        if let Some((_, ms)) =
+            self.times.means(ui.ctx(), side, self.desired.sides[1].is_some()).passes.iter().find(|t| t.0 == number)
+        {
             ui.label(format!("{ms:.3} ms (median)"));
         }
         let mut needed = None;

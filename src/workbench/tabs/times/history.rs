@@ -1,6 +1,6 @@
 //! The times of the last frames, and what they say as a table.
 
-use crate::results::stats::{Spread, spread};
+use crate::results::stats::spread;
 use crate::workbench::engine::report::PictureReport;
 use std::collections::VecDeque;
 
@@ -29,6 +29,11 @@ impl Frame {
     pub fn of(p: &PictureReport) -> Frame {
         let (passes, asleep) = (p.passes.clone(), p.asleep.clone());
         Frame { frame: p.frame, time: p.time, cpu_ms: p.cpu_ms, gpu_ms: p.gpu_ms, passes, asleep }
+    }
+
+    /// GPU time between the passes, ms.
+    pub fn outside(&self) -> f64 {
+        (self.gpu_ms - self.passes.iter().map(|p| p.1).sum::<f64>()).max(0.0)
     }
 
     /// Time of a pass, ms; a pass that ran several times has the sum.
@@ -63,6 +68,17 @@ impl History {
         self.changes += 1;
     }
 
+    /// The last so many frames.
+    fn last(&self, count: usize) -> impl Iterator<Item = &Frame> {
+        self.frames.iter().skip(self.frames.len().saturating_sub(count))
+    }
+
+    /// Mean time of the last so many frames, ms; none without frames.
+    pub fn mean(&self, count: usize, time: &dyn Fn(&Frame) -> f64) -> Option<f64> {
+        let count = count.min(self.frames.len());
+        (count > 0).then(|| self.last(count).map(time).sum::<f64>() / count as f64)
+    }
+
     /// The time that a chart should reach, ms: the 95th percentile and a bit, so that one slow frame flattens nothing.
     pub fn top(&self) -> f64 {
         let s = spread(self.frames.iter().map(|f| f.gpu_ms).collect());
@@ -76,16 +92,31 @@ pub struct Row {
     pub name: String,
     /// Whether it is a pass; else a total.
     pub is_pass: bool,
-    /// Times of A and B, ms.
-    pub spread: [Option<Spread>; 2],
+    /// Mean times of A and B, ms.
+    pub mean: [Option<f64>; 2],
     /// Whether it slept in the last frame of A, and in that of B.
     pub asleep: [bool; 2],
     /// Texts of the columns.
     pub cells: [String; 4],
 }
 
-/// The rows: the passes of A in order, those that only B has, and the totals. With B the columns are the median of A
-/// and B, B/A, and the share of A; else median, 95th percentile, share and maximum.
+impl Row {
+    /// The name, with a mark if the last frame skipped the pass.
+    pub fn title(&self, both: bool) -> String {
+        let skipped = match self.asleep {
+            [true, true] => " (skipped)",
+            [true, false] if both => " (A skipped)",
+            [true, false] => " (skipped)",
+            [false, true] => " (B skipped)",
+            [false, false] => "",
+        };
+        format!("{}{skipped}", self.name)
+    }
+}
+
+/// The rows: the passes of A in order, those that only B has, the rest of the GPU's time, and the totals. Means are used
+/// because they add up, and because passes that run once in several frames have a median of zero. With B the columns are
+/// the means of A and B over equally many frames, B/A, and the share of A; else mean, 95th percentile, share and maximum.
 pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let mut names: Vec<&str> = a.passes.iter().map(|p| p.1.as_str()).collect();
     for (_, name) in b.iter().flat_map(|b| &b.passes) {
@@ -96,28 +127,25 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let both = b.is_some();
     let none = History::default();
     let sides = [a, b.unwrap_or(&none)];
-    let values = |h: &History, f: &dyn Fn(&Frame) -> f64| -> Option<Vec<f64>> {
-        (!h.frames.is_empty()).then(|| h.frames.iter().map(f).collect())
-    };
-    let total = values(a, &|f| f.gpu_ms).map_or(0.0, |v| spread(v).median);
-    let row = |name: &str, is_pass: bool, lists: [Option<Vec<f64>>; 2]| {
-        let most = lists[0].iter().flatten().copied().fold(0.0, f64::max);
-        let spread = lists.map(|v| v.map(spread));
-        let share =
-            spread[0].filter(|_| total > 0.0 && name != CPU).map(|s| format!("{:.1}%", 100.0 * s.median / total));
+    let count = b.map_or(KEPT, |b| a.frames.len().min(b.frames.len()));
+    let total = a.mean(count, &|f| f.gpu_ms).unwrap_or(0.0);
+    let row = |name: &str, is_pass: bool, times: [Option<&dyn Fn(&Frame) -> f64>; 2]| {
+        let mean = [0, 1].map(|i| sides[i].mean(count, times[i]?));
+        let alone: Vec<f64> = times[0].iter().flat_map(|time| a.last(count).map(time)).collect();
+        let most = alone.iter().copied().fold(0.0, f64::max);
+        let share = mean[0].filter(|_| total > 0.0 && name != CPU).map(|ms| format!("{:.1}%", 100.0 * ms / total));
         let ms = |v: Option<f64>| v.map_or(String::new(), digits);
-        let median = spread.map(|s| s.map(|s| s.median));
-        let ratio = match median {
+        let ratio = match mean {
             [Some(a), Some(b)] if a > 0.0 => format!("{:.2}", b / a),
             _ => String::new(),
         };
         let share = share.unwrap_or_default();
         let cells = if both {
-            [ms(median[0]), ms(median[1]), ratio, share]
+            [ms(mean[0]), ms(mean[1]), ratio, share]
         } else {
-            [ms(median[0]), ms(spread[0].map(|s| s.p95)), share, ms(spread[0].map(|_| most))]
+            [ms(mean[0]), ms(mean[0].map(|_| spread(alone).p95)), share, ms(mean[0].map(|_| most))]
         };
-        Row { name: name.into(), is_pass, spread, asleep: [false; 2], cells }
+        Row { name: name.into(), is_pass, mean, asleep: [false; 2], cells }
     };
     let number = |h: &History, name: &str| h.passes.iter().find(|p| p.1 == name).map(|p| p.0);
     let slept = |h: &History, name: &str| {
@@ -125,11 +153,14 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     };
     let mut list: Vec<Row> = Vec::with_capacity(names.len() + 2);
     for name in names {
-        let times = sides.map(|h| number(h, name).and_then(|n| values(h, &|f| f.pass(n))));
+        let pass = sides.map(|h| number(h, name).map(|number| move |frame: &Frame| frame.pass(number)));
+        let times = [0, 1].map(|i| pass[i].as_ref().map(|time| time as &dyn Fn(&Frame) -> f64));
         list.push(Row { asleep: sides.map(|h| slept(h, name)), ..row(name, true, times) });
     }
-    list.push(row("GPU, first to last", false, sides.map(|h| values(h, &|f| f.gpu_ms))));
-    list.push(row(CPU, false, sides.map(|h| values(h, &|f| f.cpu_ms))));
+    let all = |time: &'static dyn Fn(&Frame) -> f64| [Some(time), both.then_some(time)];
+    list.push(row(OUTSIDE, false, all(&Frame::outside)));
+    list.push(row("GPU, first to last", false, all(&|f| f.gpu_ms)));
+    list.push(row(CPU, false, all(&|f| f.cpu_ms)));
     list
 }
 
@@ -142,6 +173,9 @@ fn digits(ms: f64) -> String {
         _ => format!("{ms:.3}"),
     }
 }
+
+/// The row of the GPU's time that no pass takes.
+pub const OUTSIDE: &str = "not in any pass";
 
 /// The row that is no part of the GPU's time.
 const CPU: &str = "CPU record, submit";
@@ -174,18 +208,32 @@ mod tests {
         let b = history(&["y", "z"], &[&[6.0, 2.0]]);
         let rows = rows(&a, Some(&b));
         let names: Vec<&str> = rows.iter().map(|r| r.name.as_str()).collect();
-        assert_eq!(names, ["x", "y", "z", "GPU, first to last", CPU]);
-        assert_eq!(rows[0].cells, ["1.000", "", "", "25.0%"]);
-        assert_eq!(rows[1].cells, ["3.000", "6.000", "2.00", "75.0%"]);
+        assert_eq!(names, ["x", "y", "z", OUTSIDE, "GPU, first to last", CPU]);
+        // B has one frame: it is compared with the last one of A.
+        assert_eq!(rows[0].cells, ["1.000", "", "", "16.7%"]);
+        assert_eq!(rows[1].cells, ["5.000", "6.000", "1.20", "83.3%"]);
         assert_eq!(rows[2].cells, ["", "2.000", "", ""]);
-        assert_eq!(rows[4].cells, ["1.000", "1.000", "1.00", ""]);
+        assert_eq!(rows[5].cells, ["1.000", "1.000", "1.00", ""]);
+    }
+
+    #[test]
+    fn rows_add_up_to_the_total_though_passes_run_in_turns() {
+        let mut h = history(&["always", "once in four"], &[]);
+        for i in 0..8 {
+            let passes = vec![(0, 1.0), (1, if i % 4 == 0 { 40.0 } else { 0.0 })];
+            h.push(Frame { gpu_ms: passes.iter().map(|p| p.1).sum::<f64>() + 0.5, passes, ..Frame::default() });
+        }
+        let rows = rows(&h, None);
+        let means: Vec<f64> = rows.iter().map(|r| r.mean[0].unwrap()).collect();
+        assert_eq!(means[..4], [1.0, 10.0, 0.5, 11.5], "{}", rows[2].name);
+        assert_eq!(means[..3].iter().sum::<f64>(), means[3]);
     }
 
     #[test]
     fn a_pass_sleeps_in_the_last_frame_or_not() {
         let mut h = history(&["x", "y"], &[&[1.0, 2.0]]);
         h.push(Frame { passes: vec![(0, 0.0), (1, 2.0)], asleep: vec![0], ..Frame::default() });
-        assert_eq!(rows(&h, None).iter().map(|r| r.asleep[0]).collect::<Vec<_>>(), [true, false, false, false]);
+        assert_eq!(rows(&h, None).iter().map(|r| r.asleep[0]).collect::<Vec<_>>(), [true, false, false, false, false]);
         h.push(Frame { passes: vec![(0, 1.0), (1, 2.0)], ..Frame::default() });
         assert!(rows(&h, None).iter().all(|r| !r.asleep[0]));
     }
@@ -199,7 +247,7 @@ mod tests {
     #[test]
     fn alone_it_says_how_times_spread() {
         let rows = rows(&history(&["x"], &[&[1.0], &[2.0], &[9.0]]), None);
-        assert_eq!(rows[0].cells, ["2.000", "9.000", "100.0%", "9.000"]);
+        assert_eq!(rows[0].cells, ["4.000", "9.000", "100.0%", "9.000"]);
         assert!(super::rows(&History::default(), None).iter().all(|r| r.cells.iter().all(String::is_empty)));
     }
 }

@@ -7,12 +7,11 @@ mod history;
 use super::Tab;
 use crate::files::FileError;
 use crate::graph::run::Redo;
-use crate::results::stats::spread;
 use crate::results::timers;
 use crate::workbench::Workbench;
 use crate::workbench::engine::report::{GraphInfo, PassUses, PictureReport};
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Sense, Ui, Vec2};
-use history::{Frame, History, Row};
+use history::{Frame, History, KEPT, OUTSIDE, Row};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -41,14 +40,18 @@ pub struct Times {
     /// Name of the pass under the pointer.
     hovered: Option<String>,
     /// Of how many changes of a side's history, and since when.
-    medians: [Option<(u64, Instant, Arc<Medians>)>; 2],
+    means: [Option<(u64, Instant, Arc<Means>)>; 2],
 }
 
-/// Median times of a side's last frames on the GPU.
+/// Mean times of a side's last frames on the GPU.
 #[derive(Default)]
-pub struct Medians {
+pub struct Means {
     /// (number, ms) of its passes, in order; none without frames.
     pub passes: Vec<(usize, f64)>,
+    /// Numbers of the passes that the last frame skipped.
+    pub rests: Vec<usize>,
+    /// Name and time of what no pass takes, ms.
+    pub outside: (&'static str, f64),
     /// From the first command to the last, ms.
     pub total: f64,
 }
@@ -66,7 +69,7 @@ impl Times {
     pub fn built(&mut self, side: usize, info: &GraphInfo) {
         let pass = |i: &usize| info.graph.passes.get(*i).map(|p| (*i, p.value.name.value.clone()));
         self.sides[side] = History::new(info.passes.iter().filter_map(pass).collect());
-        (self.made, self.medians[side]) = (None, None);
+        (self.made, self.means) = (None, [None, None]);
         if side == 0 {
             self.memory.clone_from(&info.memory);
             self.memory.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
@@ -79,14 +82,14 @@ impl Times {
         for side in &mut self.sides {
             *side = History::new(std::mem::take(&mut side.passes));
         }
-        (self.made, self.medians) = (None, [None, None]);
+        (self.made, self.means) = (None, [None, None]);
     }
 
-    /// Median times of a side. They are worked out anew as often as the table, so that a frame of the interface does not sort the
+    /// Mean times of a side. They are worked out anew as often as the table, so that a frame of the interface does not sort the
     /// times of every pass.
-    pub fn medians(&mut self, ui: &egui::Context, side: usize) -> Arc<Medians> {
+    pub fn means(&mut self, ui: &egui::Context, side: usize, both: bool) -> Arc<Means> {
         let history = &self.sides[side];
-        if let Some((changes, since, known)) = &self.medians[side] {
+        if let Some((changes, since, known)) = &self.means[side] {
             let age = since.elapsed();
             if *changes == history.changes {
                 return known.clone();
@@ -96,11 +99,15 @@ impl Times {
                 return known.clone();
             }
         }
-        let of = |time: &dyn Fn(&Frame) -> f64| spread(history.frames.iter().map(time).collect()).median;
-        let passes = history.passes.iter().filter(|_| !history.frames.is_empty());
-        let passes = passes.map(|p| (p.0, of(&|f| f.pass(p.0)))).collect();
-        let made = Arc::new(Medians { passes, total: of(&|f| f.gpu_ms) });
-        self.medians[side] = Some((history.changes, Instant::now(), made.clone()));
+        // Of equally many frames of both sides.
+        let count = if both { self.sides[0].frames.len().min(self.sides[1].frames.len()) } else { KEPT };
+        let of = |time: &dyn Fn(&Frame) -> f64| history.mean(count, time);
+        let passes = history.passes.iter().filter_map(|p| Some((p.0, of(&|f| f.pass(p.0))?))).collect();
+        let rests = history.frames.back().map_or(Vec::new(), |f| f.asleep.clone());
+        let total = of(&|f: &Frame| f.gpu_ms).unwrap_or(0.0);
+        let outside = (OUTSIDE, of(&Frame::outside).unwrap_or(0.0));
+        let made = Arc::new(Means { passes, rests, outside, total });
+        self.means[side] = Some((history.changes, Instant::now(), made.clone()));
         made
     }
 
@@ -145,7 +152,7 @@ impl Workbench {
                 if !row.is_pass || !response.hovered() {
                     continue;
                 }
-                let (side, name) = (usize::from(row.spread[0].is_none()), row.name.clone());
+                let (side, name) = (usize::from(row.mean[0].is_none()), row.name.clone());
                 if response.clicked() {
                     clicked = Some((side, name.clone()));
                 }
@@ -252,16 +259,16 @@ fn columns(both: bool) -> &'static [f32] {
 }
 
 fn head(ui: &mut Ui, both: bool) {
-    let names: [&str; 4] = if both { ["A ms", "B ms", "B/A", "A %"] } else { ["med. ms", "p95 ms", "share", "max ms"] };
+    let names: [&str; 4] = if both { ["A ms", "B ms", "B/A", "A %"] } else { ["mean ms", "p95 ms", "share", "max ms"] };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
     let color = ui.visuals().weak_text_color();
     for (x, name) in columns(both).iter().zip(names) {
         put(ui, rect, *x, name, color);
     }
     response.on_hover_text(if both {
-        "Medians of the last frames; A and B are measured in turns"
+        "Means over equally many of the last frames; A and B are measured in turns"
     } else {
-        "Median, 95th percentile and maximum over the last frames; the share is that of the median in the GPU's total"
+        "Mean, 95th percentile and maximum over the last frames; the share is that of the mean in the GPU's total"
     });
 }
 
@@ -281,7 +288,7 @@ fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
     }
     // What slept in both is grey.
     let slept =
-        [0, 1].map(|side| row.spread[side].is_none() || row.asleep[side]) == [true; 2] && row.asleep != [false; 2];
+        [0, 1].map(|side| row.mean[side].is_none() || row.asleep[side]) == [true; 2] && row.asleep != [false; 2];
     let color = if slept { ui.visuals().weak_text_color() } else { ui.visuals().text_color() };
     let mut left = rect.left();
     if row.is_pass {
@@ -292,14 +299,13 @@ fn line(ui: &mut Ui, row: &Row, both: bool, hovered: Option<&str>) -> Response {
     // Names give way to numbers.
     let right = rect.left() + rect.width() * columns(both).first().copied().unwrap_or(1.0) - NUMBER;
     let names = Rect::from_min_max(Pos2::new(left, rect.top()), Pos2::new(right, rect.bottom()));
-    let mut job = egui::text::LayoutJob::simple_singleline(row.name.clone(), FontId::proportional(11.5), color);
+    let mut job = egui::text::LayoutJob::simple_singleline(row.title(both), FontId::proportional(11.5), color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(names.width());
     let galley = ui.painter().layout_job(job);
     let at = Align2::LEFT_CENTER.anchor_size(names.left_center(), galley.size()).min;
     ui.painter().galley(at, galley, color);
-    for (i, (x, text)) in columns(both).iter().zip(&row.cells).enumerate() {
-        let asleep = row.asleep.get(i).is_some_and(|asleep| *asleep) && (both || i == 0);
-        put(ui, rect, *x, if asleep { "slept" } else { text }, color);
+    for (x, text) in columns(both).iter().zip(&row.cells) {
+        put(ui, rect, *x, text, color);
     }
     response
 }
