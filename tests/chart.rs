@@ -7,8 +7,8 @@ mod window_driver;
 
 use common::{conelab, succeeds};
 use serde_json::Value;
-use std::time::Duration;
-use window_driver::{WindowDriver, centre};
+use std::time::{Duration, Instant};
+use window_driver::{PATIENCE, WindowDriver, centre};
 
 /// Small enough for a software device to draw several a second, and nothing gathers over frames: a picture is one frame.
 const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": two, "trace": cones, "cone_set": fitted })"#;
@@ -28,6 +28,28 @@ fn error(driver: &mut WindowDriver, since: usize, what: &str, is: impl Fn(f64) -
         driver.wait(since, what, |e| e["event"] == "error" && e["side"] == 0 && e["error"].as_f64().is_some_and(&is));
     assert!(number(&measured, "gpu_ms") > 0.0, "{measured}");
     number(&measured, "error")
+}
+
+/// Clicks on a point's dot until it is loaded: the dot may move between looking and clicking. The number of events before
+/// the click, and the event of the loaded point.
+#[track_caller]
+fn load_point(driver: &mut WindowDriver, id: &Value) -> (usize, Value) {
+    let until = Instant::now() + PATIENCE;
+    loop {
+        let mark = driver.now();
+        let chart = driver.events.iter().rev().find(|e| e["event"] == "dots").unwrap();
+        let dot = chart["dots"].as_array().unwrap().iter().find(|d| d["id"] == *id).unwrap();
+        driver.click_at((dot["at"][0].as_f64().unwrap(), dot["at"][1].as_f64().unwrap()));
+        let clicked = Instant::now();
+        while clicked.elapsed() < Duration::from_secs(2) {
+            driver.now();
+            if let Some(loaded) = driver.events[mark..].iter().find(|e| e["event"] == "loaded point") {
+                return (mark, loaded.clone());
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        assert!(Instant::now() < until, "the point {id} was not loaded");
+    }
 }
 
 /// Whether the picture is that of a point: one was rendered for the window, the other by another process.
@@ -96,9 +118,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     let at = (worst["at"][0].as_f64().unwrap(), worst["at"][1].as_f64().unwrap());
     driver.point_at(at);
     driver.texts_until("what the dot is", |texts| texts.iter().any(|t| t == "voxel_dim: 16"));
-    let mark = driver.now();
-    driver.click_at(at);
-    let loaded = driver.event(mark, "loaded point");
+    let (mark, loaded) = load_point(&mut driver, &worst["id"]);
     assert_eq!(loaded["id"], worst["id"], "{loaded}");
     assert_eq!(loaded["params"]["voxel_dim"], "16", "{loaded}");
     error(&mut driver, mark, "the dot's error", |e| same(e, number(worst, "error")));
@@ -127,9 +147,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     let chart = driver.events.iter().rev().find(|e| e["event"] == "dots").unwrap().clone();
     let differs = chart["differs"].as_array().unwrap();
     assert!(differs.contains(&"camera".into()) && differs.contains(&"size".into()), "{chart}");
-    let dot = chart["dots"].as_array().unwrap().iter().find(|d| d["id"] == worst["id"]).unwrap();
-    let mark = driver.now();
-    driver.click_at((dot["at"][0].as_f64().unwrap(), dot["at"][1].as_f64().unwrap()));
+    let (mark, _) = load_point(&mut driver, &worst["id"]);
     error(&mut driver, mark, "the dot's error, from its view and at its size", |e| same(e, number(worst, "error")));
     let mark = driver.now();
     driver.click("Button", "undo");

@@ -210,8 +210,8 @@ fn a_point_of_a_sweep_lands_on_its_dot_in_the_chart() {
     let frames = Frames { warmup: 1, count: 3 };
     let references = [(64, reference)];
     let point = measure(&lab, &mut Warm::default(), &case, &cornell, frames, &references, Scored::All).unwrap().point;
-    let metric = METRICS.iter().find(|m| m.name == "relmse").unwrap();
-    let dot = metric.distance(point.scores["total"].get(metric));
+    let metric = METRICS.iter().find(|m| m.key == "relmse").unwrap();
+    let dot = metric.distance(point.scores["total"].get(metric.key));
 
     let options = GpuOptions { device: Some(common::device()), validation: true, ..GpuOptions::default() };
     let home = Workspace { root: home.path().to_path_buf(), cache: Some(common::cache()) };

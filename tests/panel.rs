@@ -6,7 +6,7 @@ mod common;
 mod window_driver;
 
 use std::time::Duration;
-use window_driver::{CONTROL, WindowDriver, centre, with};
+use window_driver::{CONTROL, PATIENCE, WindowDriver, centre, with};
 
 /// Cones in every pixel, so that the pinned parameters count; small enough for a software device.
 const CONES: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "trace": cones })"#;
@@ -83,7 +83,7 @@ fn a_scene_that_cannot_be_loaded_leaves_everything_as_it_was() {
     // A capture and an experiment name the scene that they show.
     let mark = driver.now();
     driver.keys(&[F12]);
-    let captured = driver.wait_at_most(Duration::from_secs(30), mark, "a capture", |e| e["event"] == "captured");
+    let captured = driver.wait_at_most(PATIENCE, mark, "a capture", |e| e["event"] == "captured");
     assert_eq!(captured["ok"], true, "{captured}");
     assert!(driver.file("captures/opened/experiment.ron").contains("\"cornell\""));
 
@@ -178,7 +178,7 @@ fn a_sequence_says_how_far_it_is_and_can_be_stopped() {
     driver.event(mark, "sequence begun");
     driver.texts_until("progress", |texts| has(texts, "cancel"));
     let first = driver.home.path().join("captures/sequence/frame-00000.png");
-    let until = std::time::Instant::now() + Duration::from_secs(20);
+    let until = std::time::Instant::now() + PATIENCE;
     while !first.is_file() && std::time::Instant::now() < until {
         std::thread::sleep(Duration::from_millis(50));
     }
@@ -214,7 +214,7 @@ fn a_place_in_a_message_opens_the_editor() {
     driver.click_at((rect[0] + 40.0, rect[1] + 6.0));
     driver.event(mark, "editor");
     let line = 1 + display.lines().position(|l| l.contains("params.exposure")).unwrap();
-    let until = std::time::Instant::now() + Duration::from_secs(5);
+    let until = std::time::Instant::now() + PATIENCE;
     while !driver.home.path().join(format!("opened-{line}")).is_file() {
         assert!(std::time::Instant::now() < until, "no editor was started");
         std::thread::sleep(Duration::from_millis(20));

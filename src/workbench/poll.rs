@@ -178,7 +178,7 @@ impl Workbench {
             let since = self.changed_at.map(|t| t.elapsed().as_secs_f64() * 1e3);
             let fields = json!({ "side": number, "preview": picture.preview, "frame": picture.frame,
                 "request": picture.request, "size": picture.size, "time": picture.time, "gpu_ms": picture.gpu_ms,
-                "asleep": picture.asleep.len(),
+                "asleep": picture.asleep.len(), "left": picture.left,
                 "since_change_ms": since,
                 "shared": picture.shared.is_some(),
                 "fingerprint": picture.bytes.as_ref().map(|b| events::fingerprint(b)) });

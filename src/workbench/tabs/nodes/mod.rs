@@ -243,7 +243,7 @@ impl Workbench {
         if let Some((_, ms)) =
             self.times.means(ui.ctx(), side, self.desired.sides[1].is_some()).passes.iter().find(|t| t.0 == number)
         {
-            ui.label(format!("{ms:.3} ms (median)"));
+            ui.label(format!("{ms:.3} ms (mean)"));
         }
         let mut needed = None;
         if let Some((_, why)) = info.left_out.iter().find(|(pass, _)| *pass == number) {
