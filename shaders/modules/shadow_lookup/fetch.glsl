@@ -5,6 +5,11 @@ float shadowLit(int layer, vec3 at) {
     return at.z <= textureLod(shadowDepths, vec3(at.xy, layer), 0.0).r ? 1.0 : 0.0;
 }
 
+// Depths of the four texels around a place, in the order of textureGather: (0, 1), (1, 1), (1, 0), (0, 0).
+vec4 shadowDepthsAround(int layer, vec2 at) {
+    return textureGather(shadowDepths, vec3(at, layer));
+}
+
 float shadowBlended(int layer, vec3 at) {
     vec4 lit = vec4(lessThanEqual(vec4(at.z), textureGather(shadowDepths, vec3(at.xy, layer))));
     vec2 between = fract(at.xy * float(params.shadow_dim) - 0.5);

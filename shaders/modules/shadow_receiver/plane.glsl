@@ -13,6 +13,24 @@ vec2 planeSlope(int layer, vec3 p, vec3 q, vec3 n, vec3 to_light, float reach) {
     return slope * min(1.0, 64.0 * towards / max(length(slope), 1e-20));
 }
 
+// A bent surface hides itself along its edges: the texel shows the face beyond the edge. Of the four texels around a
+// point one shows the point's own face, so a blocker counts as the surface itself if one of the four is lit and the blocker
+// is this close [texels]. Real blockers as close lose up to a texel of their shadow.
+const float CLOSE = 8.0;
+
+bool hiddenByItself(int layer, vec3 q, vec2 slope, float deep) {
+    vec2 texel = vec2(1.0 / float(params.shadow_dim));
+    vec2 first = (floor(q.xy / texel - 0.5) + 0.5) * texel;
+    vec4 depths = shadowDepthsAround(layer, first + 0.5 * texel);
+    float depth = q.z + dot(slope, first - q.xy);
+    vec2 steps = slope * texel;
+    vec4 own = depth + vec4(steps.y, steps.x + steps.y, steps.x, 0.0); // in the order of the gather
+    vec4 above = own - depths;
+    vec2 beyond = step(first + 0.5 * texel, q.xy);
+    vec2 row = mix(above.wx, above.zy, beyond.x);
+    return any(lessThanEqual(above, vec4(0.0))) && mix(row.x, row.y, beyond.y) < CLOSE * deep;
+}
+
 float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
     int layer = shadowLayerOf(light, p);
@@ -24,5 +42,8 @@ float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     q.z = clamp(q.z, 0.0, 1.0) - params.shadow_rounding - shadowLayers.layers[layer].rounding;
     // Taps at texels' centres, which a bilinear lookup gives alone.
     vec2 centre = (floor(q.xy * float(params.shadow_dim)) + 0.5) * (1.0 / float(params.shadow_dim));
-    return shadowTaps(layer, vec3(centre, q.z + dot(slope, centre - q.xy)), slope);
+    float lit = shadowTaps(layer, vec3(centre, q.z + dot(slope, centre - q.xy)), slope);
+    if (lit == 1.0) return lit;
+    float deep = abs(shadowPositionBeyond(layer, from + texel * to_light).z - shadowPositionBeyond(layer, from).z);
+    return hiddenByItself(layer, q, slope, deep) ? 1.0 : lit;
 }
