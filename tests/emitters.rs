@@ -31,7 +31,8 @@ fn square(edge: f32, material: u32) -> Mesh {
 
 /// A floor, and a square lamp of this edge a metre above its middle.
 fn under_a_lamp(edge: f32) -> Scene {
-    let floor = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), ..Material::default() };
+    // Without a lobe, which would take its share of the light.
+    let floor = Material { base_color: Vec4::new(0.5, 0.5, 0.5, 1.0), specular: 0.0, ..Material::default() };
     let lamp = Material { emission: Vec3::splat(RADIANCE as f32), base_color: Vec4::W, ..Material::default() };
     let place = |mesh: u32, height: f32| Instance {
         name: format!("square {mesh}"),
@@ -94,6 +95,37 @@ fn a_lamp_whose_texture_is_half_black_gives_half_its_light() {
     let (found, noise) = floor_light(scene, 256, 0.0);
     println!("{found:.5}, expected {expected:.5}, noise {noise:.1e}");
     assert!((found / expected - 1.0).abs() < 0.01, "{found}, not {expected}");
+}
+
+/// Half of the lamp is cut out by alpha. The method draws places on it, and voxels do not know the holes.
+#[test]
+fn a_lamp_whose_mask_cuts_out_half_gives_half_its_light() {
+    let row: Vec<u8> = (0..64).flat_map(|x| [255, 255, 255, if x < 32 { 255 } else { 0 }]).collect();
+    let mut masked = under_a_lamp(1.0);
+    let (width, height, format) = (64, 64, TextureFormat::Rgba8Srgb);
+    masked.textures.push(Texture { name: "half".into(), width, height, format, mips: vec![row.repeat(64)] });
+    (masked.materials[1].base_color_texture, masked.materials[1].alpha_cutoff) = (Some(0), 0.5);
+    let expected = 0.5 * ALBEDO * RADIANCE * form_factor(1.0);
+    let (found, noise) = floor_light(masked.clone(), 256, 0.0);
+    println!("reference: {found:.5}, expected {expected:.5}, noise {noise:.1e}");
+    assert!((found / expected - 1.0).abs() < 0.01, "{found}, not {expected}");
+
+    let lab = lab(root());
+    let settings = [("voxel_dim", "64"), ("volume", "box"), ("volume_size", "(4, 4, 4)"), ("gather_frames", "1")];
+    let [half, whole] = [masked, under_a_lamp(1.0)].map(|scene| {
+        let mut look = experiment("lamp", (16, 12), &settings);
+        look.camera = CameraChoice::Placed(PlacedCamera::new((0.0, 0.3, 0.3), (0.0, 0.0, 0.0), 20.0));
+        let wanted = vec!["diffuseIndirect".to_owned()];
+        let (mut session, _) = lab.prepare(&look, Arc::new(scene), |_| Ok(wanted)).unwrap();
+        for _ in 0..4 {
+            session.frame(0.0).unwrap();
+        }
+        session.finish().unwrap();
+        mean(&floats(&mut session, "diffuseIndirect", 0))
+    });
+    println!("method: {half:.5} of {whole:.5}");
+    assert!((half / whole - 0.5).abs() < 0.03, "{half} of {whole}");
+    assert_clean(&lab);
 }
 
 #[test]

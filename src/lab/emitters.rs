@@ -77,16 +77,17 @@ impl Emitters {
                 scene.meshes.get(mesh as usize).map_or_else(Vec::new, |m| m.outsides(longest))
             });
             let small = |t: u32| scene.textures.get(t as usize).and_then(|t| t.small(TEXELS));
-            let picture = material.emission_texture.and_then(|t| pictures.entry(t).or_insert_with(|| small(t)).clone());
+            let mut picture = |t: Option<u32>| t.and_then(|t| pictures.entry(t).or_insert_with(|| small(t)).clone());
+            let shine = Shine {
+                emission: material.emission,
+                colors: picture(material.emission_texture),
+                mask: picture(material.base_color_texture.filter(|_| material.alpha_cutoff > 0.0)),
+                cutoff: material.alpha_cutoff / material.base_color.w.max(1e-6),
+            };
             for (first, vertices, corners) in triangles {
                 let uvs = vertices.map(|v| Vec2::new(attributes[v][3], attributes[v][8]));
-                let parts = picture.as_ref().map_or(1, |picture| parts_of(picture, uvs));
-                let radiance = (0..parts * parts)
-                    .map(|part| {
-                        material.emission
-                            * picture.as_ref().map_or(Vec3::ONE, |p| mean(p, part_corners(uvs, parts, part)))
-                    })
-                    .collect();
+                let parts = shine.parts(uvs);
+                let radiance = (0..parts * parts).map(|part| shine.mean(part_corners(uvs, parts, part))).collect();
                 count += parts * parts;
                 if count as usize > MOST_EMITTERS {
                     return Emitters::default();
@@ -191,6 +192,39 @@ fn choose(blocks: &mut [EmitterBlock], power: &[f64], all: f64) {
     blocks.iter_mut().zip(power).filter(|(b, p)| **p == 0.0 && b.chance == 1.0).for_each(|(b, _)| b.chance = 0.0);
 }
 
+/// What a material emits at a texture coordinate.
+struct Shine {
+    emission: Vec3,
+    colors: Option<SmallPicture>,
+    /// Alpha below the cutoff is a hole.
+    mask: Option<SmallPicture>,
+    cutoff: f32,
+}
+
+impl Shine {
+    /// Parts of a triangle's edge, so that each has one radiance.
+    fn parts(&self, uvs: [Vec2; 3]) -> u32 {
+        [&self.colors, &self.mask].into_iter().flatten().map(|picture| parts_of(picture, uvs)).max().unwrap_or(1)
+    }
+
+    fn at(&self, uv: Vec2) -> Vec3 {
+        let color = self.colors.as_ref().map_or(Vec3::ONE, |colors| colors.at(uv).truncate());
+        let hole = self.mask.as_ref().is_some_and(|mask| mask.at(uv).w < self.cutoff);
+        if hole { Vec3::ZERO } else { self.emission * color }
+    }
+
+    /// Mean over a triangle.
+    fn mean(&self, uvs: [Vec2; 3]) -> Vec3 {
+        if self.colors.is_none() && self.mask.is_none() {
+            return self.emission;
+        }
+        const EDGE: u32 = 6;
+        let parts = EDGE * EDGE;
+        let middles = (0..parts).map(|part| part_corners(uvs, EDGE, part).iter().sum::<Vec2>() / 3.0);
+        middles.map(|uv| self.at(uv)).sum::<Vec3>() / parts as f32
+    }
+}
+
 /// How finely a triangle's texture must be told.
 fn parts_of(picture: &SmallPicture, uvs: [Vec2; 3]) -> u32 {
     let size = Vec2::new(picture.width as f32, picture.height as f32);
@@ -217,14 +251,6 @@ where
     } else {
         [at(i + 1, row + 1), at(i, row + 1), at(i + 1, row)]
     }
-}
-
-/// Mean of a picture over a triangle of it.
-fn mean(picture: &SmallPicture, uvs: [Vec2; 3]) -> Vec3 {
-    const EDGE: u32 = 6;
-    let parts = EDGE * EDGE;
-    let middles = (0..parts).map(|part| part_corners(uvs, EDGE, part).iter().sum::<Vec2>() / 3.0);
-    middles.map(|uv| picture.at(uv)).sum::<Vec3>() / parts as f32
 }
 
 #[cfg(test)]

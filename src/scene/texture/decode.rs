@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::io::Cursor;
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec4};
 use image::{DynamicImage, ImageFormat, ImageReader, Limits, RgbaImage};
 
 use crate::files::read_input;
@@ -55,12 +55,12 @@ pub struct SmallPicture {
     pub width: u32,
     /// Texels.
     pub height: u32,
-    texels: Vec<Vec3>,
+    texels: Vec<Vec4>,
 }
 
 impl SmallPicture {
-    /// The texel at texture coordinates, which repeat.
-    pub fn at(&self, uv: Vec2) -> Vec3 {
+    /// The texel at texture coordinates, which repeat: linear colour, and alpha.
+    pub fn at(&self, uv: Vec2) -> Vec4 {
         let index = |t: f32, n: u32| ((t.rem_euclid(1.0) * n as f32) as u32).min(n - 1);
         let place = index(uv.y, self.height) * self.width + index(uv.x, self.width);
         self.texels.get(place as usize).copied().unwrap_or_default()
@@ -78,7 +78,7 @@ impl Texture {
             TextureFormat::Rgba8Srgb | TextureFormat::Rgba8Unorm => Cow::Borrowed(bytes),
             format => Cow::Owned(dds::decompress(format, width, height, bytes).ok()?),
         };
-        let texels: Vec<Vec3> = mips::decode(&rgba, self.format.is_srgb()).iter().map(|t| t.truncate()).collect();
+        let texels: Vec<Vec4> = mips::decode(&rgba, self.format.is_srgb());
         (texels.len() == (width * height) as usize).then_some(SmallPicture { width, height, texels })
     }
 }
