@@ -122,7 +122,7 @@ fn a_room_far_from_the_origin_looks_as_one_at_it() {
 fn what_is_small_in_a_huge_scene_casts_its_shadow() {
     let home = common::home();
     let lab = lab(home.path());
-    for (name, least) in [("plain", 0.05), ("huge-ground", 0.0)] {
+    for (name, least) in [("plain", 0.03), ("huge-ground", 0.0)] {
         let with = |maps: &str| experiment(name, (120, 68), &[("shadow_maps", maps), ("voxel_dim", "32")]);
         let keep_on = &mut |_| ControlFlow::Continue(());
         let truth = gather(&lab, &with("0"), &scene(name), 1, Goal::Samples(32), keep_on).unwrap();

@@ -201,9 +201,11 @@ fn the_sun_of_a_picture_casts_shadows_and_the_method_has_the_energy_of_the_refer
     let direct = texture(&lab, &mut method, "direct");
     let shaded = direct.iter().filter(|p| p[3] > 0.0 && p[0] == 0.0).count();
     let lit = direct.iter().filter(|p| p[0] > 0.1).count();
-    println!("{lit} lit and {shaded} shaded pixels");
-    assert!(lit > 100 && shaded > 20, "{lit} {shaded}");
     let reference = trace(&lab, &scene, 1, 64);
+    let rays = &reference.parts["direct"].mean.rgb;
+    let dark = direct.iter().zip(rays).filter(|(p, r)| p[3] > 0.0 && r[0] == 0.0).count();
+    println!("{lit} lit and {shaded} shaded pixels, {dark} by rays");
+    assert!(lit > 100 && dark > 10 && shaded.abs_diff(dark) * 4 <= dark, "{lit} {shaded} {dark}");
     let total = common::floats(&mut method, "radiance", 0);
     for (name, found) in [("direct", common::mean(&direct)), ("total", common::mean(&total))] {
         let ratio = found / reference.parts[name].mean.mean();

@@ -31,6 +31,7 @@ void gatherListed(uint word, bool gathers) {
     Gathered light = Gathered(vec4(0.0), vec3(0.0));
     if (gathers) {
         GBufferSurface seen = gbufferAt(gathering);
+        seen.surface.multiple = vec3(1.0); // cancels between here and the shading
         gatherShare = RayShare(rays, lobe, emitters, int(part), int(GATHER_THREADS));
         light = gather(coneOrigin(seen.position, seen.face, seen.surface.normal), seen.surface, seen.face, seen.to_viewer);
         light.specular /= max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);

@@ -16,7 +16,7 @@ vec2 planeSlope(int layer, vec3 p, vec3 q, vec3 n, vec3 to_light, float reach) {
 // A bent surface hides itself along its edges: the texel shows the face beyond the edge. Of the four texels around a
 // point one shows the point's own face, so a blocker counts as the surface itself if one of the four is lit and the blocker
 // is this close [texels]. Real blockers as close lose up to a texel of their shadow.
-const float CLOSE = 8.0;
+const float CLOSE = 4.0;
 
 bool hiddenByItself(int layer, vec3 q, vec2 slope, float deep) {
     vec2 texel = vec2(1.0 / float(params.shadow_dim));
