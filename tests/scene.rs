@@ -1003,3 +1003,23 @@ fn real_scenes_where_present() {
         assert!(centre.is_finite());
     }
 }
+
+/// A single quad is what people try first. Its front is seen, whichever way it faces.
+#[test]
+fn flat_models_open_with_their_front_in_view() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("flat.obj");
+    let (x, y, z) = (Vec3::X, Vec3::Y, Vec3::Z);
+    for (right, up) in [(x, y), (-x, y), (z, y), (-z, y), (x, -z), (x, z)] {
+        let corners = [-right - up, right - up, right + up, up - right];
+        let lines: String = corners.iter().map(|c| format!("v {} {} {}\n", c.x + 3.0, c.y, c.z)).collect();
+        std::fs::write(&path, lines + "f 1 2 3 4\n").unwrap();
+        let scene = Scene::open(&path.to_string_lossy(), &|_, _| std::ops::ControlFlow::Continue(())).unwrap();
+        let (_, camera) = scene.cameras.first().unwrap();
+        let to_eye = (camera.eye - camera.target).normalize();
+        assert!(to_eye.dot(right.cross(up)) > 0.99, "{right} {up}: seen from {to_eye}");
+        // All of the quad, whose half edge is a metre.
+        let away = (camera.eye - camera.target).length();
+        assert!(away * (0.5 * camera.fov_y).to_radians().tan() > 1.0, "{right} {up}: {away} m");
+    }
+}

@@ -7,6 +7,9 @@ use super::{Camera, Light, LightKind, Scene};
 /// Radiance of the sky over a model file.
 pub(super) const SKY: Vec3 = Vec3::new(0.6, 0.8, 1.0);
 
+/// Vertical field of view of default cameras [degrees].
+const FOV_Y: f32 = 58.3;
+
 /// The slightly warm sun over a model file, coming in steeply.
 pub(super) fn sun() -> Light {
     Light {
@@ -22,6 +25,9 @@ pub(super) fn sun() -> Light {
 /// A level view along the longest horizontal axis, from inside its positive end; from another place where that one is
 /// inside of something, or sees nothing. A place costs a tenth of a second at most, and the first is nearly always open.
 pub(super) fn camera(scene: &Scene) -> Camera {
+    if let Some(front) = front(scene) {
+        return front;
+    }
     let mut best = (f32::NEG_INFINITY, place(scene, 0, PLACES[0]));
     for place in PLACES.iter().flat_map(|p| [place(scene, 0, *p), place(scene, 1, *p)]) {
         let seen = scene.seen_by(&place);
@@ -34,6 +40,26 @@ pub(super) fn camera(scene: &Scene) -> Camera {
         }
     }
     best.1
+}
+
+/// Thinner than this part of its diagonal a model is flat.
+const FLAT: f32 = 1e-3;
+
+/// A view of all of a flat model from the side that shows fewer back faces; none of other models.
+fn front(scene: &Scene) -> Option<Camera> {
+    let (low, high) = scene.bounds();
+    let (centre, extent) = ((low + high) * 0.5, high - low);
+    let diagonal = extent.length();
+    let axis = [Vec3::Z, Vec3::X, Vec3::Y].into_iter().find(|axis| extent.dot(*axis) < FLAT * diagonal)?;
+    let up = if axis == Vec3::Y { Vec3::NEG_Z } else { Vec3::Y };
+    let from = |side: f32| {
+        // A picture is at least as wide as high.
+        let away = 0.55 * extent.max_element() / (0.5 * FOV_Y).to_radians().tan();
+        let eye = centre + axis * (side * away);
+        Camera { eye, target: centre, up, fov_y: FOV_Y, near: near_plane(diagonal), far: f32::INFINITY }
+    };
+    let (ahead, behind) = (from(1.0), from(-1.0));
+    Some(if scene.seen_by(&behind).backs < scene.seen_by(&ahead).backs { behind } else { ahead })
 }
 
 /// Where a camera is tried in a scene's bounds: along the axis from the middle, and above the ground, as parts of the extent.
@@ -51,7 +77,7 @@ fn place(scene: &Scene, which: usize, (along, above): (f32, f32)) -> Camera {
     eye.y = low.y + above * extent.y;
     let reach = if length > 0.0 { length } else { 1.0 };
     let target = eye - axis * along.signum() * reach.max(least_reach(eye));
-    Camera { eye, target, up: Vec3::Y, fov_y: 58.3, near: near_plane(extent.length()), far: f32::INFINITY }
+    Camera { eye, target, up: Vec3::Y, fov_y: FOV_Y, near: near_plane(extent.length()), far: f32::INFINITY }
 }
 
 /// Least distance of a camera's target that 32-bit numbers keep apart from its eye.
