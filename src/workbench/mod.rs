@@ -328,12 +328,11 @@ impl Workbench {
 
     /// Whether everything requested is on screen.
     pub fn settled(&self) -> bool {
-        let moves = self.desired.continuous || self.desired.clock.playing;
         let shown = |i: usize| {
             self.desired.sides[i].is_none()
                 || self.sides[i].picture.as_ref().is_some_and(|p| {
                     let known = p.request >= self.sent_number && self.sides[i].info.is_some();
-                    !p.preview && known && (p.left == 0 || moves)
+                    !p.preview && known
                 })
         };
         shown(0)

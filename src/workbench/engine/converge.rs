@@ -84,6 +84,8 @@ impl Run<'_> {
             self.report_frames(number, finished);
             let side = &mut self.sides[number];
             (side.fresh, side.lights) = (true, true);
+            // What a change before this asked for counts from histories that are gone.
+            (side.frames_left, side.least_left) = (0, 0);
         }
         self.out.send(Report::Restarted);
         self.request_frames(Need::Light);
