@@ -45,6 +45,7 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
         "opacity" | "lod_clearance" => &[("trace", "interleaved")],
         "cone_rotate" => &[("trace", "cones"), ("cone_count", "5")],
         "trace" => &[("exact_rays", "8")],
+        "multiple_scattering" => &[("shading_model", "gltf")],
         "tess_levels" | "tess_rate" => &[("voxelizer", "tessellated")],
         "voxel_samples" => &[("voxelizer", "raster"), ("conservative", "msaa")],
         "volume_center" | "volume_size" => &[("volume", "box")],
