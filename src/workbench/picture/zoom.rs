@@ -123,6 +123,8 @@ mod tests {
             time: 0.0,
             size: [2, 1],
             finished: std::time::Instant::now(),
+            left: 0,
+            asked: 0,
             bytes: Some(Arc::new(vec![0, 0, 0, 255, 255, 188, 0, 255])),
             shared: None,
             passes: Vec::new(),
