@@ -12,7 +12,7 @@ pub enum PassItem {
     /// A pass.
     Pass(Box<PassDecl>),
     /// Passes that share a stage, a condition, or when they rest.
-    Group(Group),
+    Group(Box<Group>),
 }
 
 impl<'de> Deserialize<'de> for PassItem {
@@ -25,7 +25,7 @@ impl<'de> Deserialize<'de> for PassItem {
         // What is no struct at all is told as a pass that it is not.
         let probe = crate::diagnostics::options().from_str::<Probe>(raw.get_ron());
         match probe {
-            Ok(Probe { passes: Some(_) }) => nested(raw).map(PassItem::Group),
+            Ok(Probe { passes: Some(_) }) => nested(raw).map(|group| PassItem::Group(Box::new(group))),
             _ => nested(raw).map(|pass| PassItem::Pass(Box::new(pass))),
         }
     }

@@ -74,7 +74,7 @@ impl Run<'_> {
             let desired = self.desired.sides[number].as_ref();
             side.session.is_some() && desired.is_some_and(|d| side.key.as_ref() == Some(&self.key(d, number)))
         };
-        if !self.restarts || !(shows(0) && shows(1)) {
+        if !(self.restarts && shows(0) && shows(1)) {
             return Ok(());
         }
         self.restarts = false;

@@ -114,6 +114,9 @@ impl Row {
     }
 }
 
+/// What a row shows of a frame [ms].
+type Time<'a> = &'a dyn Fn(&Frame) -> f64;
+
 /// The rows: the passes of A in order, those that only B has, the rest of the GPU's time, and the totals. Means are used
 /// because they add up, and because passes that run once in several frames have a median of zero. With B the columns are
 /// the means of A and B over equally many frames, B/A, and the share of A; else mean, 95th percentile, share and maximum.
@@ -129,7 +132,7 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let sides = [a, b.unwrap_or(&none)];
     let count = b.map_or(KEPT, |b| a.frames.len().min(b.frames.len()));
     let total = a.mean(count, &|f| f.gpu_ms).unwrap_or(0.0);
-    let row = |name: &str, is_pass: bool, times: [Option<&dyn Fn(&Frame) -> f64>; 2]| {
+    let row = |name: &str, is_pass: bool, times: [Option<Time<'_>>; 2]| {
         let mean = [0, 1].map(|i| sides[i].mean(count, times[i]?));
         let alone: Vec<f64> = times[0].iter().flat_map(|time| a.last(count).map(time)).collect();
         let most = alone.iter().copied().fold(0.0, f64::max);
@@ -154,7 +157,7 @@ pub fn rows(a: &History, b: Option<&History>) -> Vec<Row> {
     let mut list: Vec<Row> = Vec::with_capacity(names.len() + 2);
     for name in names {
         let pass = sides.map(|h| number(h, name).map(|number| move |frame: &Frame| frame.pass(number)));
-        let times = [0, 1].map(|i| pass[i].as_ref().map(|time| time as &dyn Fn(&Frame) -> f64));
+        let times = [0, 1].map(|i| pass[i].as_ref().map(|time| time as Time<'_>));
         list.push(Row { asleep: sides.map(|h| slept(h, name)), ..row(name, true, times) });
     }
     let all = |time: &'static dyn Fn(&Frame) -> f64| [Some(time), both.then_some(time)];
