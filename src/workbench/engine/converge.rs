@@ -8,7 +8,7 @@ use crate::workbench::desired::request::RenderRequest;
 /// Frames that a change needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Need {
-    /// So many, whether or not they change the picture.
+    /// This number of frames, even if the picture stays the same.
     Frames(u32),
     /// As many as from a fresh start: voxels keep what they have gathered, and pixels gather anew.
     View,
@@ -17,7 +17,7 @@ pub(super) enum Need {
 }
 
 impl Need {
-    /// What a new request needs; nothing if both are the same.
+    /// The frames that a new request needs; none if both are equal.
     pub(super) fn between(old: &RenderRequest, new: &RenderRequest) -> Option<Need> {
         if old == new {
             return None;
@@ -84,7 +84,7 @@ impl Run<'_> {
             self.report_frames(number, finished);
             let side = &mut self.sides[number];
             (side.fresh, side.lights) = (true, true);
-            // What a change before this asked for counts from histories that are gone.
+            // An earlier count started from histories that are now cleared.
             (side.frames_left, side.least_left) = (0, 0);
         }
         self.out.send(Report::Restarted);

@@ -175,7 +175,7 @@ impl Run<'_> {
     }
 }
 
-/// What a build needs that takes the place of another one.
+/// The frames that a build needs if it replaces another one.
 fn need(old: &Key, new: &Key) -> Need {
     let same = Key { size: new.size, wanted: new.wanted.clone(), ..old.clone() };
     if same == *new { Need::View } else { Need::Light }

@@ -68,7 +68,7 @@ impl History {
         self.changes += 1;
     }
 
-    /// The last so many frames.
+    /// The last `count` frames.
     fn last(&self, count: usize) -> impl Iterator<Item = &Frame> {
         self.frames.iter().skip(self.frames.len().saturating_sub(count))
     }
@@ -114,7 +114,7 @@ impl Row {
     }
 }
 
-/// What a row shows of a frame [ms].
+/// The time of a row in a frame [ms].
 type Time<'a> = &'a dyn Fn(&Frame) -> f64;
 
 /// The rows: the passes of A in order, those that only B has, the rest of the GPU's time, and the totals. Means are used
