@@ -14,6 +14,7 @@ const CONES: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), pa
 const ESCAPE: u32 = 0xff1b;
 const F12: u32 = 0xffc9;
 const HOME: u32 = 0xff50;
+const RETURN: u32 = 0xff0d;
 
 fn small() -> WindowDriver {
     WindowDriver::open(CONES, &["--size", "160x120"])
@@ -254,5 +255,77 @@ fn a_window_of_large_points_fits_its_screen() {
     driver.first_picture();
     let (width, height) = driver.size();
     assert!(width <= 1400 && height <= 900, "{width}x{height} on a screen of 1400x900");
+    driver.close();
+}
+
+/// A picture of the sky gives the light that it has, whatever was edited before it came.
+#[test]
+fn a_new_sky_keeps_its_own_tint() {
+    let open = || WindowDriver::open(&CONES.replace("cornell", "white-sky"), &["--size", "160x120"]);
+    let sky = |driver: &mut WindowDriver| {
+        let texels = image::Rgb32FImage::from_pixel(8, 4, image::Rgb([0.2, 0.4, 0.6]));
+        texels.save(driver.home.path().join("own.hdr")).unwrap();
+        driver.click("", "Scene");
+        driver.click("TextInput", "picture of the sky");
+        driver.text("own.hdr");
+        let mark = driver.now();
+        driver.keys(&[RETURN]);
+        driver.event(mark, "loaded");
+        driver.texts_until("the picture's name", |texts| texts.iter().any(|t| t.contains("own.hdr")));
+        driver.resting(0)
+    };
+    let expected = {
+        let mut driver = open();
+        driver.first_picture();
+        sky(&mut driver)
+    };
+    let mut driver = open();
+    let white = driver.first_picture();
+    driver.click("", "Scene");
+    let (x, y) = centre(driver.find("SpinButton", "sky red"));
+    let mark = driver.now();
+    driver.drag((x, y), (x + 60.0, y));
+    driver.other_picture(mark, 0, &white);
+    driver.find("Button", "reset lights");
+    assert_eq!(sky(&mut driver), expected, "the sky is lit as if nothing had been edited");
+    driver.close();
+}
+
+/// Frames from before a comparison are no part of its times: both sides have rendered the same frames, of which the rows
+/// of the table are means that add up to the total.
+#[test]
+fn a_and_b_are_timed_over_the_same_frames() {
+    let mut driver = small();
+    let first = driver.first_picture();
+    driver.click("", "Display");
+    for by in [0.1, -0.1] {
+        let rect = driver.find("Slider", "exposure");
+        let (x, y) = centre(rect);
+        let mark = driver.now();
+        driver.drag((x, y), (x + by * (rect[2] - rect[0]), y));
+        driver.wait(mark, "a picture", |e| e["event"] == "picture" && e["side"] == 0);
+    }
+    driver.resting(0);
+    let mark = driver.now();
+    driver.click("", "raster | tessellated");
+    driver.other_picture(mark, 1, &first);
+    driver.resting(1);
+    driver.resting(0);
+    driver.click("", "Time");
+    let mark = driver.now();
+    driver.click("Button", "CSV");
+    let exported = driver.event(mark, "exported");
+    assert_eq!(exported["ok"], true, "{exported}");
+    let file = driver.file(exported["text"].as_str().unwrap().trim_start_matches("wrote "));
+    let mut reader = csv::Reader::from_reader(file.as_bytes());
+    let mut frames: [Vec<u64>; 2] = Default::default();
+    for row in reader.records().map(Result::unwrap) {
+        frames[usize::from(&row[0] == "B")].push(row[1].parse().unwrap());
+        let number = |i: usize| row[i].parse::<f64>().unwrap_or(0.0);
+        let passes: f64 = (5..row.len()).map(number).sum();
+        assert!(passes <= 1.001 * number(4), "passes take {passes} ms of {} ms: {row:?}", number(4));
+    }
+    assert!(!frames[0].is_empty());
+    assert_eq!(frames[0].len(), frames[1].len(), "{frames:?}");
     driver.close();
 }
