@@ -1,5 +1,5 @@
-//! A bound on what the macros of a shader expand to, before the compiler sees them: forty lines `#define B (A+A)`, each
-//! with the name of the one before, are a trillion tokens.
+//! Bounds the expansion of a shader's macros before the compiler sees them: forty lines `#define B (A+A)`, each with the
+//! name of the line above, expand to a trillion tokens.
 
 use std::collections::BTreeMap;
 
@@ -17,14 +17,14 @@ pub(super) struct Grown {
     pub file: String,
     /// Line, from 1.
     pub line: u32,
-    /// What is wrong.
+    /// The fault, as a sentence.
     pub message: String,
 }
 
 /// Checks the files of a shader. All definitions count, whatever `#if` says; of several of one name, the largest.
 ///
 /// # Errors
-/// The first line whose expansion goes beyond the bound, or cannot be bounded.
+/// The first line that expands beyond the bound or cannot be bounded.
 pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown> {
     let files: Vec<(&str, Vec<Line>)> = texts.iter().map(|(name, text)| (name.as_str(), lines(text))).collect();
     let mut macros = Macros::default();
@@ -35,7 +35,7 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
     }
     let mut sum = 0.0;
     for (file, lines) in &files {
-        // Calls may go over several lines: what stands between directives is one text.
+        // A call may span several lines, so all lines between two directives are one text.
         for part in lines.chunk_by(|a, b| a.directive().is_none() && b.directive().is_none()) {
             let tokens = match part[0].directive() {
                 Some("define" | "undef" | "ifdef" | "ifndef" | "include" | "extension" | "version") => continue,
@@ -143,13 +143,13 @@ fn definition<'t>(line: &Line<'t>) -> Option<(&'t str, Definition<'t>)> {
 /// More than any bound, and its square is still a number.
 const ENDLESS: f64 = 1e30;
 
-/// What an expansion costs: tokens of its own, and how often it repeats each argument.
+/// The cost of an expansion: its own tokens, and the number of times that it repeats each argument.
 #[derive(Clone, Debug, Default)]
 struct Form {
     own: f64,
     repeats: Vec<f64>,
-    /// How often the macro in whose name it ends repeats its arguments, which may follow; of a macro, how often it
-    /// repeats its own.
+    /// The expansion may end in the name of a macro with the arguments behind it: the number of times that this macro
+    /// repeats each of them. For a macro itself, the number of times that it repeats its own arguments.
     call: Option<Vec<f64>>,
 }
 

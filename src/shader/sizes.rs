@@ -30,7 +30,7 @@ const SPEC_CONSTANT_OP: u32 = 52;
 const VARIABLE: u32 = 59;
 /// Storage classes of memory that each invocation, workgroup or vertex has: Input, Output, Workgroup, Private, Function.
 const OWN: [u32; 5] = [1, 3, 4, 6, 7];
-/// Instructions whose result is a value of the type in their first operand: undefined, constants, function, parameter,
+/// Instructions with a result of the type in their first operand: undefined, constants, function, parameter,
 /// call, load, composites, copies, select, phi.
 const VALUES: [u32; 15] = [1, 44, 46, 51, 54, 55, 57, 61, 80, 82, 83, 169, 245, 400, SPEC_CONSTANT_OP];
 

@@ -1,5 +1,5 @@
-//! How many frames a picture needs to converge. Groups of passes that gather over frames declare it (`settles`,
-//! `converges`); each group starts from what the group before it has gathered, so the counts are added up.
+//! The number of frames in which a picture converges. Groups of passes that accumulate over frames declare their count
+//! (`settles`, `converges`); a group starts from the result of the group before it, so the counts are summed.
 
 use super::data::{Convergence, Plan};
 use crate::diagnostics::At;

@@ -10,9 +10,9 @@ use crate::workbench::desired::request::RenderRequest;
 pub(super) enum Need {
     /// This number of frames, even if the picture stays the same.
     Frames(u32),
-    /// As many as from a fresh start: voxels keep what they have gathered, and pixels gather anew.
+    /// The frames of a fresh start: voxels keep their light, and pixels restart.
     View,
-    /// As many as it takes to replace all that was gathered before.
+    /// The frames that replace all accumulated light.
     Light,
 }
 
@@ -66,8 +66,8 @@ impl Run<'_> {
         }
     }
 
-    /// Starts A and B anew together when both show what is requested, so that equal settings give equal pictures and the
-    /// times of both are of the same frames.
+    /// Restarts A and B together once both show the request, so that equal settings give equal pictures and both are timed
+    /// over the same frames.
     pub(super) fn restart_together(&mut self) -> Result<(), LabError> {
         let shows = |number: usize| {
             let side = &self.sides[number];

@@ -131,7 +131,7 @@ impl Workbench {
             intensity(ui, sky);
         }
         if self.picture_file(ui) {
-            // What is shown here belongs to the sky before.
+            // These controls still show the light of the sky before.
             return;
         }
         for (i, light) in lights.iter_mut().enumerate() {
@@ -146,7 +146,7 @@ impl Workbench {
         }
     }
 
-    /// Another picture for the sky, by its file's name. Whether one was asked for: the scene's light is not edited then.
+    /// A field for the file of another sky. Returns true if one was requested; the light must not be edited then.
     fn picture_file(&mut self, ui: &mut Ui) -> bool {
         ui.horizontal(|ui| {
             let field = egui::TextEdit::singleline(&mut self.view.picture).hint_text("sky.hdr or sky.exr");

@@ -1,4 +1,4 @@
-//! The times of the last frames, and what they say as a table.
+//! The times of the last frames, and the table made from them.
 
 use crate::results::stats::spread;
 use crate::workbench::engine::report::PictureReport;
@@ -73,7 +73,7 @@ impl History {
         self.frames.iter().skip(self.frames.len().saturating_sub(count))
     }
 
-    /// Mean time of the last so many frames, ms; none without frames.
+    /// Mean time of the last `count` frames, ms; none without frames.
     pub fn mean(&self, count: usize, time: &dyn Fn(&Frame) -> f64) -> Option<f64> {
         let count = count.min(self.frames.len());
         (count > 0).then(|| self.last(count).map(time).sum::<f64>() / count as f64)

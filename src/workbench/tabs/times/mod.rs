@@ -77,7 +77,7 @@ impl Times {
         }
     }
 
-    /// A and B start anew together.
+    /// A and B restart together.
     pub fn restarted(&mut self) {
         for side in &mut self.sides {
             *side = History::new(std::mem::take(&mut side.passes));
@@ -85,8 +85,7 @@ impl Times {
         (self.made, self.means) = (None, [None, None]);
     }
 
-    /// Mean times of a side. They are worked out anew as often as the table, so that a frame of the interface does not sort the
-    /// times of every pass.
+    /// Mean times of a side, computed as often as the table and not in every frame of the interface.
     pub fn means(&mut self, ui: &egui::Context, side: usize, both: bool) -> Arc<Means> {
         let history = &self.sides[side];
         if let Some((changes, since, known)) = &self.means[side] {
@@ -99,7 +98,7 @@ impl Times {
                 return known.clone();
             }
         }
-        // Of equally many frames of both sides.
+        // Both sides are averaged over the same number of frames.
         let count = if both { self.sides[0].frames.len().min(self.sides[1].frames.len()) } else { KEPT };
         let of = |time: &dyn Fn(&Frame) -> f64| history.mean(count, time);
         let passes = history.passes.iter().filter_map(|p| Some((p.0, of(&|f| f.pass(p.0))?))).collect();
@@ -266,7 +265,7 @@ fn head(ui: &mut Ui, both: bool) {
         put(ui, rect, *x, name, color);
     }
     response.on_hover_text(if both {
-        "Means over equally many of the last frames; A and B are measured in turns"
+        "Means over the same number of the last frames of A and of B, which alternate"
     } else {
         "Mean, 95th percentile and maximum over the last frames; the share is that of the mean in the GPU's total"
     });
