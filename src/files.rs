@@ -232,13 +232,18 @@ fn unfit(why: String) -> std::io::Error {
     std::io::Error::new(std::io::ErrorKind::InvalidInput, why)
 }
 
-/// [`read_input`] of UTF-8 text.
+/// [`read_input`] of UTF-8 text, without the byte order mark that some editors put before it.
 ///
 /// # Errors
 /// As [`read_input`], and text that is not UTF-8.
 pub fn read_input_text(path: &Path, most: u64) -> std::io::Result<String> {
     let bytes = read_input(path, most)?;
-    String::from_utf8(bytes).map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text"))
+    let mut text = String::from_utf8(bytes)
+        .map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not UTF-8 text"))?;
+    if text.starts_with('\u{feff}') {
+        text.drain(..'\u{feff}'.len_utf8());
+    }
+    Ok(text)
 }
 
 #[cfg(test)]

@@ -286,3 +286,47 @@ fn shaders_whose_variables_take_all_memory_are_refused() {
     let told = limited(home.path(), "render configs/l.ron -o x.png --set n=4000000");
     has(&told, &["the size of the shader variables of pass 'l' is 160000", "at most 1048576 bytes"]);
 }
+
+/// Editors of Windows put a byte order mark before every file that they save.
+#[test]
+fn byte_order_marks_change_nothing() {
+    let pictures = [false, true].map(|marked| {
+        let home = home();
+        if marked {
+            mark(home.path());
+        }
+        let scene = "\u{feff}(models: [(builtin: \"furnace\")])";
+        write(home.path().join("own.ron"), scene);
+        let arguments = ["render", "configs/tour.ron", "--scene", "own.ron", "--size", "16x12", "-o", "a.png"];
+        succeeds(conelab(home.path()).args(arguments));
+        std::fs::read(home.path().join("a.png")).unwrap()
+    });
+    assert_eq!(pictures[0], pictures[1]);
+}
+
+/// A byte order mark before every text of a folder.
+fn mark(folder: &Path) {
+    for entry in std::fs::read_dir(folder).unwrap().flatten() {
+        match std::fs::read_to_string(entry.path()) {
+            _ if entry.path().is_dir() => mark(&entry.path()),
+            Ok(text) => drop(write(entry.path(), format!("\u{feff}{text}"))),
+            Err(_) => {}
+        }
+    }
+}
+
+/// With a letter there, the compiler prints its tables of built-in functions: 4,550 lines.
+#[test]
+fn a_letter_before_the_version_is_one_error() {
+    let home = home();
+    let shader = home.path().join("shaders/display/display.comp");
+    let original = std::fs::read_to_string(&shader).unwrap();
+    write(&shader, format!("x{original}"));
+    let mut command = conelab(home.path());
+    let output =
+        ended(command.args(["render", "configs/tour.ron", "--scene", "furnace", "--size", "16x12", "--json", "-"]));
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "");
+    let error = String::from_utf8_lossy(&output.stderr);
+    has(&error, &["display.comp:1", "'x' is before #version, which must come first"]);
+    assert!(error.lines().count() < 12, "{error}");
+}

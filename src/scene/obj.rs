@@ -30,7 +30,10 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let used = RefCell::new(BTreeSet::new());
     let mut reader = CountLines { inner: Cursor::new(text.as_bytes()), lines: &lines_read, used: &used, progress };
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ignore_points: true, ignore_lines: true };
-    let load_mtl = |names: &Path| Ok(library::load(folder, names, &warnings));
+    let load_mtl = |names: &Path| {
+        progress.reads(&folder.join(names));
+        Ok(library::load(folder, names, &warnings))
+    };
     let (models, materials) = tobj::load_obj_buf(&mut reader, &options, load_mtl)
         .map_err(|error| fail(format!("{error} at or before line {}. Export it again", lines_read.get())))?;
     let mut warnings = warnings.into_inner();

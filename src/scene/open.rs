@@ -1,7 +1,7 @@
 //! Opening a scene by whatever names it: a built-in, a scene file or a model file.
 
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
@@ -25,31 +25,49 @@ impl Scene {
     /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
     /// answers `Break`, the opening ends at once with [`SceneError::Cancelled`].
     pub fn open(spec: &str, progress: &dyn Fn(&str, f32) -> ControlFlow<()>) -> Result<Scene, SceneError> {
-        // Decoders and parsers cannot be interrupted. They run on another thread; once cancelled, the step that is
-        // under way ends unheard and the next one does not begin.
+        Scene::open_with_files(spec, progress).0
+    }
+
+    /// [`Scene::open`], and the files that were read or looked for, in order of their names. When one of them changes, the
+    /// scene may be another; this holds for a scene that could not be opened too.
+    pub fn open_with_files(
+        spec: &str,
+        progress: &dyn Fn(&str, f32) -> ControlFlow<()>,
+    ) -> (Result<Scene, SceneError>, Vec<PathBuf>) {
         let watch = Arc::new(Watch::new(spec));
-        let (send, result) = mpsc::channel();
-        let worker = std::thread::spawn({
-            let (spec, watch) = (spec.to_owned(), watch.clone());
-            move || drop(send.send(load(&spec, Progress::new(&watch))))
-        });
-        loop {
-            let (what, done) = watch.now();
-            if progress(&what, done).is_break() {
-                watch.stop();
-                return Err(SceneError::Cancelled);
-            }
-            match result.recv_timeout(ASK) {
-                Ok(loaded) => return loaded.map(with_size_told).map(Scene::with_seen_distance),
-                Err(mpsc::RecvTimeoutError::Timeout) => {}
-                Err(mpsc::RecvTimeoutError::Disconnected) => break,
-            }
+        let scene = open_watched(spec, &watch, progress);
+        (scene, watch.files())
+    }
+}
+
+fn open_watched(
+    spec: &str,
+    watch: &Arc<Watch>,
+    progress: &dyn Fn(&str, f32) -> ControlFlow<()>,
+) -> Result<Scene, SceneError> {
+    // Decoders and parsers cannot be interrupted. They run on another thread; once cancelled, the step that is
+    // under way ends unheard and the next one does not begin.
+    let (send, result) = mpsc::channel();
+    let worker = std::thread::spawn({
+        let (spec, watch) = (spec.to_owned(), watch.clone());
+        move || drop(send.send(load(&spec, Progress::new(&watch))))
+    });
+    loop {
+        let (what, done) = watch.now();
+        if progress(&what, done).is_break() {
+            watch.stop();
+            return Err(SceneError::Cancelled);
         }
-        // It ended without an answer.
-        match worker.join() {
-            Err(panic) => std::panic::resume_unwind(panic),
-            Ok(()) => Err(SceneError::Cancelled),
+        match result.recv_timeout(ASK) {
+            Ok(loaded) => return loaded.map(with_size_told).map(Scene::with_seen_distance),
+            Err(mpsc::RecvTimeoutError::Timeout) => {}
+            Err(mpsc::RecvTimeoutError::Disconnected) => break,
         }
+    }
+    // It ended without an answer.
+    match worker.join() {
+        Err(panic) => std::panic::resume_unwind(panic),
+        Ok(()) => Err(SceneError::Cancelled),
     }
 }
 
@@ -59,6 +77,7 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
         return builtin::open(spec, progress);
     }
     let path = &path_of(spec);
+    progress.reads(path);
     if ending(path) == "ron" {
         return file::load(path, progress);
     }
@@ -79,6 +98,7 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
 
 /// A model with what its file says and no more.
 pub(super) fn load_model(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
+    progress.reads(path);
     let reader = match ending(path).as_str() {
         "obj" => obj::load,
         "gltf" | "glb" => gltf::load,

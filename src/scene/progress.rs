@@ -1,5 +1,7 @@
 //! Word from the thread that loads a scene to the one that waits for it, and back.
 
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -10,17 +12,23 @@ use super::SceneError;
 pub(super) struct Watch {
     stopped: AtomicBool,
     now: Mutex<(String, f32)>,
+    files: Mutex<BTreeSet<PathBuf>>,
 }
 
 impl Watch {
     /// Before anything was done.
     pub fn new(what: &str) -> Watch {
-        Watch { stopped: AtomicBool::new(false), now: Mutex::new((what.to_owned(), 0.0)) }
+        Watch { stopped: AtomicBool::new(false), now: Mutex::new((what.to_owned(), 0.0)), files: Mutex::default() }
     }
 
     /// What is being done, and the share done.
     pub fn now(&self) -> (String, f32) {
         self.now.lock().map_or_else(|e| e.into_inner().clone(), |now| now.clone())
+    }
+
+    /// All files that were read or looked for until now, sorted.
+    pub fn files(&self) -> Vec<PathBuf> {
+        self.files.lock().map_or_else(|e| e.into_inner().clone(), |files| files.clone()).into_iter().collect()
     }
 
     /// Nobody waits for the scene any more.
@@ -55,6 +63,13 @@ impl<'a> Progress<'a> {
             *now = (what.to_owned(), self.from + done * self.size);
         }
         if self.stopped() { Err(SceneError::Cancelled) } else { Ok(()) }
+    }
+
+    /// Notes a file that is read or looked for: another scene may come of it when it changes.
+    pub fn reads(self, file: &Path) {
+        if let Ok(mut files) = self.watch.files.lock() {
+            files.insert(file.into());
+        }
     }
 
     /// Whether nobody waits any more. Loops ask it and then end with any error: [`Scene::open`](super::Scene::open)

@@ -1,7 +1,7 @@
 //! GLSL to SPIR-V through shaderc. Compiled modules are kept on disk by the content of everything that went into them.
 
 use super::access::decorated;
-use super::macros::check_growth;
+use super::macros::{Grown, check_growth, check_version};
 use super::reflect::{Interface, MAX_BINDINGS, reflect};
 use crate::diagnostics::excerpt::excerpt;
 use crate::diagnostics::panics::caught;
@@ -272,14 +272,15 @@ impl ShaderCompiler {
                 }
             }
         });
-        check_growth(texts).map_err(|grown| {
+        let main = texts.get(&source.file).map_or("", String::as_str);
+        let late = check_version(main).map_err(|(line, message)| Grown { file: source.file.clone(), line, message });
+        late.and_then(|()| check_growth(texts)).map_err(|grown| {
             let file = self.find(&grown.file).unwrap_or_else(|| PathBuf::from(format!("{} (generated)", grown.file)));
             let source = texts.get(&grown.file).and_then(|t| t.lines().nth(grown.line.saturating_sub(1) as usize));
             let place = Place { file, line: grown.line, column: 0 };
             vec![Diagnostic { source: source.map(|l| l.trim().into()), ..Diagnostic::error(place, grown.message) }]
         })?;
-        let text = texts.get(&source.file).map_or("", String::as_str);
-        match compiler.compile_into_spirv(text, kind, &source.file, "main", Some(&options)) {
+        match compiler.compile_into_spirv(main, kind, &source.file, "main", Some(&options)) {
             Ok(artifact) => Ok(artifact.as_binary().to_vec()),
             Err(e) => Err(self.messages(&e.to_string(), texts, &source.file)),
         }

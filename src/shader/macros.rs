@@ -65,6 +65,18 @@ pub(super) fn check_growth(texts: &BTreeMap<String, String>) -> Result<(), Grown
     Ok(())
 }
 
+/// Checks that nothing but comments is before `#version`. With a letter there the compiler prints thousands of lines of
+/// its own tables, to standard output.
+///
+/// # Errors
+/// The line, from 1, and the fault.
+pub(super) fn check_version(text: &str) -> Result<(), (u32, String)> {
+    let lines = lines(text);
+    let mut before = lines.iter().take_while(|l| l.directive() != Some("version")).filter(|l| !l.tokens.is_empty());
+    let first = before.next().filter(|_| lines.iter().any(|l| l.tokens.windows(2).any(|t| t == ["#", "version"])));
+    first.map_or(Ok(()), |l| Err((l.number, format!("'{}' is before #version, which must come first", l.tokens[0]))))
+}
+
 /// A line with its continuations.
 struct Line<'t> {
     number: u32,
@@ -301,6 +313,16 @@ mod tests {
     fn chain(first: &str, next: impl Fn(usize) -> String, use_of_it: &str) -> String {
         let lines: String = (1..40).map(next).collect();
         format!("{first}{lines}{use_of_it}")
+    }
+
+    #[test]
+    fn only_comments_come_before_the_version() {
+        for text in ["#version 460\nvoid main() {}", "// one\n/* two\n */ #version 460\n", "float version;\n"] {
+            assert_eq!(check_version(text), Ok(()), "{text}");
+        }
+        for (text, line) in [("x#version 460\n", 1), ("\n;\n#version 460\n", 2), ("\u{feff}#version 460\n", 1)] {
+            assert_eq!(check_version(text).map_err(|e| e.0), Err(line), "{text:?}");
+        }
     }
 
     #[test]

@@ -161,6 +161,8 @@ impl Workbench {
                     ui.weak("preview, while the passes are built");
                 }
             }
+            ui.weak(format!("watching {} folders", self.watch.folder_count()))
+                .on_hover_ui(|ui| drop(ui.label(self.watch.summary())));
             if let Some(what) = self.pending(ui.ctx()) {
                 ui.colored_label(CHANGED, what);
             }

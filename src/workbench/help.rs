@@ -22,12 +22,13 @@ pub enum Action {
     FullScreen,
     WholePicture,
     Open,
+    Reload,
 }
 
 const NONE: Modifiers = Modifiers::NONE;
 
 /// In the order in which they are explained.
-const KEYS: [(Action, KeyboardShortcut, &str); 17] = [
+const KEYS: [(Action, KeyboardShortcut, &str); 19] = [
     (Action::Help, KeyboardShortcut::new(NONE, Key::F1), "these keys"),
     (
         Action::Undo,
@@ -38,6 +39,8 @@ const KEYS: [(Action, KeyboardShortcut, &str); 17] = [
     (Action::Redo, KeyboardShortcut::new(Modifiers::COMMAND, Key::Y), "redo"),
     (Action::Open, KeyboardShortcut::new(Modifiers::COMMAND, Key::O), "open a scene, a model or an experiment"),
     (Action::Find, KeyboardShortcut::new(Modifiers::COMMAND, Key::F), "search the parameters"),
+    (Action::Reload, KeyboardShortcut::new(NONE, Key::F5), "read graphs, shaders and the scene again"),
+    (Action::Reload, KeyboardShortcut::new(Modifiers::COMMAND, Key::R), "the same"),
     (
         Action::Save,
         KeyboardShortcut::new(Modifiers::COMMAND, Key::S),
@@ -77,7 +80,9 @@ const BUTTONS: [(&str, &str); 5] = [
 /// Actions whose keys were pressed; keys without Ctrl do nothing while text is typed.
 pub fn pressed(ui: &Ui, typing: bool) -> Vec<Action> {
     let allowed = |shortcut: &KeyboardShortcut| {
-        !typing || shortcut.modifiers.any() || matches!(shortcut.logical_key, Key::F1 | Key::F10 | Key::F11 | Key::F12)
+        !typing
+            || shortcut.modifiers.any()
+            || matches!(shortcut.logical_key, Key::F1 | Key::F5 | Key::F10 | Key::F11 | Key::F12)
     };
     let mut list: Vec<_> = KEYS.iter().filter(|k| allowed(&k.1)).collect();
     // Longer combinations first: Ctrl Z is also pressed when Ctrl Shift Z is.

@@ -3,7 +3,7 @@
 use crate::workbench::engine::Order;
 use crate::workbench::picture::zoom;
 use crate::workbench::tabs::TABS;
-use crate::workbench::{Workbench, help, panel};
+use crate::workbench::{Workbench, help, panel, watch};
 use egui::{TextureId, Ui};
 
 impl Workbench {
@@ -66,6 +66,7 @@ impl Workbench {
                     panel::Panel::find(ui);
                 }
                 help::Action::Open => self.models.ask(),
+                help::Action::Reload => self.files_changed(&watch::Changed::all()),
                 help::Action::Help => self.help = !self.help,
                 help::Action::Undo => self.go(true),
                 help::Action::Redo => self.go(false),

@@ -205,7 +205,7 @@ impl Workbench {
             clock: request::Clock { at: experiment.time, jumps: 1, ..request::Clock::default() },
             ..RenderRequest::default()
         };
-        watch.scene(&desired.scene);
+        watch.experiment(&options.experiment);
         crate::results::capture::sweep_partials(&root.join("captures"));
         let trouble = watch.trouble.clone();
         Ok(Workbench {

@@ -98,7 +98,6 @@ impl Workbench {
         self.view.picture.clear();
         self.desired.lights = None;
         self.returning = false;
-        self.watch.scene(spec);
     }
 
     /// A file was dropped on the window.
@@ -106,7 +105,10 @@ impl Workbench {
         let spec = path.to_string_lossy().into_owned();
         let is_ron = crate::files::ending(path) == "ron";
         match Experiment::read(path) {
-            Ok(experiment) if is_ron => self.open(&experiment),
+            Ok(experiment) if is_ron => {
+                self.watch.experiment(path);
+                self.open(&experiment);
+            }
             _ => {
                 self.experiment = None;
                 self.open_scene(&spec);

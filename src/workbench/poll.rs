@@ -106,6 +106,7 @@ impl Workbench {
                 }
             }
             Report::Loading(what, part) => self.loading = Some((what, part)),
+            Report::Reads(files) => self.watch.scene(&files),
             Report::Loaded(scene) => self.loaded(scene),
             Report::LoadFailed(why) => {
                 self.loading = None;

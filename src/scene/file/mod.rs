@@ -72,7 +72,7 @@ pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene,
     compose::add_placed(&mut scene, &own, &ModelEntry::default());
     match &file.environment {
         Some(entry) => {
-            scene.environment = Some(open_environment(entry, path, text, &mut scene.warnings)?);
+            scene.environment = Some(open_environment(entry, path, text, &mut scene.warnings, progress)?);
             scene.sky = file.sky.map_or(Vec3::ONE, |s| s.0) * entry.intensity;
         }
         // A radiance of its own takes the place of the first model's sky, picture and all.
@@ -101,6 +101,7 @@ fn open_environment(
     scene_file: &Path,
     text: &str,
     warnings: &mut Vec<String>,
+    progress: Progress,
 ) -> Result<Environment, SceneError> {
     let file = match &entry.of {
         SkyOf::File(file) => file,
@@ -112,6 +113,7 @@ fn open_environment(
     let candidates = places(file, scene_file);
     // Where it is nowhere, the message is about the first place.
     let found = candidates.iter().find(|candidate| candidate.is_file()).or(candidates.first());
+    found.into_iter().for_each(|f| progress.reads(f));
     let opened = environment::read(found.map_or(Path::new(""), PathBuf::as_path), warnings);
     let environment = opened.map_err(|message| in_file(scene_file, text, file, message))?;
     Ok(Environment { rotation: entry.rotation, ..environment })
@@ -124,6 +126,7 @@ fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progr
     let file = entry.file.as_deref().unwrap_or_default();
     let candidates = places(file, scene_file);
     let Some(found) = candidates.iter().find(|candidate| candidate.is_file()) else {
+        candidates.iter().for_each(|c| progress.reads(c));
         let (line, column) = position_of(text, file);
         let tried: Vec<String> = candidates.iter().map(|c| c.display().to_string()).collect();
         let message = format!(
@@ -140,8 +143,8 @@ fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progr
 /// Where a model may be: beside the scene file, then in each folder of CONELAB_SCENES.
 fn places(file: &str, scene_file: &Path) -> Vec<PathBuf> {
     let mut places = vec![scene_file.parent().unwrap_or(Path::new("")).join(file)];
-    let folders = std::env::var("CONELAB_SCENES").unwrap_or_default();
-    places.extend(folders.split(':').filter(|folder| !folder.is_empty()).map(|folder| Path::new(folder).join(file)));
+    let folders = std::env::var_os("CONELAB_SCENES").unwrap_or_default();
+    places.extend(std::env::split_paths(&folders).filter(|f| !f.as_os_str().is_empty()).map(|f| f.join(file)));
     places
 }
 

@@ -5,7 +5,7 @@ mod decode;
 mod mips;
 mod stand_in;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::Vec4;
@@ -58,6 +58,22 @@ pub(super) enum Recipe {
 }
 
 impl Recipe {
+    /// The files that it reads.
+    fn files(&self) -> impl Iterator<Item = &Path> {
+        let sources = match self {
+            Recipe::Color { image, .. }
+            | Recipe::Normal { image }
+            | Recipe::MetallicRoughness { image }
+            | Recipe::Glossiness { image, .. } => [Some(image), None],
+            Recipe::ColorAndMask { color, alpha, .. } => [color.as_ref(), Some(alpha)],
+            Recipe::RoughnessAndMetallic { roughness, metallic } => [roughness.as_ref(), metallic.as_ref()],
+        };
+        sources.into_iter().flatten().filter_map(|source| match source {
+            Source::File(path) => Some(path.as_path()),
+            _ => None,
+        })
+    }
+
     /// Of its first image.
     fn name(&self) -> String {
         match self {
@@ -115,6 +131,9 @@ impl Requests {
         make: impl Fn(&Recipe, &str) -> (T, Vec<String>) + Sync,
     ) -> Result<(Vec<T>, Vec<String>), SceneError> {
         let recipes: Vec<(Recipe, String)> = self.recipes.into_iter().collect();
+        for file in recipes.iter().flat_map(|r| r.0.files()) {
+            progress.reads(file);
+        }
         let one = |(recipe, material): &(Recipe, String)| {
             if progress.stopped() { Err(SceneError::Cancelled) } else { Ok(make(recipe, material)) }
         };

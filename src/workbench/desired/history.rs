@@ -123,7 +123,6 @@ impl Workbench {
         self.fixed_size = before.fixed_size;
         (self.experiment, self.returning) = (None, false);
         self.view.picture.clone_from(&self.desired.environment);
-        self.watch.scene(&self.desired.scene);
         self.history.forget_scene((&failed.0, &failed.1), &before);
     }
 

@@ -153,6 +153,8 @@ pub enum Report {
     },
     /// A scene is being loaded: what, and the share done.
     Loading(String, f32),
+    /// The files that the scene being loaded was read from, also when that failed.
+    Reads(Vec<PathBuf>),
     /// A scene is there.
     Loaded(Arc<Scene>),
     /// A scene could not be loaded; the one before stays.

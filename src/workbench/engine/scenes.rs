@@ -40,11 +40,19 @@ impl Run<'_> {
                 }
                 ControlFlow::Continue(())
             };
-            let open = || Scene::open(&key.0, &progress).and_then(|scene| scene.under(Path::new(&key.1)));
-            let scene =
-                guarded(open).map_err(|message| SceneError::Model { path: key.0.clone().into(), message }).flatten();
+            let open = || {
+                let (scene, mut files) = Scene::open_with_files(&key.0, &progress);
+                if !key.1.is_empty() {
+                    files.push(key.1.clone().into());
+                }
+                (scene.and_then(|scene| scene.under(Path::new(&key.1))), files)
+            };
+            let (scene, files) = guarded(open).unwrap_or_else(|message| {
+                (Err(SceneError::Model { path: key.0.clone().into(), message }), vec![key.0.clone().into()])
+            });
             // A load that was replaced by another has nobody to report to.
             if !cancel.load(Ordering::Relaxed) || matches!(scene, Err(SceneError::Cancelled)) {
+                out.send(Report::Reads(files));
                 let _ = loaded.send(scene.map(Arc::new));
             }
         });
