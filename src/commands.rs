@@ -157,6 +157,9 @@ struct SceneArgs {
     /// Write the scene to this file (.obj, .gltf or .glb) instead of describing it.
     #[arg(long)]
     export: Option<PathBuf>,
+    /// Write the description as JSON to this file; `-` is standard output.
+    #[arg(long)]
+    json: Option<PathBuf>,
 }
 
 /// Runs a command; the error is for the user.
@@ -292,7 +295,11 @@ fn scene(args: &SceneArgs) -> Result<(), LabError> {
             scene.export(path)?;
             say!("wrote {}", path.display());
         }
-        None => say_part!("{}", scene.summary()),
+        None if args.json.is_none() => say_part!("{}", scene.summary()),
+        None => {}
+    }
+    if let Some(path) = &args.json {
+        output::write_json(path, &scene.description())?;
     }
     Ok(())
 }

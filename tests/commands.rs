@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{conelab, copy, device, fails, root, succeeds};
+use common::{conelab, copy, device, fails, home, root, succeeds};
 use exr::prelude::read_first_rgba_layer_from_file;
 use insta::assert_snapshot;
 use std::path::{Path, PathBuf};
@@ -478,4 +478,16 @@ fn check_of_everything_succeeds() {
 fn devices_are_listed() {
     let text = succeeds(conelab(root()).arg("devices"));
     assert!(text.contains(&device()) && text.contains("Vulkan 1.") && text.contains("yes tessellation"), "{text}");
+}
+
+#[test]
+fn a_scene_is_described_as_json() {
+    let home = home();
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl nowhere\nf 1 2 3\n";
+    std::fs::write(home.path().join("one.obj"), text).unwrap();
+    let out = succeeds(conelab(home.path()).args(["scene", "one.obj", "--json", "-"]));
+    let scene: serde_json::Value = serde_json::from_str(&out).unwrap();
+    assert_eq!(scene["triangles"], 1);
+    assert_eq!(scene["bounds"], serde_json::json!([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]]));
+    assert!(scene["warnings"].as_array().unwrap().iter().any(|w| w.as_str().unwrap().contains("nowhere")), "{out}");
 }

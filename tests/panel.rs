@@ -120,6 +120,11 @@ fn the_window_says_what_is_wrong_with_a_scene() {
     driver.texts_until("the warning", |texts| {
         texts.iter().any(|t| t.starts_with("scene: ") && t.contains("gone.png")) && has(texts, "Warnings (1)")
     });
+    // Beside the scene's name on every tab; a click shows the list.
+    driver.click("", "Graph");
+    driver.texts_until("another tab", |texts| !has(texts, "Warnings (1)"));
+    driver.click("Button", "warnings: 1");
+    driver.texts_until("the list", |texts| has(texts, "Warnings (1)"));
     driver.close();
     drop(driver);
 

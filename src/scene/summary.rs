@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{LightKind, Material, Scene, Texture};
+use serde_json::{Map, Value, json};
+
+use super::{Camera, Light, LightKind, Material, Scene, Texture};
 
 impl Scene {
     /// Counts, bounds, tables of materials and textures, lights, cameras and warnings, as text of several lines.
@@ -11,6 +13,54 @@ impl Scene {
         // Writing into a string cannot fail.
         let _ = self.write_summary(&mut text);
         text
+    }
+
+    /// The same as JSON, without texels and vertices. Lengths are in metres, angles in degrees, light in W/(m² sr), W/sr or
+    /// W/m² as the scene file has them.
+    pub fn description(&self) -> Value {
+        let (low, high) = self.bounds();
+        let texture = |number: Option<u32>| number.and_then(|n| self.textures.get(n as usize)).map(|t| &t.name);
+        let material = |m: &Material| {
+            json!({
+                "name": m.name, "base_color": m.base_color.to_array(), "roughness": m.roughness, "metallic": m.metallic,
+                "emission": m.emission.to_array(), "alpha_cutoff": m.alpha_cutoff, "left_out": m.is_left_out(),
+                "base_color_texture": texture(m.base_color_texture), "normal_texture": texture(m.normal_texture),
+                "metallic_roughness_texture": texture(m.metallic_roughness_texture),
+                "emission_texture": texture(m.emission_texture),
+            })
+        };
+        let light = |l: &Light| {
+            let kind = match l.kind {
+                LightKind::Directional => json!("directional"),
+                LightKind::Point => json!("point"),
+                LightKind::Spot { inner, outer } => {
+                    json!({ "spot": { "inner": inner.to_degrees(), "outer": outer.to_degrees() } })
+                }
+            };
+            json!({
+                "name": l.name, "kind": kind, "color": l.color.to_array(), "position": l.position.to_array(),
+                "direction": l.direction.to_array(), "shadow": l.shadow,
+            })
+        };
+        let camera = |c: &Camera| json!({ "eye": c.eye.to_array(), "target": c.target.to_array(), "fov_y": c.fov_y });
+        json!({
+            "name": self.name,
+            "triangles": self.triangle_count(),
+            "vertices": self.meshes.iter().map(|mesh| mesh.vertices.len()).sum::<usize>(),
+            "meshes": self.meshes.len(),
+            "instances": self.instances.len(),
+            "animated": self.instances.iter().filter(|i| i.animation.is_some()).count(),
+            "bounds": [low.to_array(), high.to_array()],
+            "sky": self.sky.to_array(),
+            "environment": self.environment.as_ref().map(|e| e.name().to_string()),
+            "materials": self.materials.iter().map(material).collect::<Vec<_>>(),
+            "textures": self.textures.iter().map(|t| json!({
+                "name": t.name, "size": [t.width, t.height], "mips": t.mips.len(),
+            })).collect::<Vec<_>>(),
+            "lights": self.all_lights().iter().map(light).collect::<Vec<_>>(),
+            "cameras": self.cameras.iter().map(|(name, c)| (name.clone(), camera(c))).collect::<Map<_, _>>(),
+            "warnings": self.warnings,
+        })
     }
 
     fn write_summary(&self, out: &mut String) -> std::fmt::Result {

@@ -5,6 +5,7 @@ use crate::experiment::Experiment;
 use crate::results::timers::Rows;
 use crate::workbench::desired::edit;
 use crate::workbench::engine::Order;
+use crate::workbench::messages::AMBER;
 use crate::workbench::panel::control::CHANGED;
 use crate::workbench::{Workbench, ron_files, short, side_of};
 use egui::Ui;
@@ -15,6 +16,7 @@ impl Workbench {
             ui.strong("conelab");
             self.experiments_menu(ui);
             self.scenes_menu(ui);
+            self.warning_count(ui);
             ui.separator();
             let (undo, redo) = self.history.can();
             if ui.add_enabled(undo, egui::Button::new("undo")).on_hover_text("Ctrl Z").clicked() {
@@ -137,6 +139,18 @@ impl Workbench {
         });
         if let Some(spec) = chosen {
             self.open_scene(&spec);
+        }
+    }
+
+    /// The number of the scene's warnings, which lead to the list.
+    fn warning_count(&mut self, ui: &mut Ui) {
+        let warnings = self.scene_warnings();
+        if warnings.is_empty() {
+            return;
+        }
+        let text = egui::RichText::new(format!("warnings: {}", warnings.len())).color(AMBER);
+        if ui.small_button(text).on_hover_text(warnings.join("\n")).clicked() {
+            self.tab = crate::workbench::tabs::surroundings::TAB;
         }
     }
 
