@@ -431,3 +431,31 @@ fn damaged_references_are_told_and_not_trusted() {
     };
     assert!(said.contains("delete the folder"), "{said}");
 }
+
+/// 3,000 triangles in one place, and a chain that grows by a fifth each, make a hierarchy by surface area 132 and 2,992
+/// levels deep. A heap looks like one triangle, and the sky's light on it is the same.
+#[test]
+fn deep_hierarchies_are_traced() {
+    let lab = lab(root());
+    let folder = tempfile::tempdir().unwrap();
+    let light = |copies: usize, chain: i32| {
+        let mut text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{}", "f 1 2 3\n".repeat(copies));
+        for i in 0..chain {
+            // Behind the triangle, where the camera and the light of its front do not come.
+            let s = 0.01 * 1.2_f64.powi(i - chain);
+            text += &format!("v {s} {s} -1\nv {} {s} -1\nv {s} {} -1\nf -3 -1 -2\n", 2.0 * s, 2.0 * s);
+        }
+        let file = folder.path().join(format!("{copies}-{chain}.obj"));
+        std::fs::write(&file, text).unwrap();
+        let mut experiment = experiment(file.to_str().unwrap(), (16, 12), &[]);
+        experiment.camera = CameraChoice::Placed(PlacedCamera::new((0.3, 0.3, 2.0), (0.3, 0.3, 0.0), 20.0));
+        let scene = Arc::new(Scene::open(&experiment.scene, &|_, _| ControlFlow::Continue(())).unwrap());
+        mean(&trace(&lab, &experiment, &scene, 1, 32), "total")
+    };
+    let one = light(1, 0);
+    assert!(one > 0.0);
+    for (copies, chain) in [(3000, 0), (1, 300)] {
+        let found = light(copies, chain);
+        assert!((found / one - 1.0).abs() < 0.02, "{copies} copies, a chain of {chain}: {found} and not {one}");
+    }
+}

@@ -138,7 +138,7 @@ impl SceneGpu {
             ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
         ]);
         if rays {
-            let found = hierarchy(&soup, &emitters, &instance_blocks, &gpu.info.name)?;
+            let found = hierarchy(&soup, &emitters, &instance_blocks);
             buffers.extend(ray_buffers(&mut upload, found, &info)?);
             let texels = sky::texels(scene.environment.as_ref());
             buffers.insert("skyTexels", upload.buffer("skyTexels", bytemuck::cast_slice(&texels), storage)?);
@@ -219,7 +219,7 @@ impl SceneGpu {
         resources.buffers.extend(own);
         if self.has_rays() {
             // The other program moves its own instances, and the hierarchy with them.
-            let found = scene_hierarchy(scene, &self.emitters, &sent, &gpu.info.name)?;
+            let found = scene_hierarchy(scene, &self.emitters, &sent);
             resources.buffers.extend(ray_buffers(&mut upload, found, &info)?);
         }
         upload.finish()?;
@@ -244,7 +244,7 @@ impl SceneGpu {
         }
         let rays = [self.resources.buffers.get("bvhNodes"), self.resources.buffers.get("bvhTriangles")];
         if let [Some(nodes), Some(triangles)] = rays {
-            let found = scene_hierarchy(scene, &self.emitters, &self.sent, "this device")?;
+            let found = scene_hierarchy(scene, &self.emitters, &self.sent);
             list.push((nodes.clone(), found.nodes));
             list.push((triangles.clone(), found.triangles));
         }
@@ -292,29 +292,19 @@ impl SceneGpu {
 }
 
 /// The hierarchy over triangles in the pose of these instances.
-fn hierarchy(
-    soup: &Soup<'_>,
-    emitters: &Emitters,
-    instances: &[InstanceBlock],
-    device: &str,
-) -> Result<bvh::Hierarchy> {
+fn hierarchy(soup: &Soup<'_>, emitters: &Emitters, instances: &[InstanceBlock]) -> bvh::Hierarchy {
     let model = |i: u32| instances.get(i as usize).map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model));
-    bvh::build(soup, emitters, &model, device)
+    bvh::build(soup, emitters, &model)
 }
 
 /// [`hierarchy`] over all triangles of a scene that was uploaded before.
-fn scene_hierarchy(
-    scene: &Scene,
-    emitters: &Emitters,
-    instances: &[InstanceBlock],
-    device: &str,
-) -> Result<bvh::Hierarchy> {
+fn scene_hierarchy(scene: &Scene, emitters: &Emitters, instances: &[InstanceBlock]) -> bvh::Hierarchy {
     let (positions, _, indices, first_index) = vertices(scene);
     let draws = draws(scene, &first_index);
     let masked = |d: &DrawBlock| is_masked(scene, d);
     let soup =
         Soup { positions: &positions, indices: &indices, draws: &draws, first_index: &first_index, masked: &masked };
-    hierarchy(&soup, emitters, instances, device)
+    hierarchy(&soup, emitters, instances)
 }
 
 /// The buffers of a hierarchy, with room for that of any other pose.
