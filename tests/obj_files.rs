@@ -23,10 +23,10 @@ fn pictures() -> TempDir {
     let save = |name: &str, texel: &dyn Fn(u32, u32) -> [u8; 4]| {
         image::RgbaImage::from_fn(8, 8, |x, y| image::Rgba(texel(x, y))).save(folder.path().join(name)).unwrap();
     };
-    for name in ["checker.png", "textures/wall.png", "my wall.png", "brick_nor_gl.png.copy.png"] {
+    for name in ["checker.png", "textures/wall.png", "my wall.png"] {
         save(name, &|x, y| if (x + y) % 2 == 0 { [200, 100, 50, 255] } else { [20, 40, 60, 255] });
     }
-    for name in ["up_normal.png", "brick_nor_gl_1k.png", "lean.png"] {
+    for name in ["brick_nor_gl_1k.png", "lean.png"] {
         save(name, &|_, _| [128, 218, 218, 255]);
     }
     save("wall_normal_height.png", &|x, _| [x as u8 * 30, x as u8 * 30, x as u8 * 30, 255]);

@@ -16,6 +16,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use glam::Mat4;
+use indexmap::IndexSet;
 
 use crate::files::read_input;
 
@@ -92,7 +93,12 @@ fn read_materials(libraries: &mut [Library], finder: &mut Finder, requests: &mut
 }
 
 /// The surface of each used name; the last one is that of faces without a material.
-fn surfaces(used: &[String], libraries: &[Library], materials: &[Owned], warnings: &mut Warnings) -> Vec<Surface> {
+fn surfaces(
+    used: &IndexSet<String>,
+    libraries: &[Library],
+    materials: &[Owned],
+    warnings: &mut Warnings,
+) -> Vec<Surface> {
     let mut by_name: HashMap<&str, usize> = HashMap::new();
     let mut next = 0;
     for library in libraries {

@@ -468,6 +468,11 @@ pub const CASES: &[Case] = &[
         Warns("a.mtl: bump maps that hold heights are left out. Convert them to normal maps, and write 'norm FILE' ('m')"),
         Warnings(1),
     ]),
+    quad("a bump map that is not there", b"newmtl m\nbump gone.png\n", &[
+        NormalMap("m", None),
+        Warns("a.mtl: bump maps that are not there are left out"),
+        Warnings(1),
+    ]),
     quad("norm and bump", b"newmtl m\nmap_Bump wall_normal_height.png\nnorm lean.png\nmap_Kd checker.png\n", &[
         NormalMap("m", LEAN),
         BaseMap("m", CHECKER),

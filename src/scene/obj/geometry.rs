@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use indexmap::IndexSet;
+
 use super::faces::{self, Corner, Counts, NONE};
 use super::lines::{lines, shown, without_comment, words};
 use crate::scene::progress::Progress;
@@ -49,10 +51,10 @@ pub(super) struct Geometry {
     pub corners: Vec<Corner>,
     pub faces: Vec<Face>,
     pub pieces: Vec<Piece>,
-    /// Names of materials as faces use them, each once.
-    pub used: Vec<String>,
+    /// Names of materials as faces use them.
+    pub used: IndexSet<String>,
     /// Texts behind `mtllib`.
-    pub libraries: Vec<String>,
+    pub libraries: IndexSet<String>,
 }
 
 impl Geometry {
@@ -88,7 +90,6 @@ struct Reader<'a> {
     smoothing: Smoothing,
     /// Whether the next face begins a piece.
     changed: bool,
-    materials: HashMap<String, u32>,
     groups: HashMap<String, u32>,
     has_colors: bool,
     /// Statements that belong to the format, and those that do not.
@@ -106,7 +107,6 @@ impl Reader<'_> {
             material: None,
             smoothing: Smoothing::Angle,
             changed: true,
-            materials: HashMap::new(),
             groups: HashMap::new(),
             has_colors: false,
             known: 0,
@@ -125,11 +125,7 @@ impl Reader<'_> {
             "o" | "g" => self.begin_object(without_comment(rest)),
             "usemtl" => self.use_material(rest),
             "mtllib" if rest.is_empty() => self.left_out("'mtllib' without a file is left out"),
-            "mtllib" => {
-                if !self.all.libraries.iter().rev().take(16).any(|known| known == rest) {
-                    self.all.libraries.push(rest.into());
-                }
-            }
+            "mtllib" => drop(self.all.libraries.insert(rest.into())),
             "s" => self.smooth(words(rest).next().unwrap_or("off")),
             "l" => self.left_out("lines (l) are left out: only faces are rendered"),
             "p" => self.left_out("points (p) are left out: only faces are rendered"),
@@ -171,12 +167,9 @@ impl Reader<'_> {
 
     fn use_material(&mut self, name: &str) {
         self.changed = true;
-        let next = self.materials.len() as u32;
-        let index = *self.materials.entry(name.into()).or_insert(next);
-        if index == next {
-            self.all.used.push(name.into());
-        }
-        self.material = Some(index);
+        let known = self.all.used.get_index_of(name);
+        let index = known.unwrap_or_else(|| self.all.used.insert_full(name.into()).0);
+        self.material = u32::try_from(index).ok();
     }
 
     fn smooth(&mut self, group: &str) {

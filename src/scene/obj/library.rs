@@ -1,7 +1,10 @@
 //! Material libraries (MTL): the statements of each material, checked.
 
 use std::collections::{BTreeMap, HashSet};
+use std::io::ErrorKind;
 use std::path::PathBuf;
+
+use indexmap::IndexSet;
 
 use crate::files::read_input;
 
@@ -78,7 +81,7 @@ pub(super) struct Definition {
 }
 
 /// The libraries behind all `mtllib` of a model, each once. Missing ones are warnings.
-pub(super) fn load(entries: &[String], finder: &mut Finder, warnings: &mut Warnings) -> Vec<Library> {
+pub(super) fn load(entries: &IndexSet<String>, finder: &mut Finder, warnings: &mut Warnings) -> Vec<Library> {
     let mut libraries = Vec::new();
     let mut seen = HashSet::new();
     for path in entries.iter().flat_map(|entry| paths(entry, finder, warnings)).take(MAX_LIBRARIES).collect::<Vec<_>>()
@@ -89,6 +92,10 @@ pub(super) fn load(entries: &[String], finder: &mut Finder, warnings: &mut Warni
         match read_input(&path, MAX_BYTES) {
             Ok(bytes) => libraries.push(read(path, &decode(bytes))),
             Err(problem) => {
+                let problem = match problem.kind() {
+                    ErrorKind::NotFound => "no such file".to_owned(),
+                    _ => problem.to_string(),
+                };
                 let what = format!("material libraries cannot be read ({problem}): grey stands in for their materials");
                 warnings.add(what, shown(&path.display().to_string()));
             }
@@ -103,12 +110,12 @@ pub(super) fn load(entries: &[String], finder: &mut Finder, warnings: &mut Warni
 /// The files of one `mtllib`: one with blanks in its name, or several.
 fn paths(entry: &str, finder: &mut Finder, warnings: &mut Warnings) -> Vec<PathBuf> {
     let names = names(entry);
-    if names.len() < 2 || finder.look(entry).1 != Found::No {
+    if names.len() < 2 || finder.look(entry).1 == Found::Exact {
         return vec![finder.find(entry, warnings)];
     }
     // If none is there, the entry was meant as one name.
     if names.iter().all(|name| finder.look(name).1 == Found::No) {
-        return vec![finder.look(entry).0];
+        return vec![finder.find(entry, warnings)];
     }
     names.iter().map(|name| finder.find(name, warnings)).collect()
 }

@@ -133,6 +133,6 @@ mod tests {
                 "{entry}"
             );
         }
-        assert!(["", "-s 1 1 1", "-clamp on", "# a.png"].iter().all(|entry| parse(entry).is_none()));
+        assert!(["", "-clamp on", "# a.png"].iter().all(|entry| parse(entry).is_none()));
     }
 }

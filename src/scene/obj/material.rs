@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::find::Finder;
+use super::find::{Finder, Found};
 use super::library::Definition;
 use super::lines::shown;
 use super::maps::{Map, Placement, parse};
@@ -163,8 +163,16 @@ impl Reader<'_, '_> {
         let [norm, other] = ["norm", "map_kn"].map(|key| self.map(key));
         let [bump, other_bump] = ["map_bump", "bump"].map(|key| self.map(key));
         let given = norm.or(other);
-        let is_bump = given.is_none();
-        (given.or(bump).or(other_bump), is_bump)
+        if given.is_some() {
+            return (given, false);
+        }
+        let Some((source, map)) = bump.or(other_bump) else { return (None, false) };
+        // Nothing stands in for a picture that was no normal map to begin with, most likely.
+        if self.pictures.finder.look(&map.file).1 == Found::No {
+            self.warnings.add("bump maps that are not there are left out", shown(&source.name()));
+            return (None, false);
+        }
+        (Some((source, map)), true)
     }
 
     /// Where pictures are: vertices have one set of coordinates, so that the first map decides.

@@ -1,4 +1,4 @@
-//! Polygons to triangles: ear clipping in the plane of the largest projection.
+//! Polygons to triangles: ear clipping in the plane of the polygon.
 //!
 //! An ear is blocked by a reflex corner inside of it. Reflex corners are in a tree, and a blocked ear is tried again once
 //! its blocker changes, so that polygons of a million corners take a bounded number of tests.
@@ -31,17 +31,26 @@ pub(super) fn triangulate(polygon: &[[f32; 3]], out: &mut Vec<[u32; 3]>) -> Cut 
         fan(out);
         return Cut::default();
     }
-    let Some(points) = plane::project(polygon) else {
+    let Some(planes) = plane::project(polygon) else {
         fan(out);
         return Cut { rough: plane::has_area(polygon), tests: 0 };
     };
-    if plane::is_convex(&points) {
-        fan(out);
-        return Cut::default();
+    let mut all = Cut::default();
+    let begin = out.len();
+    for points in planes {
+        out.truncate(begin);
+        if plane::is_convex(&points) {
+            fan(out);
+            return Cut { rough: false, ..all };
+        }
+        let mut clipper = Clipper::new(&points);
+        clipper.run(out);
+        all = Cut { rough: clipper.rough, tests: all.tests + clipper.tests };
+        if !all.rough {
+            break;
+        }
     }
-    let mut clipper = Clipper::new(&points);
-    clipper.run(out);
-    Cut { rough: clipper.rough, tests: clipper.tests }
+    all
 }
 
 struct Clipper<'a> {
@@ -63,9 +72,13 @@ struct Clipper<'a> {
     /// Whether corners on the rim of an ear leave it one.
     relaxed: bool,
     rough: bool,
+    /// Twice the area of triangles that do not matter: rounded coordinates fold straight edges.
+    negligible: f64,
     tests: usize,
 }
 
+/// Area of a triangle that does not matter, for an area of 1 of the polygon.
+const NEGLIGIBLE: f64 = 1e-5;
 const END: u32 = u32::MAX;
 
 impl Clipper<'_> {
@@ -91,6 +104,7 @@ impl Clipper<'_> {
             blocked: Vec::new(),
             relaxed: false,
             rough: false,
+            negligible: NEGLIGIBLE * plane::area(points),
             tests: 0,
         };
         clipper.nothing = (0..count).filter(|i| clipper.is_nothing(*i)).collect();
@@ -244,8 +258,9 @@ impl Clipper<'_> {
             corner = self.next[corner as usize];
             self.tests += 1;
         }
-        if self.turn(corner) != 0.0 {
-            self.rough = true;
+        let turn = self.turn(corner);
+        if turn != 0.0 {
+            self.rough |= turn.abs() > self.negligible;
             out.push(self.around(corner));
         }
         self.remove(corner);
@@ -263,7 +278,7 @@ impl Clipper<'_> {
         for _ in 2..self.left {
             let third = self.next[second as usize];
             let turn = cross(self.point(first), self.point(second), self.point(third));
-            self.rough |= turn < 0.0;
+            self.rough |= turn < -self.negligible;
             if turn != 0.0 {
                 out.push([first, second, third]);
             }

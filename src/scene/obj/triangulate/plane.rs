@@ -18,9 +18,10 @@ pub(super) enum Inside {
     Corner(usize),
 }
 
-/// The polygon without the axis along which its area is largest (Newell), turning counter-clockwise. None where it has no
-/// area or is not finite.
-pub(super) fn project(polygon: &[[f32; 3]]) -> Option<Vec<Point>> {
+/// The polygon turning counter-clockwise in the plane of two axes in which it is largest, where coordinates stay exact,
+/// and then in its own plane (Newell), in which bent polygons cross themselves less. None where it has no area or is not
+/// finite.
+pub(super) fn project(polygon: &[[f32; 3]]) -> Option<impl Iterator<Item = Vec<Point>>> {
     let normal = newell(polygon);
     let size = normal.map(f64::abs);
     let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b]))?;
@@ -31,7 +32,15 @@ pub(super) fn project(polygon: &[[f32; 3]]) -> Option<Vec<Point>> {
     if normal[axis] < 0.0 {
         (right, up) = (up, right);
     }
-    Some(polygon.iter().map(|p| Point { x: f64::from(p[right]), y: f64::from(p[up]) }).collect())
+    let point = move |p: &[f32; 3]| Point { x: f64::from(p[right]), y: f64::from(p[up]) };
+    // Along the normal to where the largest axis is 0: a shear keeps what crosses and what does not.
+    let slope = [right, up].map(|k| normal[k] / normal[axis]);
+    let own = move |p: &[f32; 3]| {
+        let (Point { x, y }, depth) = (point(p), f64::from(p[axis]));
+        Point { x: x - slope[0] * depth, y: y - slope[1] * depth }
+    };
+    let exact = polygon.iter().map(point).collect();
+    Some(std::iter::once(exact).chain(std::iter::once_with(move || polygon.iter().map(own).collect())))
 }
 
 /// Twice the polygon's area along each axis.
@@ -54,6 +63,12 @@ fn newell(polygon: &[[f32; 3]]) -> [f64; 3] {
 pub(super) fn has_area(polygon: &[[f32; 3]]) -> bool {
     let mut triangles = polygon.windows(2).filter_map(|pair| Some([*polygon.first()?, pair[0], pair[1]]));
     triangles.any(|triangle| newell(&triangle).iter().any(|a| *a != 0.0))
+}
+
+/// Twice the area of a polygon that turns left.
+pub(super) fn area(points: &[Point]) -> f64 {
+    let first = points.first().copied().unwrap_or(Point { x: 0.0, y: 0.0 });
+    points.windows(2).map(|pair| cross(first, pair[0], pair[1])).sum()
 }
 
 /// Whether every corner turns left, and all together once around.

@@ -115,6 +115,29 @@ fn corners_on_edges_and_holes_behind_a_bridge_are_right() {
 }
 
 #[test]
+fn bent_polygons_are_cut_in_their_own_plane() {
+    // Along their largest axis the edges of these cross.
+    for quad in [
+        [[0.0, 0.0, 0.0], [0.83, -0.5, -0.46], [0.48, -0.5, 0.3], [1.0, 0.0, -0.07]],
+        [[0.0, 0.0, 0.0], [0.22, -0.16, 0.79], [0.01, 0.73, 0.82], [1.0, -0.17, 0.0]],
+        [[0.0, 0.0, 0.0], [0.38, -0.37, 0.33], [1.0, -0.18, -0.08], [1.0, -0.28, 0.83]],
+    ] {
+        let mut planes = plane::project(&quad).unwrap();
+        let exact = planes.next().unwrap();
+        let mut first = Clipper::new(&exact);
+        first.run(&mut Vec::new());
+        let mut triangles = Vec::new();
+        let cut = triangulate(&quad, &mut triangles);
+        assert_eq!((first.rough, cut.rough, triangles.len()), (true, false, 2), "{quad:?}");
+    }
+    // A straight edge that rounding folds.
+    let folded = [(0.0, 0.0), (1.0, 0.1), (0.999_999, 0.1), (2.0, 0.0), (2.0, -2.0), (0.0, -2.0)];
+    let mut triangles = Vec::new();
+    let reversed: Vec<(f32, f32)> = folded.into_iter().rev().collect();
+    assert!(!triangulate(&polygon(&reversed), &mut triangles).rough);
+}
+
+#[test]
 fn crossed_polygons_are_cut_roughly() {
     for points in [
         vec![(0., 0.), (1., 1.), (1., 0.), (0., 1.)],
