@@ -53,11 +53,11 @@ fn a_colour_of_one_number_is_grey_and_of_two_is_left_out() {
     assert_eq!((scene.materials[0].base_color.truncate().to_array(), warnings.as_str()), ([0.5; 3], ""));
     for line in ["Kd 0.5 0.5", "Ke 1 2", "Ks", "Kd nan 0 0", "Kd 0 inf 0", "Ke -1 0 0", "Kd red", "Ns x", "map_Kd"] {
         let (_, warnings) = with_material(line);
-        tells(&warnings, &["a.mtl:2:", "left out"]);
+        tells(&warnings, &["a.mtl: ", "left out ('line 2')"]);
     }
     let (scene, warnings) = with_material("Kd 1e5 0.5 0");
     assert_eq!(scene.materials[0].base_color.truncate().to_array(), [1.0, 0.5, 0.0]);
-    tells(&warnings, &["a.mtl:2:", "more than arrives"]);
+    tells(&warnings, &["a.mtl: ", "more than arrives", "('line 2')"]);
 }
 
 #[test]
@@ -66,11 +66,11 @@ fn materials_that_no_library_defines_are_named() {
     write(&folder, "page.mtl", "<html>404 not found</html>\n");
     for text in [format!("mtllib page.mtl\n{TRIANGLE}"), TRIANGLE.into()] {
         let scene = open(write(&folder, "a.obj", text)).unwrap();
-        tells(&scene.warnings.join("\n"), &["a.obj: no material library defines 'a'; they are grey"]);
+        tells(&scene.warnings.join("\n"), &["a.obj: materials that no library defines are grey ('a')"]);
     }
     let many: String = (0..20).map(|i| format!("usemtl m{i}\nf 1 2 3\n")).collect();
     let warnings = open(write(&folder, "many.obj", format!("{TRIANGLE}{many}"))).unwrap().warnings.join("\n");
-    tells(&warnings, &["defines 'a', 'm0', 'm1', 'm10'", " and 13 more; they"]);
+    tells(&warnings, &["no library defines are grey (21 times: 'a', 'm0', 'm1', ...)"]);
     write(&folder, "a.mtl", "newmtl a\nKd 1 0 0\n");
     let scene = open(write(&folder, "known.obj", format!("mtllib a.mtl\n{TRIANGLE}"))).unwrap();
     assert_eq!(scene.warnings, [""; 0]);
@@ -159,13 +159,31 @@ fn one_line_may_name_several_material_libraries() {
 }
 
 #[test]
-fn a_model_without_triangles_is_told() {
+fn a_model_without_triangles_has_a_warning_and_one_of_another_format_an_error() {
     let folder = folder();
     let noise: Vec<u8> = (0..5000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
-    for (name, content) in [("empty.obj", &b""[..]), ("junk.obj", &noise), ("text.obj", b"hello world\n")] {
-        let warnings = open(write(&folder, name, content)).unwrap().warnings.join("\n");
-        tells(&warnings, &[name, "no triangles"]);
+    let warnings = open(write(&folder, "empty.obj", "")).unwrap().warnings.join("\n");
+    tells(&warnings, &["empty.obj", "no triangles"]);
+    for (name, content) in [("junk.obj", noise.as_slice()), ("text.obj", b"hello world\n")] {
+        error(write(&folder, name, content), &[name, "it holds nothing of the OBJ format"]);
     }
+}
+
+/// A polygon of 200,000 corners whose edges cross, and lines of a megabyte.
+#[test]
+fn hostile_polygons_and_lines_end() {
+    let folder = folder();
+    let scatter = |i: u32| i.wrapping_mul(2_654_435_761) >> 16;
+    let vertices: String = (0..1000).map(|i| format!("v {} {} 0\n", scatter(i), scatter(i + 5000))).collect();
+    let corners: String = (0..200_000).map(|i| format!(" {}", scatter(i) % 1000 + 1)).collect();
+    let scene = open(write(&folder, "polygon.obj", format!("{vertices}f{corners}\n"))).unwrap();
+    assert!(scene.triangle_count() > 1000, "{}", scene.triangle_count());
+    tells(&scene.warnings.join("\n"), &["polygon.obj: faces cross or touch themselves"]);
+    let lines = format!("{TRIANGLE}f 1 2 3{}\n{}", " \\\n1 2 3".repeat(100_000), "#".repeat(1 << 20));
+    assert!(open(write(&folder, "lines.obj", lines)).is_ok());
+    let names = format!("mtllib {}\nusemtl {}\n{TRIANGLE}", "x/".repeat(1 << 20), "y".repeat(1 << 20));
+    let warnings = open(write(&folder, "names.obj", names)).unwrap().warnings.join("\n");
+    assert!(warnings.len() < 1000, "{} bytes of warnings", warnings.len());
 }
 
 #[test]

@@ -23,6 +23,7 @@ mod split;
 mod summary;
 mod texture;
 mod transform;
+mod warnings;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Quat, Vec3, Vec4};

@@ -130,7 +130,7 @@ mod tests {
     fn work_that_nobody_waits_for_ends_early() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("large.obj");
-        let mut text = String::new();
+        let mut text = "v 0 0 1\nv 0 1 0\n".to_owned();
         for i in 0..700_000 {
             let _ = writeln!(text, "v {} {} {}\nf -1 -2 -3", i % 100, i % 7, i / 100);
         }

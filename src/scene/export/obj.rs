@@ -93,7 +93,10 @@ fn write_material(
         if material.alpha_cutoff > 0.0 {
             maps.push(format!("map_d {entry}"));
         }
-        maps.push(format!("map_Kd {entry}"));
+        // Readers take a map next to a colour of 0 as it is.
+        if material.base_color.truncate() != Vec3::ZERO {
+            maps.push(format!("map_Kd {entry}"));
+        }
     }
     if let Some((i, image)) = texture(material.metallic_roughness_texture) {
         let roughness = save(format!("{i}_roughness.png"), images::grey_png(image, 1, path)?)?;
@@ -104,7 +107,7 @@ fn write_material(
         let entry = save(format!("{i}_normal.png"), images::rgba_png(image, path)?)?;
         maps.push(format!("norm {entry}\nnormal_scale {}", material.normal_scale));
     }
-    if let Some((i, image)) = texture(material.emission_texture) {
+    if let Some((i, image)) = texture(material.emission_texture).filter(|_| material.emission != Vec3::ZERO) {
         let entry = save(format!("{i}_emission.png"), images::rgba_png(image, path)?)?;
         maps.push(format!("map_Ke {entry}"));
     }

@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 pub use closed::Side;
+pub(super) use normals::{corner_angles, is_creased, point_key};
 
 use super::progress::Progress;
 use super::{Material, Mesh, Vertex};
@@ -169,7 +170,7 @@ fn clear_bad_attributes(mesh: &mut Mesh) {
 }
 
 /// Shared vertices from one vertex per corner; equal means equal bits.
-fn weld(corners: &[Vertex]) -> (Vec<Vertex>, Vec<u32>) {
+pub(super) fn weld(corners: &[Vertex]) -> (Vec<Vertex>, Vec<u32>) {
     let mut seen: HashMap<[u8; 48], u32> = HashMap::with_capacity(corners.len() / 3);
     let mut vertices = Vec::new();
     let indices = corners.iter().map(|corner| {
@@ -184,7 +185,7 @@ fn weld(corners: &[Vertex]) -> (Vec<Vertex>, Vec<u32>) {
 }
 
 /// Unit normal of a triangle with area, by its winding.
-fn face_normal(corner: [[f32; 3]; 3]) -> Vec3 {
+pub(super) fn face_normal(corner: [[f32; 3]; 3]) -> Vec3 {
     let [a, b, c] = corner.map(|p| DVec3::from_array(p.map(f64::from)));
     (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
 }

@@ -46,7 +46,7 @@ pub(super) fn generate(mesh: &mut Mesh) {
     for group in at_point.values() {
         for &i in group {
             let own = faces[i as usize / 3];
-            let near = |j: &&u32| faces[**j as usize / 3].dot(own) >= CREASE_COSINE;
+            let near = |j: &&u32| !is_creased(faces[**j as usize / 3], own);
             let sum: Vec3 = match group.len() > MAX_VALENCE {
                 true => own,
                 false => group.iter().filter(near).map(|&j| faces[j as usize / 3] * angles[j as usize]).sum(),
@@ -57,12 +57,18 @@ pub(super) fn generate(mesh: &mut Mesh) {
     (mesh.vertices, mesh.indices) = weld(&corners);
 }
 
+/// Whether an edge between two faces stays sharp, by their normals.
+pub(in crate::scene) fn is_creased(one: Vec3, other: Vec3) -> bool {
+    one.dot(other) < CREASE_COSINE
+}
+
 /// Equal points have equal keys; adding zero folds -0 into +0.
-fn point_key(position: [f32; 3]) -> [u32; 3] {
+pub(in crate::scene) fn point_key(position: [f32; 3]) -> [u32; 3] {
     position.map(|c| (c + 0.0).to_bits())
 }
 
-fn corner_angles(triangle: &[Vertex; 3]) -> [f32; 3] {
+/// Radians.
+pub(in crate::scene) fn corner_angles(triangle: &[Vertex; 3]) -> [f32; 3] {
     let p = triangle.map(|v| Vec3::from_array(v.position));
     let angle = |i: usize| {
         let (u, v) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);

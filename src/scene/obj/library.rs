@@ -1,119 +1,245 @@
-//! Material libraries (MTL): the lines that cannot mean anything are left out before they are parsed, and told.
+//! Material libraries (MTL): the statements of each material, checked.
 
-use std::cell::RefCell;
-use std::io::Cursor;
-use std::path::Path;
+use std::collections::{BTreeMap, HashSet};
+use std::io::ErrorKind;
+use std::path::PathBuf;
+
+use indexmap::IndexSet;
 
 use crate::files::read_input;
 
+use super::find::{Finder, Found};
+use super::lines::{decode, lines, shown, without_comment, words};
+use crate::scene::progress::Progress;
+use crate::scene::warnings::Warnings;
+
 /// Libraries larger than this are refused.
 const MAX_BYTES: u64 = 64 << 20;
+/// Libraries of one model.
+const MAX_LIBRARIES: usize = 256;
 /// Largest part of a colour: far above what any lamp emits, and products of it are finite.
 const MAX_COLOR: f32 = 1e12;
-/// Lines of a library that are told one by one.
-const MAX_TOLD: usize = 8;
 
-const COLORS: [&str; 5] = ["Ka", "Kd", "Ks", "Ke", "Tf"];
-const NUMBERS: [&str; 8] = ["Ns", "Ni", "d", "Tr", "Pm", "Pr", "ior", "illum"];
-const MAPS: [&str; 10] =
-    ["map_Ka", "map_Kd", "map_Ks", "map_Ns", "map_ns", "map_NS", "map_Bump", "map_bump", "bump", "map_d"];
+const COLORS: [&str; 6] = ["ka", "kd", "ks", "ke", "tf", "specular_color"];
+const NUMBERS: [&str; 13] = [
+    "ns",
+    "ni",
+    "d",
+    "tr",
+    "pm",
+    "pr",
+    "ior",
+    "illum",
+    "sharpness",
+    "specular",
+    "alpha_cutoff",
+    "two_sided",
+    "normal_scale",
+];
+/// Maps with their names in messages.
+const MAPS: [(&str, &str); 9] = [
+    ("map_kd", "map_Kd"),
+    ("map_d", "map_d"),
+    ("map_ke", "map_Ke"),
+    ("map_pr", "map_Pr"),
+    ("map_pm", "map_Pm"),
+    ("norm", "norm"),
+    ("map_kn", "map_Kn"),
+    ("map_bump", "map_Bump"),
+    ("bump", "bump"),
+];
+/// Maps that are left out.
+const OTHER_MAPS: [(&str, &str); 12] = [
+    ("map_ka", "map_Ka"),
+    ("map_ks", "map_Ks"),
+    ("map_ns", "map_Ns"),
+    ("map_ni", "map_Ni"),
+    ("map_tr", "map_Tr"),
+    ("map_tf", "map_Tf"),
+    ("map_ps", "map_Ps"),
+    ("map_disp", "map_Disp"),
+    ("disp", "disp"),
+    ("decal", "decal"),
+    ("refl", "refl"),
+    ("map_refl", "map_Refl"),
+];
 
-type Library = (Vec<tobj::Material>, <tobj::MTLLoadResult as Parts>::Map);
-
-/// Names the map type inside `tobj::MTLLoadResult`, which depends on that crate's features.
-pub(super) trait Parts {
-    type Map;
+/// A file of materials, and what of it is left out.
+#[derive(Debug)]
+pub(super) struct Library {
+    pub path: PathBuf,
+    pub materials: Vec<Definition>,
+    pub warnings: Warnings,
 }
-impl<M, T, E> Parts for Result<(Vec<T>, M), E> {
-    type Map = M;
+
+/// The statements of a material by their keywords in lower case; the last of each counts.
+#[derive(Debug, Default)]
+pub(super) struct Definition {
+    pub name: String,
+    /// The name with the comment behind it, which may be a part of the name.
+    pub whole: String,
+    pub values: BTreeMap<String, String>,
 }
 
-/// The materials of what stands after `mtllib`: one file whose name may have spaces, or several names.
-pub(super) fn load(folder: &Path, names: &Path, warnings: &RefCell<Vec<String>>) -> Library {
-    let names = names.to_string_lossy().replace('\\', "/");
-    let mut warnings = warnings.borrow_mut();
-    let words: Vec<&str> = names.split_whitespace().collect();
-    if words.len() < 2 || folder.join(&names).is_file() {
-        return load_one(&folder.join(&names), &mut warnings);
-    }
-    let mut all = Library::default();
-    for word in words {
-        let (materials, index) = load_one(&folder.join(word), &mut warnings);
-        // A material that two libraries have is that of the first.
-        for (name, i) in index {
-            all.1.entry(name).or_insert(i + all.0.len());
+/// The libraries behind all `mtllib` of a model, each once. Missing ones are warnings.
+pub(super) fn load(
+    entries: &IndexSet<String>,
+    finder: &mut Finder,
+    warnings: &mut Warnings,
+    progress: Progress,
+) -> Vec<Library> {
+    let mut libraries = Vec::new();
+    let mut seen = HashSet::new();
+    for path in entries.iter().flat_map(|entry| paths(entry, finder, warnings)).take(MAX_LIBRARIES).collect::<Vec<_>>()
+    {
+        if !seen.insert(path.clone()) {
+            continue;
         }
-        all.0.extend(materials);
-    }
-    all
-}
-
-fn load_one(path: &Path, warnings: &mut Vec<String>) -> Library {
-    let read = read_input(path, MAX_BYTES).map_err(|e| e.to_string()).and_then(|bytes| {
-        let text = readable(&String::from_utf8_lossy(&bytes), path, warnings);
-        tobj::load_mtl_buf(&mut Cursor::new(text.as_bytes())).map_err(|e| e.to_string())
-    });
-    read.unwrap_or_else(|problem| {
-        let path = path.display();
-        warnings.push(format!("material library {path}: {problem}; grey materials stand in for its own"));
-        Library::default()
-    })
-}
-
-/// The text with colours written out as three numbers, and without the lines that are wrong.
-fn readable(text: &str, path: &Path, warnings: &mut Vec<String>) -> String {
-    let mut out = String::with_capacity(text.len());
-    let mut wrong = 0;
-    for (number, line) in text.lines().enumerate() {
-        let (line, problem) = checked(line);
-        if let Some(problem) = problem {
-            wrong += 1;
-            if wrong <= MAX_TOLD {
-                warnings.push(format!("{}:{}: {problem}", path.display(), number + 1));
+        progress.reads(&path);
+        match read_input(&path, MAX_BYTES) {
+            Ok(bytes) => libraries.push(read(path, &decode(bytes))),
+            Err(problem) => {
+                let problem = match problem.kind() {
+                    ErrorKind::NotFound => "no such file".to_owned(),
+                    _ => problem.to_string(),
+                };
+                let what = format!("material libraries cannot be read ({problem}): grey stands in for their materials");
+                warnings.add(what, shown(&path.display().to_string()));
             }
         }
-        out.push_str(&line);
-        out.push('\n');
     }
-    if wrong > MAX_TOLD {
-        warnings.push(format!("{}: {} more lines like these", path.display(), wrong - MAX_TOLD));
+    if entries.len() > MAX_LIBRARIES {
+        warnings.add(format!("more than {MAX_LIBRARIES} lines name material libraries: the rest is left out"), "");
     }
-    out
+    libraries
 }
 
-/// The line as it is to be read, and what is wrong with it.
-fn checked(line: &str) -> (String, Option<String>) {
-    let mut words = line.split_whitespace();
-    let key = words.next().unwrap_or_default();
-    let left_out = |problem: &str| (String::new(), Some(format!("{key} {problem}; the line is left out")));
+/// The files of one `mtllib`: one with blanks in its name, or several.
+fn paths(entry: &str, finder: &mut Finder, warnings: &mut Warnings) -> Vec<PathBuf> {
+    let names = names(entry);
+    if names.len() < 2 || finder.look(entry).1 == Found::Exact {
+        return vec![finder.find(entry, warnings)];
+    }
+    // If none is there, the entry was meant as one name.
+    if names.iter().all(|name| finder.look(name).1 == Found::No) {
+        return vec![finder.find(entry, warnings)];
+    }
+    names.iter().map(|name| finder.find(name, warnings)).collect()
+}
+
+/// Words, or texts in quotes.
+fn names(entry: &str) -> Vec<&str> {
+    let mut rest = without_comment(entry);
+    let mut names = Vec::new();
+    while !rest.is_empty() {
+        let quoted = rest.strip_prefix('"').and_then(|text| text.split_once('"'));
+        let (name, after) = quoted.or_else(|| rest.split_once(char::is_whitespace)).unwrap_or((rest, ""));
+        names.push(name);
+        rest = after.trim_start();
+    }
+    names
+}
+
+fn read(path: PathBuf, text: &str) -> Library {
+    let mut library = Library { path, materials: Vec::new(), warnings: Warnings::default() };
+    let mut unnamed = Definition::default();
+    for line in lines(text) {
+        let (key, rest) = line.split();
+        if key == "newmtl" {
+            let (name, whole) = (without_comment(rest).to_owned(), rest.to_owned());
+            library.materials.push(Definition { name, whole, values: BTreeMap::new() });
+            continue;
+        }
+        let number = line.number;
+        let value = check(&key, rest, number, &mut library.warnings);
+        // Statements before the first material are checked all the same.
+        let material = library.materials.last_mut().unwrap_or(&mut unnamed);
+        if let Some(value) = value {
+            material.values.insert(key.into_owned(), value);
+        }
+    }
+    if !unnamed.values.is_empty() {
+        library.warnings.add("statements before the first newmtl are left out", "");
+    }
+    library
+}
+
+/// A statement's value as it is to be read, or none where it is left out.
+fn check(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<String> {
+    let title = |list: &[(&str, &'static str)]| list.iter().find(|(k, _)| *k == key).map(|(_, title)| *title);
     if COLORS.contains(&key) {
-        let numbers: Option<Vec<f32>> = words.take(3).map(|w| w.parse().ok()).collect();
-        return match numbers.as_deref() {
-            None | Some([] | [_, _]) => left_out("needs one number or three"),
-            Some(list) if !list.iter().all(|v| (0.0..=MAX_COLOR).contains(v)) => {
-                left_out(&format!("must be 0 to {MAX_COLOR:e}"))
-            }
-            Some(list) if key == "Kd" && list.iter().any(|v| *v > 1.0) => {
-                let color = |i: usize| list.get(i).unwrap_or(&list[0]).min(1.0);
-                let problem = "Kd reflects more than arrives; what is above 1 is 1";
-                (format!("{key} {} {} {}", color(0), color(1), color(2)), Some(problem.into()))
-            }
-            // By the format, one number is a grey.
-            Some([grey]) => (format!("{key} {grey} {grey} {grey}"), None),
-            Some(_) => (line.into(), None),
-        };
+        return color(key, rest, line, warnings);
     }
     if NUMBERS.contains(&key) {
-        let value = words.find(|w| *w != "-halo").unwrap_or_default();
-        return match value.parse::<f32>() {
-            Ok(number) if number.is_finite() => (format!("{key} {}", if key == "illum" { "0" } else { value }), None),
-            _ => left_out("needs a number"),
-        };
+        let value = words(rest).find(|w| *w != "-halo").and_then(|word| word.parse::<f32>().ok());
+        if value.is_none_or(|value| !value.is_finite()) {
+            warnings.add(format!("{} needs a number; the line is left out", cased(key)), At(line));
+            return None;
+        }
+        return value.map(|value| value.to_string());
     }
-    if MAPS.contains(&key) && words.next().is_none() {
-        return left_out("names no file");
+    if let Some(title) = title(&MAPS) {
+        if super::maps::parse(rest).is_none() {
+            warnings.add(format!("{title} names no file; the line is left out"), At(line));
+            return None;
+        }
+        return Some(rest.to_owned());
     }
-    (line.into(), None)
+    if let Some(title) = title(&OTHER_MAPS) {
+        warnings.add(format!("{title} is left out"), shown(rest));
+        return None;
+    }
+    // Sheen, clearcoat and anisotropy of the metallic-roughness extension are written as 0 by most programs.
+    let off = words(rest).all(|word| word.parse::<f32>() == Ok(0.0));
+    match key {
+        "pc" | "pcr" | "ps" | "aniso" | "anisor" if off => {}
+        "map_aat" => {}
+        _ => warnings.add("lines with unknown keywords are left out", shown(&cased(key))),
+    }
+    None
+}
+
+fn color(key: &str, rest: &str, line: usize, warnings: &mut Warnings) -> Option<String> {
+    let title = cased(key);
+    let numbers: Option<Vec<f32>> = words(rest).take(3).map(|w| w.parse().ok()).collect();
+    let list = match numbers.as_deref() {
+        // One number is a grey by the format.
+        Some([grey]) => [*grey; 3],
+        Some([r, g, b]) => [*r, *g, *b],
+        _ => {
+            warnings.add(format!("{title} needs one number or three; the line is left out"), At(line));
+            return None;
+        }
+    };
+    if !list.iter().all(|v| (0.0..=MAX_COLOR).contains(v)) {
+        warnings.add(format!("{title} must be 0 to {MAX_COLOR:e}; the line is left out"), At(line));
+        return None;
+    }
+    let over = key == "kd" && list.iter().any(|v| *v > 1.0);
+    if over {
+        warnings.add("Kd reflects more than arrives; numbers above 1 are read as 1", At(line));
+    }
+    let [r, g, b] = if over { list.map(|v| v.min(1.0)) } else { list };
+    Some(format!("{r} {g} {b}"))
+}
+
+/// The usual case of a keyword.
+fn cased(key: &str) -> String {
+    let capital = matches!(key.as_bytes(), [b'k' | b'n' | b'p', _, ..] | [b't', b'r' | b'f']) && key.len() <= 3;
+    let mut letters = key.chars();
+    match letters.next() {
+        Some(first) if capital => first.to_ascii_uppercase().to_string() + letters.as_str(),
+        _ => key.to_owned(),
+    }
+}
+
+/// A line, where a warning shows it.
+struct At(usize);
+
+impl std::fmt::Display for At {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "line {}", self.0)
+    }
 }
 
 #[cfg(test)]
@@ -121,24 +247,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_that_mean_nothing_are_left_out_and_told() {
-        for (line, read, told) in [
-            ("Kd 0.5 0.25 1", "Kd 0.5 0.25 1", false),
-            ("Kd 0.5", "Kd 0.5 0.5 0.5", false),
-            ("Ks 1 2", "", true),
-            ("Kd nan 0 0", "", true),
-            ("Ke -1 0 0", "", true),
-            ("Ke 40 40 40", "Ke 40 40 40", false),
-            ("Kd 1e5 0 0.5", "Kd 1 0 0.5", true),
-            ("Kd spectral file.rfl", "", true),
-            ("d -halo 0.5", "d 0.5", false),
-            ("Ns much", "", true),
-            ("map_Kd", "", true),
-            ("  map_Kd wall.png", "  map_Kd wall.png", false),
-            ("# Kd 1", "# Kd 1", false),
+    fn statements_that_mean_nothing_are_left_out_with_a_warning() {
+        for (line, read, kinds) in [
+            ("Kd 0.5 0.25 1", Some("0.5 0.25 1"), 0),
+            ("KD 0.5", Some("0.5 0.5 0.5"), 0),
+            ("Ks 1 2", None, 1),
+            ("Kd nan 0 0", None, 1),
+            ("Ke -1 0 0", None, 1),
+            ("Ke 40 40 40 # W", Some("40 40 40"), 0),
+            ("Kd 1e5 0 0.5", Some("1 0 0.5"), 1),
+            ("Kd spectral file.rfl", None, 1),
+            ("d -halo 0.5", Some("0.5"), 0),
+            ("Ns much", None, 1),
+            ("map_Kd", None, 1),
+            ("map_kd wall.png", Some("wall.png"), 0),
+            ("map_Ks gloss.png", None, 1),
+            ("Pc 0.0", None, 0),
+            ("Pc 0.5", None, 1),
         ] {
-            let (got, problem) = checked(line);
-            assert_eq!((got.as_str(), problem.is_some()), (read, told), "{line}: {problem:?}");
+            let library = super::read("a.mtl".into(), &format!("newmtl a\n\t{line}\n"));
+            let values = &library.materials[0].values;
+            let found = (values.values().next().map(String::as_str), library.warnings.lines("a.mtl").len());
+            assert_eq!(found, (read, kinds), "{line}: {:?}", library.warnings);
         }
+    }
+
+    #[test]
+    fn entries_have_several_names() {
+        assert_eq!(names("a.mtl b.mtl # c"), ["a.mtl", "b.mtl"]);
+        assert_eq!(names("\"a b.mtl\" c.mtl"), ["a b.mtl", "c.mtl"]);
     }
 }

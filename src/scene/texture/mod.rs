@@ -1,5 +1,6 @@
 //! Textures: which images the materials ask for, decoded in parallel, with mips that suit their use.
 
+mod content;
 mod dds;
 mod decode;
 mod mips;
@@ -17,6 +18,7 @@ use crate::diagnostics::panics::caught;
 use super::progress::Progress;
 use super::{SceneError, Texture, TextureFormat};
 
+pub(super) use content::Holes;
 pub use decode::SmallPicture;
 pub(super) use decode::{MAX_FILE_BYTES, decode_limited, first_level_rgba};
 pub(super) use mips::{Filter, texture_from_rgba};

@@ -1,0 +1,138 @@
+//! Texture entries of a material library: options, then a file.
+
+use super::lines::without_comment;
+
+/// A picture of a material, and how it is laid on the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Map {
+    /// As the library writes it; may have quotes, blanks and a comment.
+    pub file: String,
+    pub placement: Placement,
+    /// `-bm`: the strength of a bump map.
+    pub strength: Option<f32>,
+    /// Options that have an effect elsewhere and none here.
+    pub left_out: Vec<&'static str>,
+}
+
+/// Texture coordinates times a scale plus an offset (`-s` and `-o`), v upwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Placement {
+    pub scale: [f32; 2],
+    pub offset: [f32; 2],
+}
+
+impl Default for Placement {
+    fn default() -> Placement {
+        Placement { scale: [1.0; 2], offset: [0.0; 2] }
+    }
+}
+
+impl Placement {
+    /// Placed coordinates. The origin of OBJ is the lower left of the picture, that of scenes the upper left.
+    pub fn of(&self, [u, v]: [f32; 2]) -> [f32; 2] {
+        [u * self.scale[0] + self.offset[0], 1.0 - (v * self.scale[1] + self.offset[1])]
+    }
+
+    /// Equal placements have equal bits.
+    pub fn bits(&self) -> [u32; 4] {
+        let ([a, b], [c, d]) = (self.scale, self.offset);
+        [a, b, c, d].map(f32::to_bits)
+    }
+}
+
+/// The options and the file of an entry; none where no file is named.
+pub(super) fn parse(entry: &str) -> Option<Map> {
+    let mut map = Map { file: String::new(), placement: Placement::default(), strength: None, left_out: Vec::new() };
+    let mut rest = entry.trim();
+    while let Some((option, after)) = rest.starts_with('-').then(|| word(rest)) {
+        rest = after;
+        match option.to_ascii_lowercase().as_str() {
+            "-s" => map.placement.scale = pair(&mut rest, map.placement.scale),
+            "-o" => map.placement.offset = pair(&mut rest, map.placement.offset),
+            "-t" => {
+                if pair(&mut rest, [0.0; 2]) != [0.0; 2] {
+                    map.left_out.push("-t");
+                }
+            }
+            "-mm" => {
+                if pair(&mut rest, [0.0, 1.0]) != [0.0, 1.0] {
+                    map.left_out.push("-mm");
+                }
+            }
+            "-bm" => map.strength = numbers::<1>(&mut rest)[0],
+            "-clamp" => map.switch(&mut rest, "-clamp"),
+            "-cc" => map.switch(&mut rest, "-cc"),
+            "-imfchan" => {
+                rest = word(rest).1;
+                map.left_out.push("-imfchan");
+            }
+            // How textures are filtered, and the shape of a reflection map: nothing of the surface.
+            _ => rest = word(rest).1,
+        }
+    }
+    map.file = rest.to_owned();
+    (!without_comment(rest).is_empty() && !rest.starts_with('#')).then_some(map)
+}
+
+impl Map {
+    fn switch(&mut self, rest: &mut &str, option: &'static str) {
+        let (value, after) = word(rest);
+        *rest = after;
+        if value.eq_ignore_ascii_case("on") {
+            self.left_out.push(option);
+        }
+    }
+}
+
+/// The first word and what follows it.
+fn word(text: &str) -> (&str, &str) {
+    let (first, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    (first, rest.trim_start())
+}
+
+/// Up to three numbers of which two are used; those that the entry leaves out, or that are not finite, keep their value.
+fn pair(rest: &mut &str, default: [f32; 2]) -> [f32; 2] {
+    let [x, y, _] = numbers::<3>(rest);
+    [x.unwrap_or(default[0]), y.unwrap_or(default[1])]
+}
+
+/// The numbers at the beginning, at most so many. The last word is a file, even if it is a number.
+fn numbers<const N: usize>(rest: &mut &str) -> [Option<f32>; N] {
+    let mut found = [None; N];
+    for number in &mut found {
+        let (first, after) = word(rest);
+        let Some(value) = first.parse::<f32>().ok().filter(|_| !after.is_empty()) else { break };
+        *number = Some(value).filter(|value| value.is_finite());
+        *rest = after;
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_have_options_and_a_file() {
+        for (entry, file, [scale, offset], strength, left_out) in [
+            ("a b.png", "a b.png", [[1.0; 2], [0.0; 2]], None, &[][..]),
+            ("-bm 0.5 t\\wall.png", "t\\wall.png", [[1.0; 2], [0.0; 2]], Some(0.5), &[]),
+            ("-o 1 2 -s 4 4 1 -clamp on a.png", "a.png", [[4.0; 2], [1.0, 2.0]], None, &["-clamp"]),
+            ("-O 1 -S 2 a.png", "a.png", [[2.0, 1.0], [1.0, 0.0]], None, &[]),
+            ("  -mm 0 1 -blendu on -texres 512 a.png", "a.png", [[1.0; 2], [0.0; 2]], None, &[]),
+            ("-mm 0.1 2 -imfchan r -t 1 a.png", "a.png", [[1.0; 2], [0.0; 2]], None, &["-mm", "-imfchan", "-t"]),
+            ("-s 2 2 7", "7", [[2.0; 2], [0.0; 2]], None, &[]),
+            ("-s nan inf 1 a.png # x", "a.png # x", [[1.0; 2], [0.0; 2]], None, &[]),
+        ] {
+            let map = parse(entry).unwrap();
+            let expected = (file, scale, offset, strength, left_out);
+            let Map { file, placement, strength, left_out } = &map;
+            assert_eq!(
+                (file.as_str(), placement.scale, placement.offset, *strength, &left_out[..]),
+                expected,
+                "{entry}"
+            );
+        }
+        assert!(["", "-clamp on", "# a.png"].iter().all(|entry| parse(entry).is_none()));
+    }
+}
