@@ -165,11 +165,11 @@ fn surfaces_that_let_light_through_are_there_or_not() {
         m
     };
     let (dark, warnings) = read(dielectric(glass(0.4)), &[]);
-    warns(&warnings, &["'m'", "0.40", "opaque"]);
+    warns(&warnings, &["'m, 0.40'", "opaque"]);
     near(dark.base_color, [0.3, 0.6, 0.6, 1.0]);
     assert!(!dark.is_left_out());
     let (clear, warnings) = read(dielectric(glass(0.9)), &[]);
-    warns(&warnings, &["'m'", "0.90", "left out"]);
+    warns(&warnings, &["'m, 0.90'", "left out"]);
     assert!(clear.is_left_out());
     // Metals let nothing through; the texture's red counts with its mean.
     assert!(read(glass(1.0), &[]).1.is_empty());
@@ -182,8 +182,8 @@ fn surfaces_that_let_light_through_are_there_or_not() {
         read(m, &[])
     };
     let ((thick, mask), (thin, gone)) = (blend(0.6), blend(0.3));
-    warns(&mask, &["'m'", "mask at alpha 0.5"]);
-    warns(&gone, &["'m'", "0.30", "left out"]);
+    warns(&mask, &["'m'", "masks at alpha 0.5"]);
+    warns(&gone, &["'m, 0.30'", "left out"]);
     assert!(!thick.is_left_out() && thin.is_left_out());
 }
 

@@ -21,7 +21,8 @@ impl Scene {
     /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb). A path that may not be UTF-8 is
     /// given as [`crate::files::spec_of`] writes it.
     ///
-    /// A model without lights gets a sun and a sky, one without cameras a camera `default`. `progress` is called with
+    /// A model without lights gets a sun and a sky, one with lights none. Its first camera becomes the camera `default`;
+    /// a model without cameras gets one. `progress` is called with
     /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
     /// answers `Break`, the opening ends at once with [`SceneError::Cancelled`].
     pub fn open(spec: &str, progress: &dyn Fn(&str, f32) -> ControlFlow<()>) -> Result<Scene, SceneError> {
@@ -66,12 +67,13 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
         return Err(SceneError::NotFound { spec: spec.into(), hint: builtin::hint(spec) });
     }
     let mut scene = load_model(path, progress)?;
+    scene.sky = defaults::sky_over(&scene);
     if scene.lights.is_empty() {
         scene.lights.push(defaults::sun());
     }
-    scene.sky = defaults::SKY;
     if !scene.cameras.contains_key("default") {
-        let camera = defaults::camera(&scene);
+        let own = scene.cameras.values().next().copied();
+        let camera = own.unwrap_or_else(|| defaults::camera(&scene));
         scene.cameras.shift_insert(0, "default".into(), camera);
     }
     Ok(scene)

@@ -12,6 +12,7 @@ use super::placing::UvSource;
 use super::{buffers, extensions};
 use crate::scene::progress::Progress;
 use crate::scene::texture::{Recipe, Requests, Source};
+use crate::scene::warnings::Warnings;
 use crate::scene::{Material, SceneError};
 
 /// All materials, and after them the default one where a primitive has none; the coordinates that each reads.
@@ -19,7 +20,7 @@ pub(super) fn read(
     document: &Document,
     data: &Buffers,
     folder: &Path,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
     progress: Progress,
 ) -> Result<(Vec<Material>, Vec<UvSource>, Requests), SceneError> {
     let mut requests = Requests::default();
@@ -33,7 +34,7 @@ pub(super) fn read(
         uv_sources.push(uv);
     }
     if document.meshes().flat_map(|mesh| mesh.primitives()).any(|p| p.material().index().is_none()) {
-        materials.push(Material { base_color: Vec4::ONE, ..Material::default() });
+        materials.push(Material { base_color: Vec4::ONE, metallic: 1.0, ..Material::default() });
         uv_sources.push(UvSource::default());
     }
     Ok((materials, uv_sources, requests))
@@ -75,7 +76,7 @@ fn specular_glossiness<'a>(
     name: &str,
     images: &[Source],
     means: &Means,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Base<'a> {
     let texture = from.specular_glossiness_texture();
     let specular = (finite3(from.specular_factor()) * means.color(texture.as_ref()).truncate()).min(Vec3::ONE);
@@ -83,10 +84,8 @@ fn specular_glossiness<'a>(
     let diffuse = finite4(from.diffuse_factor()) * Vec3::splat(1.0 - specular.max_element()).extend(1.0);
     let gloss = from.glossiness_factor().clamp(0.0, 1.0);
     if texture.is_some() {
-        warnings.push(format!(
-            "material '{name}': the specular colour in its texture (KHR_materials_pbrSpecularGlossiness) counts with its \
-             mean alone"
-        ));
+        let what = "of specular colours in textures (KHR_materials_pbrSpecularGlossiness) only the mean is used";
+        warnings.add(what, name);
     }
     let rough = texture.map(|t| {
         let image = source(&t, images);
@@ -107,7 +106,7 @@ fn convert(
     images: &[Source],
     means: &Means,
     requests: &mut Requests,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> (Material, UvSource) {
     let name = name(from);
     let Base { color, rough, material } = match from.pbr_specular_glossiness() {
@@ -116,15 +115,21 @@ fn convert(
     };
     let alpha_cutoff = match from.alpha_mode() {
         AlphaMode::Opaque => 0.0,
-        AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).clamp(0.0, 1.0),
+        AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).max(0.0),
         AlphaMode::Blend => {
-            warnings.push(match material.base_color.w {
-                a if a < 0.5 => format!("material '{name}' blends with an alpha of {a:.2} at most: it is left out"),
-                _ => format!("material '{name}' blends, which is shown as a mask at alpha 0.5"),
-            });
+            match material.base_color.w {
+                a if a < 0.5 => warnings.add(
+                    "materials that blend with an alpha below 0.5 everywhere are left out",
+                    format!("{name}, {a:.2}"),
+                ),
+                _ => warnings.add("materials that blend are shown as masks at alpha 0.5", &name),
+            }
             0.5
         }
     };
+    if alpha_cutoff > 1.0 {
+        warnings.add("materials with an alphaCutoff above 1 cut everything out", &name);
+    }
     let mask = (alpha_cutoff > 0.0).then_some((alpha_cutoff * 255.0).round() as u8);
     let lit = !from.unlit();
     let rough = rough.filter(|_| lit);
@@ -137,7 +142,7 @@ fn convert(
     placed.extend(UvSource::of_normal_map(from).filter(|_| lit));
     let uv = placed.first().copied().unwrap_or_default();
     if placed.iter().any(|other| *other != uv) {
-        warnings.push(format!("material '{name}' places its textures differently; all are placed like the first"));
+        warnings.add("textures of one material are placed differently; all are placed like the first", &name);
     }
 
     let strength = from.emissive_strength().unwrap_or(1.0).max(0.0);

@@ -7,8 +7,9 @@ use glam::Vec2;
 use super::accessors;
 use super::buffers::Buffers;
 use super::placing::UvSource;
-use crate::scene::mesh::{Dropped, RawMesh, prepare_all};
+use crate::scene::mesh::{Dropped, RawMesh, flat, prepare_all};
 use crate::scene::progress::Progress;
+use crate::scene::warnings::Warnings;
 use crate::scene::{Material, Mesh, Submesh, Vertex};
 
 /// Vertices and indices that any file may have.
@@ -20,7 +21,7 @@ pub(super) fn read(
     buffers: &Buffers,
     materials: &[Material],
     uv_sources: &[UvSource],
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
     progress: Progress,
 ) -> Result<(Vec<Mesh>, Dropped), String> {
     let mut owners = Vec::new();
@@ -41,8 +42,8 @@ pub(super) fn read(
             }
             let points = matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip);
             if points || primitive.get(&Semantic::Positions).is_none() {
-                let what = if points { "points or lines" } else { "a primitive without positions" };
-                warnings.push(format!("mesh '{name}' has {what}, which are left out"));
+                let what = if points { "points and lines" } else { "primitives without positions" };
+                warnings.add(format!("{what} are left out"), &name);
                 continue;
             }
             let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
@@ -53,7 +54,7 @@ pub(super) fn read(
             primitives.push(raw);
             owners.push(mesh.index());
             if primitive.morph_targets().next().is_some() {
-                warnings.push(format!("mesh '{name}' has morph targets, which stay at rest"));
+                warnings.add("morph targets stay at rest", &name);
             }
         }
         meshes.push(Mesh { name, ..Mesh::default() });
@@ -114,9 +115,12 @@ fn read_primitive(
     };
     let indices = triangles(primitive.mode(), indices);
     let submesh = Submesh { first_index: 0, index_count: indices.len() as u32, material: material as u32 };
-    let mesh = Mesh { name: name.into(), vertices, indices, submeshes: vec![submesh] };
-    // Tangents without normals cannot have been meant for ours.
-    Ok(RawMesh { mesh, has_normals: normals.is_some(), has_tangents: normals.is_some() && tangents.is_some() })
+    let mut mesh = Mesh { name: name.into(), vertices, indices, submeshes: vec![submesh] };
+    if normals.is_none() {
+        // glTF 2.0, 3.7.2.1: they are flat, and tangents are ignored.
+        flat(&mut mesh);
+    }
+    Ok(RawMesh { mesh, has_normals: true, has_tangents: normals.is_some() && tangents.is_some() })
 }
 
 /// Strips and fans as separate triangles with the same winding.

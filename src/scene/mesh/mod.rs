@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 pub use closed::Side;
+pub(super) use normals::flat;
 
 use super::progress::Progress;
 use super::{Material, Mesh, Vertex};
