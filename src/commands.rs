@@ -289,7 +289,9 @@ fn scene(args: &SceneArgs) -> Result<(), LabError> {
     let scene = open_scene(&args.scene)?;
     match &args.export {
         Some(path) => {
-            scene.export(path)?;
+            for warning in scene.export(path)? {
+                warn!("warning: {warning}");
+            }
             say!("wrote {}", path.display());
         }
         None => say_part!("{}", scene.summary()),

@@ -247,10 +247,6 @@ fn what_is_left_out_is_told_once_and_what_is_required_is_an_error() {
         assert!(required(&format!("KHR_materials_{supported}")).is_ok(), "{supported}");
     }
     assert!(required("KHR_materials_clearcoat").is_err());
-    // A normal map placed apart from the rest.
-    let turned = json!({ "name": "m", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } }, "normalTexture": {
-        "index": 0, "extensions": { "KHR_texture_transform": { "scale": [2, 2] } } } });
-    warns(&read(turned, &[[[255; 4]; 4]]).1, &["'m'", "places its textures differently"]);
     let alone =
         json!({ "normalTexture": { "index": 0, "extensions": { "KHR_texture_transform": { "scale": [3, 3] } } } });
     let scene = open(&squares(dir.path(), &[(alone, 1.0, 0.0)], |root| add_texture(root, [[128, 128, 255, 255]; 4])));

@@ -102,7 +102,7 @@ fn merge_objects(models: Vec<tobj::Model>, materials: &[Material], progress: Pro
             let normal = piece.normals.as_chunks::<3>().0.get(i).copied().unwrap_or_default();
             // The origin of OBJ texture coordinates is the lower left, ours the upper left.
             let uv = piece.texcoords.as_chunks::<2>().0.get(i).map_or([0.0; 2], |&[u, v]| [u, 1.0 - v]);
-            mesh.vertices.push(Vertex { position: *position, normal, tangent: [0.0; 4], uv });
+            mesh.vertices.push(Vertex { position: *position, normal, uv, ..Vertex::default() });
         }
         let index_count = (piece.indices.len() / 3 * 3) as u32;
         mesh.submeshes.push(Submesh { first_index, index_count, material });
@@ -166,6 +166,7 @@ fn material(mtl: &tobj::Material, folder: &Path, requests: &mut Requests, warnin
             .then(|| ask(Recipe::RoughnessAndMetallic { roughness: rough_map, metallic: metal_map })),
         normal_texture: normal_map.map(|image| ask(Recipe::Normal { image })),
         emission_texture: emission_map.map(|image| ask(Recipe::Color { image, mask: None })),
+        ..Material::default()
     }
 }
 

@@ -82,6 +82,8 @@ fn leave_out(material: &mut Material) {
 pub(super) fn unlit(material: &mut Material) {
     material.emission = material.base_color.truncate();
     material.emission_texture = material.base_color_texture;
+    material.lookups.emission = material.lookups.base_color;
+    material.tinted_emission = true;
     material.base_color = Vec3::ZERO.extend(material.base_color.w);
     if material.alpha_cutoff == 0.0 {
         material.base_color_texture = None;

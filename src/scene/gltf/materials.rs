@@ -8,12 +8,12 @@ use glam::{Vec3, Vec4};
 
 use super::buffers::Buffers;
 use super::means::Means;
-use super::placing::UvSource;
+use super::placing::{Placing, UvSources};
 use super::{buffers, extensions};
 use crate::scene::progress::Progress;
 use crate::scene::texture::{Recipe, Requests, Source};
 use crate::scene::warnings::Warnings;
-use crate::scene::{Material, SceneError};
+use crate::scene::{Lookups, Material, SceneError};
 
 /// All materials, and after them the default one where a primitive has none; the coordinates that each reads.
 pub(super) fn read(
@@ -22,7 +22,7 @@ pub(super) fn read(
     folder: &Path,
     warnings: &mut Warnings,
     progress: Progress,
-) -> Result<(Vec<Material>, Vec<UvSource>, Requests), SceneError> {
+) -> Result<(Vec<Material>, Vec<UvSources>, Requests), SceneError> {
     let mut requests = Requests::default();
     let images: Vec<Source> = document.images().map(|image| buffers::image(&image, document, data, folder)).collect();
     let means = Means::load(document, &images, warnings, progress)?;
@@ -35,7 +35,7 @@ pub(super) fn read(
     }
     if document.meshes().flat_map(|mesh| mesh.primitives()).any(|p| p.material().index().is_none()) {
         materials.push(Material { base_color: Vec4::ONE, metallic: 1.0, ..Material::default() });
-        uv_sources.push(UvSource::default());
+        uv_sources.push(UvSources::default());
     }
     Ok((materials, uv_sources, requests))
 }
@@ -107,7 +107,7 @@ fn convert(
     means: &Means,
     requests: &mut Requests,
     warnings: &mut Warnings,
-) -> (Material, UvSource) {
+) -> (Material, UvSources) {
     let name = name(from);
     let Base { color, rough, material } = match from.pbr_specular_glossiness() {
         Some(gloss) => specular_glossiness(&gloss, &name, images, means, warnings),
@@ -136,14 +136,21 @@ fn convert(
     let normal = from.normal_texture().filter(|_| lit);
     let emission = from.emissive_texture().filter(|_| lit);
 
-    // Vertices carry one set of coordinates; the most visible texture decides which.
-    let infos = [color.as_ref(), rough.as_ref().map(|r| &r.0), emission.as_ref()];
-    let mut placed: Vec<UvSource> = infos.into_iter().flatten().map(UvSource::of).collect();
-    placed.extend(UvSource::of_normal_map(from).filter(|_| lit));
-    let uv = placed.first().copied().unwrap_or_default();
-    if placed.iter().any(|other| *other != uv) {
-        warnings.add("textures of one material are placed differently; all are placed like the first", &name);
+    let mut placing = Placing::default();
+    let references = [
+        color.as_ref().map(|t| placing.add(t)),
+        rough.as_ref().map(|(t, _)| placing.add(t)),
+        normal.as_ref().and_then(|_| placing.add_normal_map(from)),
+        emission.as_ref().map(|t| placing.add(t)),
+    ];
+    let (uv, more) = placing.sources();
+    if more {
+        let what = "textures of one material have more than two kinds of coordinates (sets or transforms); the rest \
+                    takes the commonest";
+        warnings.add(what, &name);
     }
+    let [base_color, metallic_roughness, normal_map, emission_map] =
+        references.map(|reference| placing.lookup(reference, &uv));
 
     let strength = from.emissive_strength().unwrap_or(1.0).max(0.0);
     let mut ask = |recipe: Recipe| requests.ask(recipe, &name);
@@ -156,6 +163,7 @@ fn convert(
         metallic_roughness_texture: rough.map(|(_, recipe)| ask(recipe)),
         normal_texture: normal.map(|t| ask(Recipe::Normal { image: images[t.texture().source().index()].clone() })),
         emission_texture: emission.map(|t| ask(Recipe::Color { image: source(&t, images), mask: None })),
+        lookups: Lookups { base_color, metallic_roughness, normal: normal_map, emission: emission_map },
         name: name.clone(),
         ..material
     };
