@@ -292,7 +292,9 @@ fn scene(args: &SceneArgs) -> Result<(), LabError> {
     let scene = open_scene(&args.scene)?;
     match &args.export {
         Some(path) => {
-            scene.export(path)?;
+            for warning in scene.export(path)? {
+                warn!("warning: {warning}");
+            }
             say!("wrote {}", path.display());
         }
         None if args.json.is_none() => say_part!("{}", scene.summary()),

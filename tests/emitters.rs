@@ -20,6 +20,7 @@ fn square(edge: f32, material: u32) -> Mesh {
         normal: [0.0, 1.0, 0.0],
         tangent: [1.0, 0.0, 0.0, 1.0],
         uv: [x, z],
+        ..Vertex::default()
     };
     Mesh {
         name: "square".into(),

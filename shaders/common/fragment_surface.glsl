@@ -9,8 +9,18 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 tangent;
-layout(location = 3) in vec2 uv;
+layout(location = 3) in vec4 uv;
 layout(location = 4) flat in uint material;
+layout(location = 5) in vec4 color;
+
+Place placeHere() {
+    return Place(uv, color);
+}
+
+// Call it before anything returns.
+Gradient gradientHere() {
+    return Gradient(dFdx(uv), dFdy(uv));
+}
 
 // The triangle's normal on the viewer's side. Has derivatives: call it before anything returns.
 vec3 faceNormal(vec3 v) {
@@ -20,12 +30,12 @@ vec3 faceNormal(vec3 v) {
 }
 
 vec3 shadingNormal(Material m, Gradient g, vec3 face) {
-    return mappedNormal(m, uv, g, normal, tangent, face);
+    return mappedNormal(m, placeHere(), g, normal, tangent, face);
 }
 
 Surface surfaceAt(Material m, Gradient g, vec3 face, vec3 v) {
-    vec2 rm = roughnessMetallic(m, uv, g);
-    return makeSurface(shadingNormal(m, g, face), baseColor(m, uv, g).rgb, rm.x, rm.y, dielectric(m), v);
+    vec2 rm = roughnessMetallic(m, placeHere(), g);
+    return makeSurface(shadingNormal(m, g, face), baseColor(m, placeHere(), g).rgb, rm.x, rm.y, dielectric(m), v);
 }
 
 #endif

@@ -3,10 +3,11 @@
 // Alpha mask for the depth-only passes.
 #include "common/materials.glsl"
 
-layout(location = 0) in vec2 uv;
+layout(location = 0) in vec4 uv;
 layout(location = 1) flat in uint material;
+layout(location = 2) in float alpha;
 
 void main() {
     Material m = materials.materials[material];
-    if (baseColor(m, uv, Gradient(dFdx(uv), dFdy(uv))).a < m.alpha_cutoff) discard;
+    if (baseColor(m, Place(uv, vec4(alpha)), Gradient(dFdx(uv), dFdy(uv))).a < m.alpha_cutoff) discard;
 }

@@ -1,4 +1,5 @@
-// Materials and their textures. A texture handle is slot << 16 | layer: which array, which layer of it.
+// Materials and their textures. A texture handle holds the layer of an array in 16 bits, the number of the array in 4, and
+// above them how the texture is looked up.
 // Gradients are always explicit, so that lookups stay defined in divergent control flow and outside
 // the fragment stage, where texture() would silently read mip 0.
 #ifndef MATERIALS_GLSL
@@ -12,7 +13,7 @@ struct Material {
     float roughness;
     float alpha_cutoff; // 0: opaque
     float normal_scale;
-    uint flags; // 1: two-sided; from bit 8: number in dielectrics
+    uint flags; // 1: two-sided; COLORED; TINTED; from bit 8: number in dielectrics
     uint base_color_texture;
     uint metallic_roughness_texture; // G roughness, B metallic
     uint normal_texture;
@@ -36,46 +37,116 @@ uniform sampler2DArray materialTexture11;
 
 const uint NO_TEXTURE = 0xffffffffu;
 
-struct Gradient {
-    vec2 x;
-    vec2 y;
+// Flags of materials: the colour of vertices counts for the base colour, and for the emission.
+const uint COLORED = 2u, TINTED = 4u;
+
+// Bits of handles: how u and v go on beyond the picture, 2 bits each (0 repeats), ...
+const uint WRAP_U = 20u, WRAP_V = 22u;
+const uint CLAMPED = 1u, MIRRORED = 2u;
+// ... no filter where a texel is larger than a pixel, the second set of coordinates, a sampler that filters anisotropically.
+const uint NEAREST = 1u << 24, SECOND_SET = 1u << 25, ANISOTROPIC = 1u << 26;
+const uint FOLDED = 0x1f00000u; // anything that the sampler itself does not do
+
+
+// A point of a surface, for lookups: two sets of texture coordinates, and the colour of the vertices.
+struct Place {
+    vec4 uv;
+    vec4 color;
 };
 
-vec4 sampleTexture(uint handle, vec2 uv, Gradient g) {
+// Changes of both sets of texture coordinates, from pixel to pixel or by what else a lookup covers.
+struct Gradient {
+    vec4 x;
+    vec4 y;
+};
+
+bool isColored(Material m) {
+    return (m.flags & (COLORED | TINTED)) != 0;
+}
+
+bool usesSecondSet(uint handle) {
+    return handle != NO_TEXTURE && (handle & SECOND_SET) != 0;
+}
+
+vec2 texelsOf(uint handle) {
+    switch (handle >> 16 & 15u) {
+        case 0: return vec2(textureSize(materialTexture0, 0).xy);
+        case 1: return vec2(textureSize(materialTexture1, 0).xy);
+        case 2: return vec2(textureSize(materialTexture2, 0).xy);
+        case 3: return vec2(textureSize(materialTexture3, 0).xy);
+        case 4: return vec2(textureSize(materialTexture4, 0).xy);
+        case 5: return vec2(textureSize(materialTexture5, 0).xy);
+        case 6: return vec2(textureSize(materialTexture6, 0).xy);
+        case 7: return vec2(textureSize(materialTexture7, 0).xy);
+        case 8: return vec2(textureSize(materialTexture8, 0).xy);
+        case 9: return vec2(textureSize(materialTexture9, 0).xy);
+        case 10: return vec2(textureSize(materialTexture10, 0).xy);
+        case 11: return vec2(textureSize(materialTexture11, 0).xy);
+    }
+    return vec2(1.0);
+}
+
+float folded(uint wrap, float t, float margin) {
+    if (wrap == 0) return t;
+    float inside = wrap == MIRRORED ? 1.0 - abs(1.0 - mod(t, 2.0)) : t;
+    return clamp(inside, margin, 1.0 - margin);
+}
+
+// Puts coordinates where the sampler, which repeats and filters, reads what the texture's own modes ask for. At edges that is
+// half a texel inside, of the level and of the footprint that are read, so that nothing comes from the opposite edge.
+void fold(uint handle, inout vec2 uv, inout vec2 x, inout vec2 y) {
+    vec2 texels = texelsOf(handle);
+    float a = length(x * texels), b = length(y * texels), longest = max(a, b);
+    float level = max(min(a, b), longest / ((handle & ANISOTROPIC) != 0 ? 16.0 : 1.0));
+    vec2 covered = max(max(abs(x), abs(y)) * texels, exp2(ceil(log2(max(level, 1.0)))));
+    vec2 margin = min(0.5 * covered / texels, 0.5);
+    uv = vec2(folded(handle >> WRAP_U & 3u, uv.x, margin.x), folded(handle >> WRAP_V & 3u, uv.y, margin.y));
+    if ((handle & NEAREST) != 0 && longest <= 1.0) {
+        uv = (floor(uv * texels) + 0.5) / texels;
+        x = y = vec2(0.0);
+    }
+}
+
+vec4 sampleTexture(uint handle, vec4 sets, Gradient g) {
+    bool second = usesSecondSet(handle);
+    vec2 uv = second ? sets.zw : sets.xy, x = second ? g.x.zw : g.x.xy, y = second ? g.y.zw : g.y.xy;
+    if ((handle & FOLDED) != 0) fold(handle, uv, x, y);
     vec3 at = vec3(uv, float(handle & 0xffffu));
-    switch (handle >> 16) {
-        case 0: return textureGrad(materialTexture0, at, g.x, g.y);
-        case 1: return textureGrad(materialTexture1, at, g.x, g.y);
-        case 2: return textureGrad(materialTexture2, at, g.x, g.y);
-        case 3: return textureGrad(materialTexture3, at, g.x, g.y);
-        case 4: return textureGrad(materialTexture4, at, g.x, g.y);
-        case 5: return textureGrad(materialTexture5, at, g.x, g.y);
-        case 6: return textureGrad(materialTexture6, at, g.x, g.y);
-        case 7: return textureGrad(materialTexture7, at, g.x, g.y);
-        case 8: return textureGrad(materialTexture8, at, g.x, g.y);
-        case 9: return textureGrad(materialTexture9, at, g.x, g.y);
-        case 10: return textureGrad(materialTexture10, at, g.x, g.y);
-        case 11: return textureGrad(materialTexture11, at, g.x, g.y);
+    switch (handle >> 16 & 15u) {
+        case 0: return textureGrad(materialTexture0, at, x, y);
+        case 1: return textureGrad(materialTexture1, at, x, y);
+        case 2: return textureGrad(materialTexture2, at, x, y);
+        case 3: return textureGrad(materialTexture3, at, x, y);
+        case 4: return textureGrad(materialTexture4, at, x, y);
+        case 5: return textureGrad(materialTexture5, at, x, y);
+        case 6: return textureGrad(materialTexture6, at, x, y);
+        case 7: return textureGrad(materialTexture7, at, x, y);
+        case 8: return textureGrad(materialTexture8, at, x, y);
+        case 9: return textureGrad(materialTexture9, at, x, y);
+        case 10: return textureGrad(materialTexture10, at, x, y);
+        case 11: return textureGrad(materialTexture11, at, x, y);
     }
     return vec4(1.0);
 }
 
-vec4 baseColor(Material m, vec2 uv, Gradient g) {
+vec4 baseColor(Material m, Place at, Gradient g) {
     vec4 c = m.base_color;
-    if (m.base_color_texture != NO_TEXTURE) c *= sampleTexture(m.base_color_texture, uv, g);
+    if ((m.flags & COLORED) != 0) c *= at.color;
+    if (m.base_color_texture != NO_TEXTURE) c *= sampleTexture(m.base_color_texture, at.uv, g);
     return c;
 }
 
-vec3 emission(Material m, vec2 uv, Gradient g) {
+vec3 emission(Material m, Place at, Gradient g) {
     vec3 e = m.emission;
-    if (m.emission_texture != NO_TEXTURE) e *= sampleTexture(m.emission_texture, uv, g).rgb;
+    if ((m.flags & TINTED) != 0) e *= at.color.rgb;
+    if (m.emission_texture != NO_TEXTURE) e *= sampleTexture(m.emission_texture, at.uv, g).rgb;
     return e;
 }
 
 // (roughness, metallic)
-vec2 roughnessMetallic(Material m, vec2 uv, Gradient g) {
+vec2 roughnessMetallic(Material m, Place at, Gradient g) {
     vec2 rm = vec2(m.roughness, m.metallic);
-    if (m.metallic_roughness_texture != NO_TEXTURE) rm *= sampleTexture(m.metallic_roughness_texture, uv, g).gb;
+    if (m.metallic_roughness_texture != NO_TEXTURE) rm *= sampleTexture(m.metallic_roughness_texture, at.uv, g).gb;
     return rm;
 }
 
@@ -89,8 +160,8 @@ vec4 dielectric(Material m) {
 
 // Tangent-space normal, not normalised. z is rebuilt, because two-channel formats (BC5) do not store it, and before x and
 // y are scaled (glTF 2.0, normalTextureInfo.scale).
-vec3 tangentNormal(Material m, vec2 uv, Gradient g) {
-    vec2 xy = sampleTexture(m.normal_texture, uv, g).xy * 2.0 - 1.0;
+vec3 tangentNormal(Material m, Place at, Gradient g) {
+    vec2 xy = sampleTexture(m.normal_texture, at.uv, g).xy * 2.0 - 1.0;
     return vec3(xy * m.normal_scale, sqrt(max(1.0 - dot(xy, xy), 0.0)));
 }
 

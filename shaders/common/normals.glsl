@@ -4,11 +4,11 @@
 #include "common/materials.glsl"
 
 // normal, tangent: as interpolated, in the world; w of the tangent: the sign of the bitangent.
-vec3 mappedNormal(Material m, vec2 uv, Gradient g, vec3 normal, vec4 tangent, vec3 face) {
+vec3 mappedNormal(Material m, Place at, Gradient g, vec3 normal, vec4 tangent, vec3 face) {
     vec3 n = normalize(normal);
     float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
     if (m.normal_texture != NO_TEXTURE) {
-        vec3 t = tangentNormal(m, uv, g);
+        vec3 t = tangentNormal(m, at, g);
         vec3 x = tangent.xyz - n * dot(n, tangent.xyz);
         if (dot(x, x) > 1e-12) {
             x = normalize(x);

@@ -52,7 +52,8 @@ struct Draw {
 struct VertexAttributes {
     vec3 normal;
     vec4 tangent; // w: sign of the bitangent
-    vec2 uv;
+    vec4 uv; // two sets
+    vec4 color; // linear
 };
 
 layout(std430) readonly buffer Instances { Instance instances[]; } instances;
@@ -69,7 +70,8 @@ VertexAttributes loadAttributes(uint vertex) {
     vec4 a = attributes.attributes[3 * vertex];
     vec4 b = attributes.attributes[3 * vertex + 1];
     vec4 c = attributes.attributes[3 * vertex + 2];
-    return VertexAttributes(a.xyz, b, vec2(a.w, c.x));
+    vec4 color = unpackUnorm4x8(floatBitsToUint(c.y)); // square roots, as an eighth of a byte near black is seen
+    return VertexAttributes(a.xyz, b, vec4(a.w, c.x, c.zw), vec4(color.rgb * color.rgb, color.a));
 }
 
 vec3 toWorld(uint instance, vec3 position) {

@@ -4,8 +4,9 @@
 // shading pass compares depth with EQUAL.
 #include "common/scene.glsl"
 
-layout(location = 0) out vec2 uv;
+layout(location = 0) out vec4 uv;
 layout(location = 1) flat out uint material;
+layout(location = 2) out float alpha; // of the vertices' colour
 
 precise gl_Position; // same operations in both shaders: no contraction, so bit-equal depth
 
@@ -13,6 +14,8 @@ void main() {
     Draw draw = draws.draws[gl_InstanceIndex];
     vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
     gl_Position = camera.view_projection * vec4(p, 1.0);
-    uv = loadAttributes(gl_VertexIndex).uv;
+    VertexAttributes a = loadAttributes(gl_VertexIndex);
+    uv = a.uv;
+    alpha = a.color.a;
     material = draw.material;
 }

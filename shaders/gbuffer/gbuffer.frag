@@ -13,12 +13,12 @@ layout(location = 3) out float gbufferDistance;
 
 void main() {
     Material m = materials.materials[material];
-    Gradient g = Gradient(dFdx(uv), dFdy(uv));
+    Gradient g = gradientHere();
     vec3 to_viewer = camera.position - position;
     vec3 face = faceNormal(normalize(to_viewer));
-    vec2 rm = roughnessMetallic(m, uv, g);
-    gbufferBase = vec4(baseColor(m, uv, g).rgb, rm.x);
+    vec2 rm = roughnessMetallic(m, placeHere(), g);
+    gbufferBase = vec4(baseColor(m, placeHere(), g).rgb, rm.x);
     gbufferNormals = vec4(packNormal(shadingNormal(m, g, face)), packNormal(face));
-    gbufferEmission = vec4(emission(m, uv, g), packMetallic(rm.y, dielectricNumber(m)));
+    gbufferEmission = vec4(emission(m, placeHere(), g), packMetallic(rm.y, dielectricNumber(m)));
     gbufferDistance = length(to_viewer);
 }

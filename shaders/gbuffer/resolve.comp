@@ -51,19 +51,20 @@ void main() {
     vec2 weights = clamp(across.xy / (across.z == 0.0 ? 1e-30 : across.z), 0.0, 1.0);
     float drawn = camera.near / uintBitsToFloat(word.y);
     float along = clamp(-dot(from, plane) / (across.z == 0.0 ? 1e-30 : across.z), 0.99 * drawn, 1.01 * drawn);
-    mat2 uv_of = mat2(at[1].uv - at[0].uv, at[2].uv - at[0].uv);
-    vec2 uv = at[0].uv + uv_of * weights;
+    mat2x4 uv_of = mat2x4(at[1].uv - at[0].uv, at[2].uv - at[0].uv);
     Gradient g = Gradient(uv_of * (across_x.xy / across_x.z - weights), uv_of * (across_y.xy / across_y.z - weights));
 
     Material m = materials.materials[draw.material];
     vec3 b = vec3(1.0 - weights.x - weights.y, weights);
+    Place place = Place(at[0].uv + uv_of * weights, vec4(1.0));
+    if (isColored(m)) place.color = mat3x4(at[0].color, at[1].color, at[2].color) * b;
     vec3 normal = normalToWorld(draw.instance, mat3(at[0].normal, at[1].normal, at[2].normal) * b);
     vec4 tangent = tangentToWorld(draw.instance, mat3x4(at[0].tangent, at[1].tangent, at[2].tangent) * b);
     vec3 face = dot(plane, plane) > 0.0 ? normalize(plane) : normalize(normal);
     if (dot(face, ray) > 0.0) face = -face;
-    vec2 rm = roughnessMetallic(m, uv, g);
-    imageStore(gbufferBase, pixel, vec4(baseColor(m, uv, g).rgb, rm.x));
-    imageStore(gbufferNormals, pixel, vec4(packNormal(mappedNormal(m, uv, g, normal, tangent, face)), packNormal(face)));
-    imageStore(gbufferEmission, pixel, vec4(emission(m, uv, g), packMetallic(rm.y, dielectricNumber(m))));
+    vec2 rm = roughnessMetallic(m, place, g);
+    imageStore(gbufferBase, pixel, vec4(baseColor(m, place, g).rgb, rm.x));
+    imageStore(gbufferNormals, pixel, vec4(packNormal(mappedNormal(m, place, g, normal, tangent, face)), packNormal(face)));
+    imageStore(gbufferEmission, pixel, vec4(emission(m, place, g), packMetallic(rm.y, dielectricNumber(m))));
     imageStore(gbufferDistance, pixel, vec4(along * length(ray)));
 }

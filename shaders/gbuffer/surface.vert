@@ -6,8 +6,9 @@
 layout(location = 0) out vec3 position;
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec4 tangent;
-layout(location = 3) out vec2 uv;
+layout(location = 3) out vec4 uv;
 layout(location = 4) flat out uint material;
+layout(location = 5) out vec4 color;
 
 precise gl_Position; // same operations in both shaders: no contraction, so bit-equal depth
 
@@ -20,5 +21,6 @@ void main() {
     normal = normalToWorld(draw.instance, a.normal);
     tangent = tangentToWorld(draw.instance, a.tangent);
     uv = a.uv;
+    color = a.color;
     material = draw.material;
 }

@@ -4,8 +4,9 @@
 
 layout(location = 0) out vec3 position;
 layout(location = 1) out vec3 normal;
-layout(location = 2) out vec2 uv;
+layout(location = 2) out vec4 uv;
 layout(location = 3) flat out uint material;
+layout(location = 4) out vec4 color;
 
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];
@@ -13,6 +14,7 @@ void main() {
     position = toWorld(draw.instance, loadPosition(gl_VertexIndex));
     normal = normalToWorld(draw.instance, a.normal);
     uv = a.uv;
+    color = a.color;
     material = draw.material;
     gl_Position = camera.view_projection * vec4(position, 1.0);
 }

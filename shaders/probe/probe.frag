@@ -10,7 +10,7 @@ layout(early_fragment_tests) in;
 
 void main() {
     Material m = materials.materials[material];
-    Gradient g = Gradient(dFdx(uv), dFdy(uv));
+    Gradient g = gradientHere();
     vec3 v = normalize(camera.position - position);
     vec3 face = faceNormal(v);
     if (gl_SampleMaskIn[0] == 0 || ivec2(gl_FragCoord.xy) != ivec2(params.probe)) return;

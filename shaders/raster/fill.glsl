@@ -7,16 +7,17 @@
 #include "raster/pieces.glsl"
 #include "raster/triangles.glsl"
 
-// Texture coordinates at a point of the screen, of a piece's plane.
-vec2 uvAt(Piece p, Outline o, vec2 at) {
+// Texture coordinates and vertex alpha at a point of the screen, of a piece's plane.
+vec3 lookupAt(Piece p, Outline o, vec2 at) {
     vec3 b = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at)) * vec3(p.per_w[0], p.per_w[1], p.per_w[2]);
-    return (b.x * p.uv[0] + b.y * p.uv[1] + b.z * p.uv[2]) / (b.x + b.y + b.z);
+    return (b.x * vec3(p.uv[0], p.alpha[0]) + b.y * vec3(p.uv[1], p.alpha[1]) + b.z * vec3(p.uv[2], p.alpha[2])) / (b.x + b.y + b.z);
 }
 
 bool isCutOut(Piece p, Outline o, vec2 at) {
     Material m = materials.materials[p.mask - 1];
-    vec2 uv = uvAt(p, o, at);
-    return baseColor(m, uv, Gradient(uvAt(p, o, at + vec2(1, 0)) - uv, uvAt(p, o, at + vec2(0, 1)) - uv)).a < m.alpha_cutoff;
+    vec3 here = lookupAt(p, o, at);
+    vec2 x = lookupAt(p, o, at + vec2(1, 0)).xy - here.xy, y = lookupAt(p, o, at + vec2(0, 1)).xy - here.xy;
+    return baseColor(m, Place(here.xyxy, here.zzzz), Gradient(x.xyxy, y.xyxy)).a < m.alpha_cutoff;
 }
 
 // A pixel whose centre is inside.

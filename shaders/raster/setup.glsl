@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 
 struct Corner {
     vec4 clip;
-    vec2 uv;
+    vec3 lookup; // texture coordinates of the mask, and the alpha of the vertex
 };
 
 // Depth as a linear function of the place on the screen, [-1,1]: from clip positions, before the near plane cuts anything and
@@ -21,7 +21,8 @@ vec3 depthPlane(Corner a, Corner b, Corner c) {
 void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, uint mask) {
     ivec2 size = targetSize();
     Piece p;
-    p.uv = vec2[3](a.uv, b.uv, c.uv);
+    p.uv = vec2[3](a.lookup.xy, b.lookup.xy, c.lookup.xy);
+    p.alpha = float[3](a.lookup.z, b.lookup.z, c.lookup.z);
     p.triangle = triangle;
     p.layer = layer;
     p.mask = mask;
@@ -56,7 +57,7 @@ void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, u
 Corner cut(Corner before, Corner behind, float near) {
     precise float t = (before.clip.w - near) / (before.clip.w - behind.clip.w);
     precise vec4 clip = before.clip + t * (behind.clip - before.clip);
-    return Corner(vec4(clip.xyz, near), mix(before.uv, behind.uv, t));
+    return Corner(vec4(clip.xyz, near), mix(before.lookup, behind.lookup, t));
 }
 
 void setUp(uint triangle, uint layer) {
@@ -65,7 +66,7 @@ void setUp(uint triangle, uint layer) {
     Corner corner[3];
     for (int i = 0; i < 3; i++) {
         uint vertex = indices.indices[t.y + i];
-        corner[i] = Corner(targetClip(toWorld(d.instance, loadPosition(vertex)), layer), vec2(0.0));
+        corner[i] = Corner(targetClip(toWorld(d.instance, loadPosition(vertex)), layer), vec3(0.0));
     }
     for (int k = 0; k < 2; k++) {
         vec3 x = vec3(corner[0].clip[k], corner[1].clip[k], corner[2].clip[k]);
@@ -77,8 +78,13 @@ void setUp(uint triangle, uint layer) {
     for (int i = 0; i < 3; i++) before |= uint(corner[i].clip.w >= near) << i;
     if (before == 0) return;
     bool masked = materials.materials[d.material].alpha_cutoff > 0.0;
-    if (masked)
-        for (int i = 0; i < 3; i++) corner[i].uv = loadAttributes(indices.indices[t.y + i]).uv;
+    if (masked) {
+        bool second = usesSecondSet(materials.materials[d.material].base_color_texture);
+        for (int i = 0; i < 3; i++) {
+            VertexAttributes v = loadAttributes(indices.indices[t.y + i]);
+            corner[i].lookup = vec3(second ? v.uv.zw : v.uv.xy, v.color.a);
+        }
+    }
     vec3 plane = depthPlane(corner[0], corner[1], corner[2]);
     Corner parts[6];
     for (int i = 0; i < 3; i++) parts[i] = corner[i];

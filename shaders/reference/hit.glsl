@@ -20,7 +20,7 @@ SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
     Corners corners = cornersOf(t);
     Material m = materials.materials[corners.material];
     Gradient g;
-    vec2 uv = texturePlace(t, corners, hit.weights, f, g);
+    Place at = placeOf(m, t, corners, hit.weights, f, g);
     vec3 w = vec3(1.0 - hit.weights.x - hit.weights.y, hit.weights);
     vec3 v = -ray.direction;
     vec3 face = normalize(cross(t.b - t.a, t.c - t.a));
@@ -30,10 +30,10 @@ SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
     VertexAttributes a = loadAttributes(corners.vertices.x), b = loadAttributes(corners.vertices.y), c = loadAttributes(corners.vertices.z);
     vec3 normal = normalToWorld(corners.instance, w.x * a.normal + w.y * b.normal + w.z * c.normal);
     vec4 tangent = tangentToWorld(corners.instance, w.x * a.tangent + w.y * b.tangent + w.z * c.tangent);
-    vec3 n = mappedNormal(m, uv, g, normal, tangent, face);
-    vec2 rm = roughnessMetallic(m, uv, g);
-    Surface s = makeSurface(n, baseColor(m, uv, g).rgb, rm.x, rm.y, dielectric(m), v);
-    return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, uv, g), emitterDensity(t.flags, hit.weights, front));
+    vec3 n = mappedNormal(m, at, g, normal, tangent, face);
+    vec2 rm = roughnessMetallic(m, at, g);
+    Surface s = makeSurface(n, baseColor(m, at, g).rgb, rm.x, rm.y, dielectric(m), v);
+    return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, at, g), emitterDensity(t.flags, hit.weights, front));
 }
 
 #endif

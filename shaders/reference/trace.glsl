@@ -112,26 +112,27 @@ vec2 planeWeights(BvhTriangle t, vec3 origin, vec3 d) {
     return vec2(dot(cross(p, ac), n), dot(cross(ab, p), n)) / dot(n, n);
 }
 
-vec2 mixCorners(vec2 a, vec2 b, vec2 c, vec2 weights) {
+vec4 mixCorners(vec4 a, vec4 b, vec4 c, vec2 weights) {
     return a + weights.x * (b - a) + weights.y * (c - a);
 }
 
-// Texture coordinates at a hit and their change from pixel to pixel.
-vec2 texturePlace(BvhTriangle t, Corners corners, vec2 weights, Footprint f, out Gradient gradient) {
-    vec2 a = loadAttributes(corners.vertices.x).uv, b = loadAttributes(corners.vertices.y).uv, c = loadAttributes(corners.vertices.z).uv;
-    vec2 uv = mixCorners(a, b, c, weights);
-    gradient = Gradient(vec2(0.0), vec2(0.0));
+// Texture coordinates and vertex colour at a hit, and the change of coordinates from pixel to pixel.
+Place placeOf(Material m, BvhTriangle t, Corners corners, vec2 weights, Footprint f, out Gradient gradient) {
+    VertexAttributes a = loadAttributes(corners.vertices.x), b = loadAttributes(corners.vertices.y), c = loadAttributes(corners.vertices.z);
+    Place at = Place(mixCorners(a.uv, b.uv, c.uv, weights), vec4(1.0));
+    if (isColored(m)) at.color = mixCorners(a.color, b.color, c.color, weights);
+    gradient = Gradient(vec4(0.0), vec4(0.0));
     if (f.x != vec3(0.0))
-        gradient = Gradient(mixCorners(a, b, c, planeWeights(t, f.origin, f.x)) - uv, mixCorners(a, b, c, planeWeights(t, f.origin, f.y)) - uv);
-    return uv;
+        gradient = Gradient(mixCorners(a.uv, b.uv, c.uv, planeWeights(t, f.origin, f.x)) - at.uv, mixCorners(a.uv, b.uv, c.uv, planeWeights(t, f.origin, f.y)) - at.uv);
+    return at;
 }
 
 bool cutOut(BvhTriangle t, vec2 weights, Footprint f) {
     Corners corners = cornersOf(t);
     Material m = materials.materials[corners.material];
     Gradient g;
-    vec2 uv = texturePlace(t, corners, weights, f, g);
-    return baseColor(m, uv, g).a < m.alpha_cutoff;
+    Place at = placeOf(m, t, corners, weights, f, g);
+    return baseColor(m, at, g).a < m.alpha_cutoff;
 }
 
 Hit traceRay(Ray ray, Footprint f, bool any) {

@@ -5,13 +5,16 @@
 #include "common/scene.glsl"
 #include "common/shadow_layers.glsl"
 
-layout(location = 0) out vec2 uv;
+layout(location = 0) out vec4 uv;
 layout(location = 1) flat out uint material;
+layout(location = 2) out float alpha; // of the vertices' colour
 
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];
     vec3 p = toWorld(draw.instance, loadPosition(gl_VertexIndex));
     gl_Position = shadowLayers.layers[pass.index].view_projection * vec4(p, 1.0);
-    uv = loadAttributes(gl_VertexIndex).uv;
+    VertexAttributes a = loadAttributes(gl_VertexIndex);
+    uv = a.uv;
+    alpha = a.color.a;
     material = draw.material;
 }

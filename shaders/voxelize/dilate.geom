@@ -18,6 +18,7 @@ void emitRectangle(VolumeMap map, Projected t) {
         position = map.minimum + at * map.size;
         normal = (in_normal[0] + in_normal[1] + in_normal[2]) / 3.0;
         uv = (in_uv[0] + in_uv[1] + in_uv[2]) / 3.0;
+        color = (in_color[0] + in_color[1] + in_color[2]) / 3.0;
         nameTriangle();
         axis = t.along | SLIVER;
         corner = t.corners;

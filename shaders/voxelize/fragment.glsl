@@ -8,11 +8,12 @@
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
-layout(location = 2) in vec2 uv;
+layout(location = 2) in vec4 uv;
 layout(location = 3) flat in uint material;
 layout(location = 4) flat in uint axis;
 layout(location = 5) flat in uvec2 triangle;
 layout(location = 6) flat in vec3 corner[3];
+layout(location = 9) in vec4 color;
 
 // Texture footprint of a cell, not of a pixel: under a warp function a pixel may be a part of a cell, or have several. `at`:
 // the fragment in cells.

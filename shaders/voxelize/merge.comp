@@ -56,21 +56,27 @@ vec3 cornerOf(VolumeMap map, uvec2 triangle, uint i) {
 void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Covered covered) {
     Material m = materials.materials[draws.draws[triangle.x].material];
     if (m.alpha_cutoff <= 0.0) return;
-    vec2 uv[3], p[3];
+    VertexAttributes v[3];
+    vec2 p[3];
     for (int i = 0; i < 3; i++) {
-        uv[i] = loadAttributes(indices.indices[triangle.y + i]).uv;
+        v[i] = loadAttributes(indices.indices[triangle.y + i]);
         p[i] = 8.0 * besideOf(corner[i] - vec3(cell), axis);
     }
     mat2 across = mat2(p[1] - p[0], p[2] - p[0]);
     if (abs(determinant(across)) < 1e-6) return;
-    mat2 step = mat2(uv[1] - uv[0], uv[2] - uv[0]) * inverse(across); // of texture coordinates, from part to part
+    // Of texture coordinates and of the vertices' alpha, from part to part.
+    mat2x4 step = mat2x4(v[1].uv - v[0].uv, v[2].uv - v[0].uv) * inverse(across);
+    vec2 alpha_step = vec2(v[1].color.a - v[0].color.a, v[2].color.a - v[0].color.a) * inverse(across);
+    Gradient g = Gradient(step[0], step[1]);
+    Place middle = Place((v[0].uv + v[1].uv + v[2].uv) / 3.0, vec4((v[0].color.a + v[1].color.a + v[2].color.a) / 3.0));
     uint before = bitCount(covered.parts.x) + bitCount(covered.parts.y);
-    if (before == 0 && baseColor(m, (uv[0] + uv[1] + uv[2]) / 3.0, Gradient(step[0], step[1])).a < m.alpha_cutoff) covered.weight = 0;
+    if (before == 0 && baseColor(m, middle, g).a < m.alpha_cutoff) covered.weight = 0;
     for (int word = 0; word < 2; word++) {
         for (uint left = covered.parts[word]; left != 0; left &= left - 1) {
             int bit = findLSB(left);
             vec2 at = vec2(bit & 7, 4 * word + (bit >> 3)) + 0.5;
-            if (baseColor(m, uv[0] + step * (at - p[0]), Gradient(step[0], step[1])).a < m.alpha_cutoff) covered.parts[word] &= ~(1u << bit);
+            Place part = Place(v[0].uv + step * (at - p[0]), vec4(v[0].color.a + dot(alpha_step, at - p[0])));
+            if (baseColor(m, part, g).a < m.alpha_cutoff) covered.parts[word] &= ~(1u << bit);
         }
     }
     uint kept = bitCount(covered.parts.x) + bitCount(covered.parts.y);

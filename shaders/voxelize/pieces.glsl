@@ -78,13 +78,14 @@ void storeCell(VolumeMap map, VoxelPiece p, ivec3 cell) {
     vec3 along = face * axes, steep = abs(along);
     int dominant = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
     int i = dominant == 0 ? 1 : 0, j = dominant == 2 ? 1 : 2;
-    mat2 uv_of = mat2(v[1].uv - v[0].uv, v[2].uv - v[0].uv);
+    mat2x4 uv_of = mat2x4(v[1].uv - v[0].uv, v[2].uv - v[0].uv);
     float per = area > 0.0 ? 1.0 / along[dominant] : 0.0;
     Gradient g = Gradient(uv_of * ((axes[i] - axes[dominant] * (along[i] * per)) * weights), uv_of * ((axes[j] - axes[dominant] * (along[j] * per)) * weights));
 
     Material m = materials.materials[d.material];
-    vec2 uv = mat3x2(v[0].uv, v[1].uv, v[2].uv) * b;
-    vec4 base = baseColor(m, uv, g);
+    Place here = Place(mat3x4(v[0].uv, v[1].uv, v[2].uv) * b, vec4(1.0));
+    if (isColored(m)) here.color = mat3x4(v[0].color, v[1].color, v[2].color) * b;
+    vec4 base = baseColor(m, here, g);
     bool even = (!WARPED || CURVED) && map.curved == 0;
     if (base.a < (even ? min(m.alpha_cutoff, 0.01) : m.alpha_cutoff)) return; // parts are cut out of cells when they are merged
     vec3 n = mat3(normalize(normalToWorld(d.instance, v[0].normal)), normalize(normalToWorld(d.instance, v[1].normal)), normalize(normalToWorld(d.instance, v[2].normal))) * b;
@@ -96,7 +97,7 @@ void storeCell(VolumeMap map, VoxelPiece p, ivec3 cell) {
     vec3 passes = vec3(cell) + 0.5;
     float slope = along[axis];
     passes[axis] += clamp(dot(face, a - middle) / (abs(slope) > 1e-30 ? slope : 1e-30), -0.5, 0.5);
-    storeVoxel(cell, p.cascade, reflectanceOf(m, base.rgb, uv, g), n, emission(m, uv, g), passes, even ? t : NO_TRIANGLE);
+    storeVoxel(cell, p.cascade, reflectanceOf(m, base.rgb, here, g), n, emission(m, here, g), passes, even ? t : NO_TRIANGLE);
 }
 
 void storeCells(VolumeMap map, VoxelPiece p, CellRange r) {

@@ -10,17 +10,19 @@ layout(triangle_strip, max_vertices = 4) out;
 
 layout(location = 0) in vec3 in_position[];
 layout(location = 1) in vec3 in_normal[];
-layout(location = 2) in vec2 in_uv[];
+layout(location = 2) in vec4 in_uv[];
 layout(location = 3) flat in uint in_material[];
 layout(location = 4) flat in uint in_drawn[];
+layout(location = 5) in vec4 in_color[];
 
 layout(location = 0) out vec3 position;
 layout(location = 1) out vec3 normal;
-layout(location = 2) out vec2 uv;
+layout(location = 2) out vec4 uv;
 layout(location = 3) flat out uint material;
 layout(location = 4) flat out uint axis;
 layout(location = 5) flat out uvec2 triangle; // draw, first of its indices
 layout(location = 6) flat out vec3 corner[3]; // in cells
+layout(location = 9) out vec4 color;
 
 uint dominantAxis(VolumeMap map) {
     vec3 face = cross(in_position[1] - in_position[0], in_position[2] - in_position[0]);
@@ -38,7 +40,8 @@ void nameTriangle() {
 void emit(vec4 clip, vec3 b, uint flags, vec3 corners[3]) {
     position = mat3(in_position[0], in_position[1], in_position[2]) * b;
     normal = mat3(in_normal[0], in_normal[1], in_normal[2]) * b;
-    uv = mat3x2(in_uv[0], in_uv[1], in_uv[2]) * b;
+    uv = mat3x4(in_uv[0], in_uv[1], in_uv[2]) * b;
+    color = mat3x4(in_color[0], in_color[1], in_color[2]) * b;
     nameTriangle();
     axis = flags;
     corner = corners;

@@ -11,11 +11,12 @@ void main() {
     float pixels = footprintScale(at);
     Gradient g = Gradient(dFdx(uv) * pixels, dFdy(uv) * pixels);
     Material m = materials.materials[material];
-    vec4 base = baseColor(m, uv, g);
+    Place here = Place(uv, color);
+    vec4 base = baseColor(m, here, g);
     if (base.a < m.alpha_cutoff) return;
     // With several samples the centre may lie outside the triangle: back into its box.
     vec3 lo = min(corner[0], min(corner[1], corner[2])), hi = max(corner[0], max(corner[1], corner[2]));
     ivec3 cell = ivec3(floor(clamp(at, lo, hi)));
     vec3 n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
-    if (inGrid(cell)) storeVoxel(cell, cascade, reflectanceOf(m, base.rgb, uv, g), n, emission(m, uv, g), at, NO_TRIANGLE);
+    if (inGrid(cell)) storeVoxel(cell, cascade, reflectanceOf(m, base.rgb, here, g), n, emission(m, here, g), at, NO_TRIANGLE);
 }

@@ -42,7 +42,7 @@ void main() {
     ivec3 axes = planeAxes(axis & 3u);
     bool whole = EVEN; // a pixel is a column
     float pixels = footprintScale(at);
-    vec2 uv_across = dFdx(uv), uv_down = dFdy(uv);
+    vec4 uv_across = dFdx(uv), uv_down = dFdy(uv), color_across = dFdx(color), color_down = dFdy(color);
     vec3 normal_across = dFdx(normal), normal_down = dFdy(normal);
     Gradient g = Gradient(uv_across * pixels, uv_down * pixels);
 
@@ -50,13 +50,14 @@ void main() {
     bool each = !whole;
     Material m = materials.materials[material];
     vec4 base;
-    vec3 color, n, light;
+    vec3 reflected, n, light;
     if (!each) {
-        base = baseColor(m, uv, g);
+        Place here = Place(uv, color);
+        base = baseColor(m, here, g);
         if (base.a < (EVEN ? min(m.alpha_cutoff, 0.01) : m.alpha_cutoff)) return; // parts are cut out of cells when they are merged
         n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
-        color = reflectanceOf(m, base.rgb, uv, g);
-        light = emission(m, uv, g);
+        reflected = reflectanceOf(m, base.rgb, here, g);
+        light = emission(m, here, g);
     }
 
     vec3 lo = min(corner[0], min(corner[1], corner[2])), hi = max(corner[0], max(corner[1], corner[2]));
@@ -110,15 +111,15 @@ void main() {
                 if (each) {
                     vec3 middle = 0.5 * (low + high);
                     vec2 shift = clamp(vec2(middle[axes.x], middle[axes.y]) * float(params.raster_size) - gl_FragCoord.xy, -0.5, 0.5);
-                    vec2 there = uv + uv_across * shift.x + uv_down * shift.y;
+                    Place there = Place(uv + uv_across * shift.x + uv_down * shift.y, color + color_across * shift.x + color_down * shift.y);
                     base = baseColor(m, there, g);
                     if (base.a < m.alpha_cutoff) continue;
-                    color = reflectanceOf(m, base.rgb, there, g);
+                    reflected = reflectanceOf(m, base.rgb, there, g);
                     light = emission(m, there, g);
                     n = normal + normal_across * shift.x + normal_down * shift.y;
                     n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0);
                 }
-                storeVoxel(ivec3(x, y, z), cascade, color, n, light, pointNear(vec3(x, y, z) + 0.5, n), EVEN ? triangle : NO_TRIANGLE);
+                storeVoxel(ivec3(x, y, z), cascade, reflected, n, light, pointNear(vec3(x, y, z) + 0.5, n), EVEN ? triangle : NO_TRIANGLE);
             }
         }
     }

@@ -9,16 +9,18 @@ layout(vertices = 3) out;
 
 layout(location = 0) in vec3 in_position[];
 layout(location = 1) in vec3 in_normal[];
-layout(location = 2) in vec2 in_uv[];
+layout(location = 2) in vec4 in_uv[];
 layout(location = 3) flat in uint in_material[];
+layout(location = 5) in vec4 in_color[];
 
 layout(location = 0) out vec3 position[];
 layout(location = 1) out vec3 normal[];
-layout(location = 2) out vec2 uv[];
+layout(location = 2) out vec4 uv[];
 layout(location = 3) patch out uint material;
-layout(location = 4) patch out float footprint; // texture coordinates a cell
+layout(location = 4) patch out vec2 footprint; // texture coordinates a cell, of both sets
 layout(location = 5) patch out uint single; // 1: the whole triangle lies in one cell
 layout(location = 6) patch out float spacing; // of the points [m]
+layout(location = 7) out vec4 color[];
 
 #include "modules/tess_levels.glsl"
 
@@ -36,6 +38,7 @@ void main() {
     position[gl_InvocationID] = in_position[gl_InvocationID];
     normal[gl_InvocationID] = in_normal[gl_InvocationID];
     uv[gl_InvocationID] = in_uv[gl_InvocationID];
+    color[gl_InvocationID] = in_color[gl_InvocationID];
     if (gl_InvocationID != 0) return;
 
     // Only inputs are read below: other invocations' outputs would need a barrier.
@@ -56,7 +59,7 @@ void main() {
     if (finest < 0) {
         gl_TessLevelOuter = float[4](0.0, 0.0, 0.0, 0.0); // discards the patch
         gl_TessLevelInner = float[2](0.0, 0.0);
-        footprint = 0.0;
+        footprint = vec2(0.0);
         single = 0;
         spacing = 0.0;
         return;
@@ -82,8 +85,8 @@ void main() {
     spacing = max(distance(a, b), max(distance(b, c), distance(c, a))) / clamp(gl_TessLevelInner[0], 1.0, 64.0);
 
     // Square root of the ratio of areas: texture coordinates against cells.
-    vec2 s = in_uv[1] - in_uv[0], t = in_uv[2] - in_uv[0];
+    vec4 s = in_uv[1] - in_uv[0], t = in_uv[2] - in_uv[0];
     vec3 size = cellSize(map, (a + b + c) / 3.0);
     float area = max(length(face), 1e-20);
-    footprint = sqrt(abs(s.x * t.y - s.y * t.x) / area) * (size.x + size.y + size.z) / 3.0;
+    footprint = sqrt(abs(s.xz * t.yw - s.yw * t.xz) / area) * (size.x + size.y + size.z) / 3.0;
 }

@@ -13,11 +13,12 @@ layout(triangles, equal_spacing, point_mode) in;
 
 layout(location = 0) in vec3 position[];
 layout(location = 1) in vec3 normal[];
-layout(location = 2) in vec2 uv[];
+layout(location = 2) in vec4 uv[];
 layout(location = 3) patch in uint material;
-layout(location = 4) patch in float footprint;
+layout(location = 4) patch in vec2 footprint;
 layout(location = 5) patch in uint single;
 layout(location = 6) patch in float spacing;
+layout(location = 7) in vec4 color[];
 
 // Points for the densest cells of a patch are far too many for its other cells, and for coarser cascades: what is left there
 // is about this many for each cell that the surface crosses, chosen by a hash of the place (one in 3,000 gets none).
@@ -41,17 +42,18 @@ void main() {
         b = vec3(1.0 / 3.0);
     }
     vec3 p = mat3(position[0], position[1], position[2]) * b;
-    vec2 at = mat3x2(uv[0], uv[1], uv[2]) * b;
-    Gradient g = Gradient(vec2(footprint, 0.0), vec2(0.0, footprint));
+    Place at = Place(mat3x4(uv[0], uv[1], uv[2]) * b, mat3x4(color[0], color[1], color[2]) * b);
+    vec2 across = footprint;
+    Gradient g = Gradient(vec4(across.x, 0.0, across.y, 0.0), vec4(0.0, across.x, 0.0, across.y));
     Material m = materials.materials[material];
     vec4 base = baseColor(m, at, g);
     if (base.a < m.alpha_cutoff) return;
     vec3 n = mat3(normal[0], normal[1], normal[2]) * b;
     n = dot(n, n) > 0.0 ? normalize(n) : n;
-    vec3 color = reflectanceOf(m, base.rgb, at, g), light = emission(m, at, g);
+    vec3 reflected = reflectanceOf(m, base.rgb, at, g), light = emission(m, at, g);
     for (int k = 0; k < tessellatedCascades(); k++) {
         vec3 in_cells = worldToVolume(volume.maps[k], p) * float(params.voxel_dim);
         ivec3 cell = ivec3(floor(in_cells));
-        if (inGrid(cell) && (single != 0 || chosen(volume.maps[k], p))) storeVoxel(cell, k, color, n, light, in_cells, NO_TRIANGLE);
+        if (inGrid(cell) && (single != 0 || chosen(volume.maps[k], p))) storeVoxel(cell, k, reflected, n, light, in_cells, NO_TRIANGLE);
     }
 }

@@ -5,9 +5,10 @@
 
 layout(location = 0) out vec3 position;
 layout(location = 1) out vec3 normal;
-layout(location = 2) out vec2 uv;
+layout(location = 2) out vec4 uv;
 layout(location = 3) flat out uint material;
 layout(location = 4) flat out uint drawn;
+layout(location = 5) out vec4 color;
 
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];
@@ -15,6 +16,7 @@ void main() {
     position = toWorld(draw.instance, loadPosition(gl_VertexIndex));
     normal = normalize(normalToWorld(draw.instance, a.normal));
     uv = a.uv;
+    color = a.color;
     material = draw.material;
     drawn = gl_InstanceIndex;
 }

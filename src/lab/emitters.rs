@@ -1,9 +1,10 @@
 //! Emitting triangles as shaders draw places on them (`shaders/common/emitters.glsl`).
 
+use super::attributes::{Attributes, color_of, uv_of};
 use super::bvh::Soup;
 use crate::graph::host::{EmitterBlock, InstanceBlock};
-use crate::scene::{Scene, Side, SmallPicture};
-use glam::{Mat4, Vec2, Vec3};
+use crate::scene::{Lookup, Scene, Side, SmallPicture};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 use std::collections::HashMap;
 
 /// More emitting triangles than these are met by rays alone: 64 bytes each.
@@ -18,6 +19,9 @@ const LARGEST_LAMP: f32 = 0.25;
 
 /// Most parts of a textured triangle's edge. Each of its parts has one radiance.
 const MOST_PARTS: u32 = 8;
+
+/// Parts of the edge of a triangle whose corners have different colours.
+const TINTED_PARTS: u32 = 4;
 
 /// Texels of an emission texture along an edge that parts are told by.
 const TEXELS: u32 = 128;
@@ -49,7 +53,7 @@ pub(super) struct Emitters {
 
 impl Emitters {
     /// Of all triangles that emit; none where they are more than [`MOST_EMITTERS`].
-    pub(super) fn new(scene: &Scene, soup: &Soup<'_>, attributes: &[[f32; 12]]) -> Emitters {
+    pub(super) fn new(scene: &Scene, soup: &Soup<'_>, attributes: &[Attributes]) -> Emitters {
         let mut pictures: HashMap<u32, Option<SmallPicture>> = HashMap::new();
         let mut outsides: HashMap<u32, Vec<Option<Side>>> = HashMap::new();
         let (low, high) = scene.bounds();
@@ -77,17 +81,25 @@ impl Emitters {
                 scene.meshes.get(mesh as usize).map_or_else(Vec::new, |m| m.outsides(longest))
             });
             let small = |t: u32| scene.textures.get(t as usize).and_then(|t| t.small(TEXELS));
-            let mut picture = |t: Option<u32>| t.and_then(|t| pictures.entry(t).or_insert_with(|| small(t)).clone());
+            let mut picture = |t: Option<u32>, lookup: Lookup| {
+                let picture = t.and_then(|t| pictures.entry(t).or_insert_with(|| small(t)).clone());
+                picture.map(|picture| (picture, lookup))
+            };
+            let (masked, lookups) = (material.alpha_cutoff > 0.0, material.lookups);
             let shine = Shine {
                 emission: material.emission,
-                colors: picture(material.emission_texture),
-                mask: picture(material.base_color_texture.filter(|_| material.alpha_cutoff > 0.0)),
+                tinted: material.tinted_emission,
+                colors: picture(material.emission_texture, lookups.emission),
+                masked,
+                mask: picture(material.base_color_texture.filter(|_| masked), lookups.base_color),
                 cutoff: material.alpha_cutoff / material.base_color.w.max(1e-6),
             };
             for (first, vertices, corners) in triangles {
-                let uvs = vertices.map(|v| Vec2::new(attributes[v][3], attributes[v][8]));
-                let parts = shine.parts(uvs);
-                let radiance = (0..parts * parts).map(|part| shine.mean(part_corners(uvs, parts, part))).collect();
+                let uvs = vertices.map(|v| uv_of(&attributes[v]));
+                let tints = vertices.map(|v| color_of(&attributes[v]));
+                let parts = shine.parts(uvs, tints);
+                let mean = |part| shine.mean(part_corners(uvs, parts, part), part_corners(tints, parts, part));
+                let radiance = (0..parts * parts).map(mean).collect();
                 count += parts * parts;
                 if count as usize > MOST_EMITTERS {
                     return Emitters::default();
@@ -192,36 +204,46 @@ fn choose(blocks: &mut [EmitterBlock], power: &[f64], all: f64) {
     blocks.iter_mut().zip(power).filter(|(b, p)| **p == 0.0 && b.chance == 1.0).for_each(|(b, _)| b.chance = 0.0);
 }
 
-/// What a material emits at a texture coordinate.
+/// What a material emits at a place.
 struct Shine {
     emission: Vec3,
-    colors: Option<SmallPicture>,
-    /// Alpha below the cutoff is a hole.
-    mask: Option<SmallPicture>,
+    /// Times the colour of the vertices.
+    tinted: bool,
+    colors: Option<(SmallPicture, Lookup)>,
+    /// Alpha below the cutoff is a hole: of the picture, times that of the vertices.
+    masked: bool,
+    mask: Option<(SmallPicture, Lookup)>,
     cutoff: f32,
 }
 
 impl Shine {
     /// Parts of a triangle's edge, so that each has one radiance.
-    fn parts(&self, uvs: [Vec2; 3]) -> u32 {
-        [&self.colors, &self.mask].into_iter().flatten().map(|picture| parts_of(picture, uvs)).max().unwrap_or(1)
+    fn parts(&self, uvs: [Vec4; 3], tints: [Vec4; 3]) -> u32 {
+        let pictures = [&self.colors, &self.mask].into_iter().flatten();
+        let finest =
+            pictures.map(|(picture, lookup)| parts_of(picture, uvs.map(|uv| lookup.set(uv)))).max().unwrap_or(1);
+        let varies = tints.iter().any(|tint| (*tint - tints[0]).abs().max_element() > 0.02);
+        if varies && (self.tinted || self.masked) { finest.max(TINTED_PARTS) } else { finest }
     }
 
-    fn at(&self, uv: Vec2) -> Vec3 {
-        let color = self.colors.as_ref().map_or(Vec3::ONE, |colors| colors.at(uv).truncate());
-        let hole = self.mask.as_ref().is_some_and(|mask| mask.at(uv).w < self.cutoff);
+    fn at(&self, uv: Vec4, tint: Vec4) -> Vec3 {
+        let read =
+            |from: &Option<(SmallPicture, Lookup)>| from.as_ref().map(|(picture, lookup)| picture.at(lookup.place(uv)));
+        let color = read(&self.colors).map_or(Vec3::ONE, Vec4::truncate)
+            * if self.tinted { tint.truncate() } else { Vec3::ONE };
+        let hole = self.masked && read(&self.mask).map_or(1.0, |texel| texel.w) * tint.w < self.cutoff;
         if hole { Vec3::ZERO } else { self.emission * color }
     }
 
     /// Mean over a triangle.
-    fn mean(&self, uvs: [Vec2; 3]) -> Vec3 {
-        if self.colors.is_none() && self.mask.is_none() {
+    fn mean(&self, uvs: [Vec4; 3], tints: [Vec4; 3]) -> Vec3 {
+        if self.colors.is_none() && !self.masked && !self.tinted {
             return self.emission;
         }
         const EDGE: u32 = 6;
         let parts = EDGE * EDGE;
-        let middles = (0..parts).map(|part| part_corners(uvs, EDGE, part).iter().sum::<Vec2>() / 3.0);
-        middles.map(|uv| self.at(uv)).sum::<Vec3>() / parts as f32
+        let middle = |corners: [Vec4; 3], part| part_corners(corners, EDGE, part).iter().sum::<Vec4>() / 3.0;
+        (0..parts).map(|part| self.at(middle(uvs, part), middle(tints, part))).sum::<Vec3>() / parts as f32
     }
 }
 

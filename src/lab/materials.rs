@@ -1,14 +1,14 @@
 //! Material textures as a few 2D arrays, one for each size and format: works without descriptor indexing.
 
 use crate::graph::externals::MATERIAL_ARRAYS;
-use crate::scene::{Scene, Texture, TextureFormat};
+use crate::scene::{Lookup, Scene, Texture, TextureFormat, Wrap};
 use crate::vulkan::{Gpu, Image, ImageDesc, Result, Upload, View, ViewDesc, vk};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A handle as shaders see it: slot << 16 | layer.
-pub(super) const NO_TEXTURE: u32 = u32::MAX;
+/// A handle as shaders see it, of no texture.
+const NO_TEXTURE: u32 = u32::MAX;
 
 /// Edge of the textures that share an array because their own sizes are too rare for one.
 const SHARED_EDGE: u32 = 512;
@@ -23,8 +23,25 @@ fn class(texture: &Texture) -> Class {
 /// The arrays, the handle of each texture, and bytes on the device.
 pub(super) struct MaterialTextures {
     pub views: Vec<Arc<View>>,
-    pub handles: Vec<u32>,
+    /// slot << 16 | layer.
+    handles: Vec<u32>,
+    /// Whether the sampler filters anisotropically.
+    anisotropic: bool,
     pub bytes: u64,
+}
+
+impl MaterialTextures {
+    /// A texture and how it is looked up, as `common/materials.glsl` unpacks it.
+    pub fn handle(&self, texture: Option<u32>, lookup: Lookup) -> u32 {
+        let Some(handle) = texture.and_then(|t| self.handles.get(t as usize)) else { return NO_TEXTURE };
+        let [u, v] = lookup.wrap.map(|wrap| match wrap {
+            Wrap::Repeat => 0,
+            Wrap::Clamp => 1,
+            Wrap::Mirror => 2,
+        });
+        let flags = [lookup.nearest, lookup.second_set, self.anisotropic].map(u32::from);
+        handle | u << 20 | v << 22 | flags[0] << 24 | flags[1] << 25 | flags[2] << 26
+    }
 }
 
 pub(super) fn upload(gpu: &Arc<Gpu>, scene: &Scene, upload: &mut Upload) -> Result<MaterialTextures> {
@@ -33,7 +50,12 @@ pub(super) fn upload(gpu: &Arc<Gpu>, scene: &Scene, upload: &mut Upload) -> Resu
     for (i, texture) in textures.iter().enumerate() {
         classes.entry(class(texture)).or_default().push(i);
     }
-    let mut out = MaterialTextures { views: Vec::new(), handles: vec![NO_TEXTURE; textures.len()], bytes: 0 };
+    let mut out = MaterialTextures {
+        views: Vec::new(),
+        handles: vec![NO_TEXTURE; textures.len()],
+        anisotropic: gpu.info.features.anisotropy,
+        bytes: 0,
+    };
     for (slot, ((width, height, mips, format), members)) in (0u32..).zip(&classes) {
         let parts: Vec<Vec<&[u8]>> =
             members.iter().map(|m| textures[*m].mips.iter().map(Vec::as_slice).collect()).collect();

@@ -1,5 +1,6 @@
 //! The lab: a device and what is loaded on it; turns an experiment into frames.
 
+mod attributes;
 mod bvh;
 mod dielectrics;
 mod emitters;

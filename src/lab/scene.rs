@@ -1,16 +1,17 @@
 //! A scene on the device, as the fixed named resources that shaders read (`shaders/include/scene.glsl`).
 
+use super::attributes::{self, Attributes};
 use super::bvh::{self, Soup};
 use super::dielectrics::Dielectrics;
 use super::emitters::Emitters;
-use super::materials::{self, NO_TEXTURE};
+use super::materials;
 use super::sky;
 use super::view::lights;
 use crate::graph::host::{
     CameraBlock, DrawBlock, InstanceBlock, LightBlock, MaterialBlock, SceneInfoBlock, ShadowBlock,
 };
 use crate::graph::run::{Geometry, SceneResources};
-use crate::scene::{Environment, Light, Scene};
+use crate::scene::{Environment, Light, Lookup, Material, Scene};
 use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, VulkanError, vk};
 use glam::{Mat4, Vec3};
 use std::collections::HashMap;
@@ -103,8 +104,12 @@ impl SceneGpu {
             sky_turn: 0.0,
         });
         let dielectrics = Dielectrics::of(&scene.materials);
-        let material_blocks: Vec<MaterialBlock> =
-            scene.materials.iter().map(|m| material(m, dielectrics.number(m), &textures.handles)).collect();
+        let colored = attributes::colored_materials(scene);
+        let handle = |t: Option<u32>, lookup: Lookup| textures.handle(t, lookup);
+        let material_blocks: Vec<MaterialBlock> = (0u32..)
+            .zip(&scene.materials)
+            .map(|(i, m)| material(m, dielectrics.number(m), colored.contains(&i), &handle))
+            .collect();
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
         let index = vk::BufferUsageFlags::INDEX_BUFFER | storage;
         let index_buffer = upload.buffer("indices", bytemuck::cast_slice(&indices), index)?;
@@ -329,7 +334,7 @@ fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {
 }
 
 /// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another, and each mesh's first index.
-fn vertices(scene: &Scene) -> (Vec<f32>, Vec<[f32; 12]>, Vec<u32>, Vec<u32>) {
+fn vertices(scene: &Scene) -> (Vec<f32>, Vec<Attributes>, Vec<u32>, Vec<u32>) {
     let (mut positions, mut attributes, mut indices, mut first) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for mesh in &scene.meshes {
         let base = u32::try_from(positions.len() / 3).unwrap_or(u32::MAX);
@@ -337,7 +342,8 @@ fn vertices(scene: &Scene) -> (Vec<f32>, Vec<[f32; 12]>, Vec<u32>, Vec<u32>) {
         for v in &mesh.vertices {
             positions.extend(v.position);
             let ([nx, ny, nz], [tx, ty, tz, tw], [u, w]) = (v.normal, v.tangent, v.uv);
-            attributes.push([nx, ny, nz, u, tx, ty, tz, tw, w, 0.0, 0.0, 0.0]);
+            let ([u2, w2], color) = (v.uv_second, f32::from_bits(attributes::pack_color(v.color)));
+            attributes.push([nx, ny, nz, u, tx, ty, tz, tw, w, color, u2, w2]);
         }
         indices.extend(mesh.indices.iter().map(|i| base + i));
     }
@@ -364,7 +370,7 @@ fn draws(scene: &Scene, first_index: &[u32]) -> Vec<DrawBlock> {
 
 /// (draw, first of its indices) of every triangle, draw by draw. Neighbours in space are neighbours in the list, and the order
 /// is of what the triangles hold alone: where two are in one place it decides which is seen.
-fn triangles(draws: &[DrawBlock], indices: &[u32], positions: &[f32], attributes: &[[f32; 12]]) -> Vec<[u32; 2]> {
+fn triangles(draws: &[DrawBlock], indices: &[u32], positions: &[f32], attributes: &[Attributes]) -> Vec<[u32; 2]> {
     let position = |i: u32| -> [f32; 3] { std::array::from_fn(|k| positions[3 * indices[i as usize] as usize + k]) };
     let content = |first: u32| -> [[u32; 15]; 3] {
         std::array::from_fn(|k| {
@@ -405,8 +411,13 @@ fn morton(p: Vec3) -> u32 {
     spread(p.x) | spread(p.y) << 1 | spread(p.z) << 2
 }
 
-fn material(m: &crate::scene::Material, dielectric: u32, handles: &[u32]) -> MaterialBlock {
-    let handle = |t: Option<u32>| t.and_then(|t| handles.get(t as usize)).copied().unwrap_or(NO_TEXTURE);
+fn material(
+    m: &Material,
+    dielectric: u32,
+    colored: bool,
+    handle: &dyn Fn(Option<u32>, Lookup) -> u32,
+) -> MaterialBlock {
+    let tinted = colored && m.tinted_emission;
     MaterialBlock {
         base_color: m.base_color.to_array(),
         emission: m.emission.to_array(),
@@ -414,11 +425,11 @@ fn material(m: &crate::scene::Material, dielectric: u32, handles: &[u32]) -> Mat
         roughness: m.roughness,
         alpha_cutoff: m.alpha_cutoff,
         normal_scale: m.normal_scale,
-        flags: u32::from(m.two_sided) | dielectric << 8,
-        base_color_texture: handle(m.base_color_texture),
-        metallic_roughness_texture: handle(m.metallic_roughness_texture),
-        normal_texture: handle(m.normal_texture),
-        emission_texture: handle(m.emission_texture),
+        flags: u32::from(m.two_sided) | u32::from(colored) << 1 | u32::from(tinted) << 2 | dielectric << 8,
+        base_color_texture: handle(m.base_color_texture, m.lookups.base_color),
+        metallic_roughness_texture: handle(m.metallic_roughness_texture, m.lookups.metallic_roughness),
+        normal_texture: handle(m.normal_texture, m.lookups.normal),
+        emission_texture: handle(m.emission_texture, m.lookups.emission),
     }
 }
 

@@ -4,8 +4,13 @@ use glam::Vec3;
 
 use super::{Camera, Light, LightKind, Scene};
 
-/// Radiance of the sky over a model file.
+/// Radiance of the sky over a model file without lights.
 pub(super) const SKY: Vec3 = Vec3::new(0.6, 0.8, 1.0);
+
+/// Radiance of the sky over a model: none if it has lights of its own.
+pub(super) fn sky_over(model: &Scene) -> Vec3 {
+    if model.lights.is_empty() { SKY } else { Vec3::ZERO }
+}
 
 /// Vertical field of view of default cameras [degrees].
 const FOV_Y: f32 = 58.3;

@@ -11,6 +11,7 @@ mod export;
 mod file;
 mod gltf;
 mod limits;
+mod lookup;
 mod mesh;
 mod obj;
 mod open;
@@ -33,6 +34,7 @@ use serde::Deserialize;
 pub use environment::{Environment, SUN, SkyPicture};
 pub use error::SceneError;
 pub use limits::MAX_COORDINATE;
+pub use lookup::{Lookup, Lookups, Wrap};
 pub use mesh::Side;
 pub(crate) use shuffle::splitmix;
 pub use split::MAX_TRIANGLES;
@@ -66,9 +68,9 @@ pub struct Scene {
     pub warnings: Vec<String>,
 }
 
-/// A vertex as it is uploaded: 48 bytes, model space.
+/// A vertex, in model space.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Vertex {
     /// Model space, m.
     pub position: [f32; 3],
@@ -78,6 +80,17 @@ pub struct Vertex {
     pub tangent: [f32; 4],
     /// Where in textures; v grows downwards.
     pub uv: [f32; 2],
+    /// The same for textures whose [`Lookup`] takes the second set.
+    pub uv_second: [f32; 2],
+    /// Multiplies the base colour: linear RGB and alpha, 0 to 1.
+    pub color: [f32; 4],
+}
+
+impl Default for Vertex {
+    /// White, all else 0.
+    fn default() -> Self {
+        Vertex { color: [1.0; 4], ..Vertex::zeroed() }
+    }
 }
 
 /// Indexed triangles in one model space, split into submeshes of one material each.
@@ -139,6 +152,12 @@ pub struct Material {
     pub normal_texture: Option<u32>,
     /// RGB, decoded from sRGB.
     pub emission_texture: Option<u32>,
+    /// How those are looked up.
+    #[serde(skip)]
+    pub lookups: Lookups,
+    /// Whether the colour of vertices multiplies the emission too.
+    #[serde(skip)]
+    pub tinted_emission: bool,
 }
 
 impl Default for Material {
@@ -159,7 +178,16 @@ impl Default for Material {
             metallic_roughness_texture: None,
             normal_texture: None,
             emission_texture: None,
+            lookups: Lookups::default(),
+            tinted_emission: false,
         }
+    }
+}
+
+impl Mesh {
+    /// Whether any vertex has a colour.
+    pub fn has_colors(&self) -> bool {
+        self.vertices.iter().any(|v| v.color != [1.0; 4])
     }
 }
 

@@ -21,7 +21,8 @@ impl Scene {
     /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb). A path that may not be UTF-8 is
     /// given as [`crate::files::spec_of`] writes it.
     ///
-    /// A model without lights gets a sun and a sky, one without cameras a camera `default`. `progress` is called with
+    /// A model without lights gets a sun and a sky, one with lights none. Its first camera becomes the camera `default`;
+    /// a model without cameras gets one. `progress` is called with
     /// what is being done and the share done, 0 to 1, about 50 times a second, by the thread that called. When it
     /// answers `Break`, the opening ends at once with [`SceneError::Cancelled`].
     pub fn open(spec: &str, progress: &dyn Fn(&str, f32) -> ControlFlow<()>) -> Result<Scene, SceneError> {
@@ -85,12 +86,13 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
         return Err(SceneError::NotFound { spec: spec.into(), hint: builtin::hint(spec) });
     }
     let mut scene = load_model(path, progress)?;
+    scene.sky = defaults::sky_over(&scene);
     if scene.lights.is_empty() {
         scene.lights.push(defaults::sun());
     }
-    scene.sky = defaults::SKY;
     if !scene.cameras.contains_key("default") {
-        let camera = defaults::camera(&scene);
+        let own = scene.cameras.values().next().copied();
+        let camera = own.unwrap_or_else(|| defaults::camera(&scene));
         scene.cameras.shift_insert(0, "default".into(), camera);
     }
     Ok(scene)
@@ -125,6 +127,29 @@ mod tests {
     use super::*;
     use std::fmt::Write;
     use std::time::Instant;
+
+    #[test]
+    fn all_files_of_a_scene_are_named_though_it_fails() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        write("a.ron", "(models: [(file: \"a.obj\"), (file: \"b.gltf\")])");
+        write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n");
+        write("a.mtl", "newmtl m\nmap_Kd gone.png\n");
+        let buffers = "\"buffers\": [{\"uri\": \"b.bin\", \"byteLength\": 4}]";
+        write("b.gltf", &format!("{{\"asset\": {{\"version\": \"2.0\"}}, {buffers}, \"meshes\": 7}}"));
+        let open =
+            || Scene::open_with_files(folder.path().join("a.ron").to_str().unwrap(), &|_, _| ControlFlow::Continue(()));
+        let names = |files: Vec<PathBuf>| -> Vec<String> {
+            files.iter().map(|f| f.file_name().unwrap().to_string_lossy().into_owned()).collect()
+        };
+        let (scene, files) = open();
+        assert!(scene.is_err());
+        assert_eq!(names(files), ["a.mtl", "a.obj", "a.ron", "b.gltf", "gone.png"]);
+        write("b.gltf", &format!("{{\"asset\": {{\"version\": \"2.0\"}}, {buffers}}}"));
+        let (scene, files) = open();
+        assert!(scene.is_ok(), "{:?}", scene.err());
+        assert_eq!(names(files), ["a.mtl", "a.obj", "a.ron", "b.bin", "b.gltf", "gone.png"]);
+    }
 
     #[test]
     fn work_that_nobody_waits_for_ends_early() {

@@ -165,11 +165,14 @@ fn halfway(a: &Vertex, b: &Vertex) -> Vertex {
     let middle = |a: [f32; 3], b: [f32; 3]| (Vec3::from_array(a) + Vec3::from_array(b)) * 0.5;
     let normal = middle(a.normal, b.normal).normalize_or(Vec3::from_array(a.normal));
     let tangent = middle(xyz(a.tangent), xyz(b.tangent)).normalize_or(Vec3::from_array(xyz(a.tangent)));
+    let between = |a: [f32; 2], b: [f32; 2]| [(a[0] + b[0]) * 0.5, (a[1] + b[1]) * 0.5];
     Vertex {
         position: middle(a.position, b.position).to_array(),
         normal: normal.to_array(),
         tangent: Vec4::from((tangent, a.tangent[3])).to_array(),
-        uv: [(a.uv[0] + b.uv[0]) * 0.5, (a.uv[1] + b.uv[1]) * 0.5],
+        uv: between(a.uv, b.uv),
+        uv_second: between(a.uv_second, b.uv_second),
+        color: ((Vec4::from_array(a.color) + Vec4::from_array(b.color)) * 0.5).to_array(),
     }
 }
 

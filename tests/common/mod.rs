@@ -3,6 +3,7 @@
 
 pub mod closed_meshes;
 pub mod ggx;
+pub mod model_file;
 pub mod triangles;
 
 use conelab::experiment::Experiment;

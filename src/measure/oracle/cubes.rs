@@ -78,7 +78,7 @@ fn add_cube(mesh: &mut Mesh, grid: &Grid, number: u32, solid: &[bool]) {
             tangent[u] = 1.0;
             let first = mesh.vertices.len() as u32;
             let corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            let vertex = |position| Vertex { position, normal: normal.to_array(), tangent, uv: [0.0; 2] };
+            let vertex = |position| Vertex { position, normal: normal.to_array(), tangent, ..Vertex::default() };
             mesh.vertices.extend(corners.map(vertex));
             let order = if side == 1 { [0, 1, 2, 0, 2, 3] } else { [0, 2, 1, 0, 3, 2] };
             mesh.indices.extend(order.map(|i| first + i));

@@ -6,7 +6,7 @@ use super::overlap::{Axes, Overlap};
 use super::shape::shape_of;
 use super::surface::Surfaces;
 use super::triangle::Triangle;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -130,14 +130,16 @@ fn filled(mut hit: Hit, t: &Triangle, surfaces: &Surfaces<'_>, (low, high): (DVe
     let n = (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]);
     let direction = n.normalize_or_zero();
     let [a, b, c] = t.uv;
+    let [u, v, w] = t.uv.map(|uv| surfaces.set(t.material, uv));
     // Texels for each square metre of the triangle.
-    let density = (b - a).perp_dot(c - a).abs() * surfaces.texels(t.material) / n.length().max(1e-30) as f32;
+    let density = (v - u).perp_dot(w - u).abs() * surfaces.texels(t.material) / n.length().max(1e-30) as f32;
     let cutoff = surfaces.cutoff(t.material);
     let (mut there, mut gone) = (0.0, 0.0);
     for (weights, area) in samples(&polygon, direction, density > 0.0) {
         let w = weights.as_vec3();
-        let uv: Vec2 = a * w.x + b * w.y + c * w.z;
-        let base = surfaces.base_color(t.material, uv, 0.5 * (area as f32 * density).max(1e-6).log2());
+        let uv: Vec4 = a * w.x + b * w.y + c * w.z;
+        let tint = t.colors[0] * w.x + t.colors[1] * w.y + t.colors[2] * w.z;
+        let base = tint * surfaces.base_color(t.material, uv, 0.5 * (area as f32 * density).max(1e-6).log2());
         if base.w < cutoff {
             gone += area;
             continue;

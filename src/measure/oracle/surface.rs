@@ -1,6 +1,6 @@
 //! Base colours, sampled on the processor.
 
-use crate::scene::{Scene, Texture};
+use crate::scene::{Lookup, Scene, Texture};
 use glam::{Vec2, Vec4};
 use std::borrow::Cow;
 
@@ -48,8 +48,18 @@ impl<'s> Surfaces<'s> {
         self.textures.get(index as usize)?.as_deref()
     }
 
-    /// Linear base colour and alpha; `level` counts halvings of the texture, the nearest one is interpolated.
-    pub fn base_color(&self, material: u32, uv: Vec2, level: f32) -> Vec4 {
+    /// The texture coordinates of the base colour, of both sets.
+    pub fn set(&self, material: u32, sets: Vec4) -> Vec2 {
+        self.lookup(material).set(sets)
+    }
+
+    fn lookup(&self, material: u32) -> Lookup {
+        self.scene.materials.get(material as usize).map_or_else(Lookup::default, |m| m.lookups.base_color)
+    }
+
+    /// Linear base colour and alpha, without the colour of vertices; `level` counts halvings of the texture, the nearest one is interpolated.
+    pub fn base_color(&self, material: u32, sets: Vec4, level: f32) -> Vec4 {
+        let uv = self.lookup(material).place(sets);
         let factor = self.scene.materials.get(material as usize).map_or(Vec4::ONE, |m| m.base_color);
         let Some(texture) = self.texture(material) else { return factor };
         let level = (level.round().max(0.0) as usize).min(texture.mips.len().saturating_sub(1));

@@ -1,7 +1,7 @@
 //! A scene's triangles in the world.
 
 use crate::scene::Scene;
-use glam::{DVec3, Mat3, Vec2, Vec3};
+use glam::{DVec3, Mat3, Vec3, Vec4};
 
 /// A triangle in the world.
 #[derive(Clone, Copy, Debug)]
@@ -10,8 +10,10 @@ pub struct Triangle {
     pub corners: [DVec3; 3],
     /// Shading normals, unit length.
     pub normals: [Vec3; 3],
-    /// Texture coordinates.
-    pub uv: [Vec2; 3],
+    /// Both sets of texture coordinates.
+    pub uv: [Vec4; 3],
+    /// Colours of the vertices.
+    pub colors: [Vec4; 3],
     /// Index of the scene's material.
     pub material: u32,
 }
@@ -34,7 +36,8 @@ pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
                 Triangle {
                     corners: v.map(|v| model.transform_point3(v.position.into()).as_dvec3()),
                     normals: v.map(|v| (turn * Vec3::from_array(v.normal)).normalize_or_zero()),
-                    uv: v.map(|v| v.uv.into()),
+                    uv: v.map(|v| Vec4::new(v.uv[0], v.uv[1], v.uv_second[0], v.uv_second[1])),
+                    colors: v.map(|v| v.color.into()),
                     material: submesh.material,
                 }
             }));

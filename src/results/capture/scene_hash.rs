@@ -1,8 +1,9 @@
 //! A scene's content as one number.
 
 use crate::files::hex;
-use crate::scene::{LightKind, Material, Scene};
+use crate::scene::{LightKind, Lookups, Material, Scene, Vertex};
 use sha2::{Digest, Sha256};
+use std::mem::offset_of;
 
 /// SHA-256 over everything of a scene that can be seen: geometry, materials, textures, placement, motion, lights, sky.
 /// Names, cameras and warnings are left out.
@@ -10,7 +11,9 @@ pub fn scene_hash(scene: &Scene) -> String {
     let mut hash = Hash(Sha256::new());
     hash.count(scene.meshes.len());
     for mesh in &scene.meshes {
-        hash.bytes(bytemuck::cast_slice(&mesh.vertices));
+        let mut bytes = Vec::with_capacity(mesh.vertices.len() * PLAIN);
+        mesh.vertices.iter().for_each(|v| bytes.extend_from_slice(&bytemuck::bytes_of(v)[..PLAIN]));
+        hash.bytes(&bytes);
         hash.words(&mesh.indices);
         let parts: Vec<u32> = mesh.submeshes.iter().flat_map(|p| [p.first_index, p.index_count, p.material]).collect();
         hash.words(&parts);
@@ -61,6 +64,20 @@ pub fn scene_hash(scene: &Scene) -> String {
         hash.words(&[i]);
         hash.floats(&m.dielectric().to_array());
     }
+    // Likewise.
+    for (i, mesh) in (0u32..).zip(&scene.meshes) {
+        if mesh.vertices.iter().any(|v| (v.color, v.uv_second) != (Vertex::default().color, [0.0; 2])) {
+            hash.words(&[i]);
+            let more = |v: &Vertex| [v.uv_second.as_slice(), &v.color].concat();
+            hash.floats(&mesh.vertices.iter().flat_map(more).collect::<Vec<f32>>());
+        }
+    }
+    for (i, m) in (0u32..).zip(&scene.materials) {
+        if m.lookups != Lookups::default() || m.tinted_emission {
+            hash.words(&[i, u32::from(m.tinted_emission)]);
+            hash.bytes(format!("{:?}", m.lookups).as_bytes());
+        }
+    }
     hash.floats(&scene.sky.to_array());
     // Scenes without a picture keep the number that they had before there were any.
     if let Some(environment) = &scene.environment {
@@ -71,6 +88,9 @@ pub fn scene_hash(scene: &Scene) -> String {
     }
     hex(&hash.0.finalize())
 }
+
+/// Bytes of a vertex before the second set and the colour, which most scenes do not have.
+const PLAIN: usize = offset_of!(Vertex, uv_second);
 
 /// Every list goes in with its length, so that no two scenes are the same bytes.
 struct Hash(Sha256);

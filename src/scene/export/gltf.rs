@@ -6,6 +6,7 @@ use std::path::Path;
 use glam::{Mat3, Quat, Vec3};
 use serde_json::{Value, json};
 
+use super::textures::Textures;
 use super::{images, start, write_file};
 use crate::scene::{Animation, Camera, Light, LightKind, Material, Mesh, Scene, SceneError, Vertex};
 
@@ -60,14 +61,17 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
     for (i, (name, camera)) in scene.cameras.iter().enumerate() {
         writer.root(camera_node(name, i, camera));
     }
+    let mut textures = Textures::default();
+    let colored = scene.meshes.iter().any(Mesh::has_colors);
     let mut root = json!({
         "asset": { "version": "2.0", "generator": "conelab" },
         "scene": 0,
         "scenes": [{ "name": scene.name, "nodes": writer.roots }],
         "nodes": writer.nodes,
         "meshes": meshes,
-        "materials": scene.materials.iter().map(material).collect::<Vec<_>>(),
-        "textures": (0..images.len()).map(|i| json!({ "source": i })).collect::<Vec<_>>(),
+        "materials": scene.materials.iter().map(|m| material(m, colored, &mut textures)).collect::<Vec<_>>(),
+        "textures": textures.list(),
+        "samplers": textures.samplers(),
         "images": images,
         "cameras": scene.cameras.iter().map(|(name, c)| lens(name, c)).collect::<Vec<_>>(),
         "accessors": writer.accessors,
@@ -140,9 +144,12 @@ impl Writer {
     }
 
     fn mesh(&mut self, mesh: &Mesh) -> Value {
-        let stride = size_of::<Vertex>();
-        let vertices =
-            self.view(bytemuck::cast_slice(&mesh.vertices), json!({ "byteStride": stride, "target": 34962 }));
+        // The second set and colours are last in a vertex, and few meshes have them.
+        let more = mesh.vertices.iter().any(|v| v.uv_second != [0.0; 2]) || mesh.has_colors();
+        let stride = if more { size_of::<Vertex>() } else { std::mem::offset_of!(Vertex, uv_second) };
+        let mut bytes = Vec::with_capacity(mesh.vertices.len() * stride);
+        mesh.vertices.iter().for_each(|v| bytes.extend_from_slice(&bytemuck::bytes_of(v)[..stride]));
+        let vertices = self.view(&bytes, json!({ "byteStride": stride, "target": 34962 }));
         let positions = mesh.vertices.iter().map(|v| Vec3::from_array(v.position));
         let (low, high) = positions.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
         let mut attribute = |offset: usize, kind: &str| {
@@ -150,12 +157,16 @@ impl Writer {
                 "type": kind, "count": mesh.vertices.len() }));
             self.accessors.len() - 1
         };
-        let attributes = json!({
+        let mut attributes = json!({
             "POSITION": attribute(std::mem::offset_of!(Vertex, position), "VEC3"),
             "NORMAL": attribute(std::mem::offset_of!(Vertex, normal), "VEC3"),
             "TANGENT": attribute(std::mem::offset_of!(Vertex, tangent), "VEC4"),
             "TEXCOORD_0": attribute(std::mem::offset_of!(Vertex, uv), "VEC2"),
         });
+        if more {
+            attributes["TEXCOORD_1"] = json!(attribute(std::mem::offset_of!(Vertex, uv_second), "VEC2"));
+            attributes["COLOR_0"] = json!(attribute(std::mem::offset_of!(Vertex, color), "VEC4"));
+        }
         if let Some(position) = attributes["POSITION"].as_u64() {
             self.accessors[position as usize]["min"] = json!(low.to_array());
             self.accessors[position as usize]["max"] = json!(high.to_array());
@@ -219,6 +230,8 @@ fn extensions_used(scene: &Scene) -> Vec<&'static str> {
     used.extend((!scene.lights.is_empty()).then_some("KHR_lights_punctual"));
     used.extend(some(&|m| m.ior != plain.ior).then_some("KHR_materials_ior"));
     used.extend(some(&|m| has_specular(m)).then_some("KHR_materials_specular"));
+    let colored = scene.meshes.iter().any(Mesh::has_colors);
+    used.extend((colored && some(&|m| m.tinted_emission)).then_some("KHR_materials_unlit"));
     used
 }
 
@@ -227,7 +240,8 @@ fn has_specular(material: &Material) -> bool {
     (material.specular, material.specular_color) != (plain.specular, plain.specular_color)
 }
 
-fn material(material: &Material) -> Value {
+fn material(material: &Material, colored: bool, textures: &mut Textures) -> Value {
+    let lookups = material.lookups;
     let strength = material.emission.max_element().max(1.0);
     let mut value = json!({
         "name": material.name,
@@ -253,17 +267,35 @@ fn material(material: &Material) -> Value {
         value["alphaCutoff"] = json!(material.alpha_cutoff);
     }
     if let Some(index) = material.base_color_texture {
-        value["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": index });
+        value["pbrMetallicRoughness"]["baseColorTexture"] = textures.reference(index, lookups.base_color);
     }
     if let Some(index) = material.metallic_roughness_texture {
-        value["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({ "index": index });
+        value["pbrMetallicRoughness"]["metallicRoughnessTexture"] =
+            textures.reference(index, lookups.metallic_roughness);
     }
     if let Some(index) = material.normal_texture {
-        value["normalTexture"] = json!({ "index": index, "scale": material.normal_scale });
+        value["normalTexture"] = textures.reference(index, lookups.normal);
+        value["normalTexture"]["scale"] = json!(material.normal_scale);
     }
     if let Some(index) = material.emission_texture {
-        value["emissiveTexture"] = json!({ "index": index });
+        value["emissiveTexture"] = textures.reference(index, lookups.emission);
     }
+    if colored && material.tinted_emission {
+        return unlit(material, value);
+    }
+    value
+}
+
+/// A material whose emission takes the colour of vertices, which no lit one of glTF does.
+fn unlit(material: &Material, mut value: Value) -> Value {
+    let pbr = &mut value["pbrMetallicRoughness"];
+    pbr["baseColorFactor"] = json!(material.emission.extend(material.base_color.w).to_array());
+    let texture = value.as_object_mut().and_then(|fields| fields.remove("emissiveTexture"));
+    if let Some(texture) = texture {
+        value["pbrMetallicRoughness"]["baseColorTexture"] = texture;
+    }
+    value["emissiveFactor"] = json!([0, 0, 0]);
+    value["extensions"] = json!({ "KHR_materials_unlit": {} });
     value
 }
 

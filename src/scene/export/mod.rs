@@ -3,12 +3,14 @@
 mod gltf;
 mod images;
 mod obj;
+mod textures;
 
 use std::path::Path;
 
 use glam::Mat4;
 
-use super::{Animation, Scene, SceneError};
+use super::warnings::Warnings;
+use super::{Animation, Lookups, Scene, SceneError};
 use crate::files;
 
 impl Scene {
@@ -16,18 +18,39 @@ impl Scene {
     ///
     /// OBJ holds the pose at time 0 and no lights or cameras. glTF holds everything but the sky and whether a
     /// light casts shadows; a picture of the sky is written beside it, .sky.exr, as bright as it is here and not turned.
-    /// Each file appears whole or not at all.
-    pub fn export(&self, path: &Path) -> Result<(), SceneError> {
+    /// Each file appears whole or not at all. Returns warnings of what the format does not hold.
+    pub fn export(&self, path: &Path) -> Result<Vec<String>, SceneError> {
         let extension = crate::files::ending(path);
         match extension.as_str() {
-            "obj" => obj::write(self, path),
+            "obj" => {
+                obj::write(self, path)?;
+                Ok(self.left_out_of_obj().lines(path.display()))
+            }
             "glb" | "gltf" => {
                 gltf::write(self, path, extension == "glb")?;
-                let sky = path.with_extension("sky.exr");
-                self.environment.as_ref().map_or(Ok(()), |e| write_file(&sky, &images::sky_exr(e, self.sky, &sky)?))
+                if let Some(environment) = &self.environment {
+                    let sky = path.with_extension("sky.exr");
+                    write_file(&sky, &images::sky_exr(environment, self.sky, &sky)?)?;
+                }
+                Ok(Vec::new())
             }
             _ => Err(SceneError::ExportFormat { path: path.into() }),
         }
+    }
+}
+
+impl Scene {
+    fn left_out_of_obj(&self) -> Warnings {
+        let mut warnings = Warnings::default();
+        for mesh in self.meshes.iter().filter(|mesh| mesh.has_colors()) {
+            warnings.add("colours of vertices are left out of .obj files. Export as .glb to keep them", &mesh.name);
+        }
+        for material in self.materials.iter().filter(|m| m.lookups != Lookups::default()) {
+            let what = "wrap modes, filters and second sets of texture coordinates are left out of .obj files. Export as \
+                        .glb to keep them";
+            warnings.add(what, &material.name);
+        }
+        warnings
     }
 }
 

@@ -105,6 +105,7 @@ pub(super) struct ModelEntry {
     pub transform: Mat4,
     pub animation: Option<Animation>,
     pub lights: bool,
+    pub lights_scale: Option<f32>,
     pub cameras: bool,
 }
 
@@ -122,6 +123,9 @@ struct ModelFields {
     /// Whether the model's own lights come along.
     #[serde(default = "yes")]
     lights: bool,
+    /// Factor of the colours of the model's own lights, for example 1/683 where they are photometric.
+    #[serde(default)]
+    lights_scale: Option<f32>,
     /// Whether the model's own cameras come along.
     #[serde(default = "yes")]
     cameras: bool,
@@ -236,6 +240,7 @@ impl Default for ModelEntry {
             transform: Mat4::IDENTITY,
             animation: None,
             lights: true,
+            lights_scale: None,
             cameras: true,
         }
     }
@@ -253,12 +258,16 @@ impl TryFrom<ModelFields> for ModelEntry {
             }
             _ => return Err("a model needs either a file or a builtin".into()),
         }
+        if fields.lights_scale.is_some_and(|scale| !(0.0..=1e6).contains(&scale)) {
+            return Err("lights_scale is from 0 to 1e6".into());
+        }
         Ok(ModelEntry {
             transform: fields.transform.0,
             animation: fields.animation.map(|moves| moves.0),
             file: fields.file,
             builtin: fields.builtin,
             lights: fields.lights,
+            lights_scale: fields.lights_scale,
             cameras: fields.cameras,
         })
     }

@@ -18,7 +18,7 @@ use crate::files::read_input_text;
 use super::limits::{check_extent, check_placed};
 use super::progress::Progress;
 use super::shapes::Problem;
-use super::{Environment, Scene, SceneError, builtin, defaults, environment, open};
+use super::{Environment, Scene, SceneError, builtin, defaults, environment, gltf, open};
 use compose::Added;
 use format::{EnvironmentEntry, ModelEntry, SceneFile, SkyOf};
 
@@ -136,7 +136,14 @@ fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progr
         return Err(SceneError::NoModel { path: scene_file.into(), line, column, message });
     };
     let mut model = open::load_model(found, progress)?;
-    model.sky = defaults::SKY;
+    if entry.lights {
+        model.sky = defaults::sky_over(&model);
+    } else {
+        model.sky = defaults::SKY;
+    }
+    if entry.lights_scale.is_some() || !entry.lights {
+        model.warnings.retain(|warning| !warning.contains(gltf::SCALE));
+    }
     Ok(model)
 }
 

@@ -8,6 +8,7 @@ use glam::{Quat, Vec3, Vec4};
 
 use super::accessors;
 use super::buffers::Buffers;
+use crate::scene::warnings::Warnings;
 
 /// A sampled curve: times in order, one value each.
 #[derive(Clone, Debug)]
@@ -55,7 +56,7 @@ impl Track {
 pub(super) fn tracks(
     document: &Document,
     buffers: &Buffers,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<HashMap<usize, Track>, String> {
     let mut tracks: HashMap<usize, Track> = HashMap::new();
     for animation in document.animations() {
@@ -70,7 +71,7 @@ pub(super) fn tracks(
             }
             let interpolation = sampler.interpolation();
             if interpolation == Interpolation::CubicSpline {
-                warnings.push(format!("{name} is a cubic spline, which is played as straight lines"));
+                warnings.add("cubic splines of animations are played as straight lines", &called);
             }
             let track = tracks.entry(node.index()).or_default();
             match channel.target().property() {
@@ -88,10 +89,10 @@ pub(super) fn tracks(
                     track.rotation = Some(curve(&name, times, values, interpolation, unit)?);
                 }
                 Property::Translation | Property::Rotation => {
-                    warnings.push(format!("{name}: a second animation of the same node is left out"));
+                    warnings.add("of several animations of one node the first is played", &called);
                 }
-                Property::Scale => warnings.push(format!("{name} scales, which is left out: motion is rigid")),
-                Property::MorphTargetWeights => warnings.push(format!("{name} morphs, which is left out")),
+                Property::Scale => warnings.add("animations of scale are left out: motion is rigid", &called),
+                Property::MorphTargetWeights => warnings.add("animations of morph weights are left out", &called),
             }
         }
     }

@@ -9,6 +9,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD;
 
 use crate::files::read_input;
+use crate::scene::progress::Progress;
 use crate::scene::texture::Source;
 
 /// Buffers larger than this are refused; a binary file cannot have more.
@@ -25,15 +26,24 @@ pub(super) struct Buffers {
 
 impl Buffers {
     /// Reads the buffers. One that cannot be read is a mistake only where something in it is used.
-    pub fn load(document: &Document, mut blob: Option<Vec<u8>>, unreadable: HashSet<usize>, folder: &Path) -> Buffers {
+    pub fn load(
+        document: &Document,
+        mut blob: Option<Vec<u8>>,
+        unreadable: HashSet<usize>,
+        folder: &Path,
+        progress: Progress,
+    ) -> Buffers {
         let one = |buffer: buffer::Buffer| {
             let i = buffer.index();
             let bytes = match buffer.source() {
                 buffer::Source::Bin => blob.take().ok_or(format!("buffer {i} has neither a uri nor a binary chunk"))?,
                 buffer::Source::Uri(uri) => match resolve(uri, folder)? {
                     Target::Data(bytes) => bytes,
-                    Target::File(path) => read_input(&path, MAX_BYTES)
-                        .map_err(|error| format!("buffer {}: {error}. Copy it beside the model", path.display()))?,
+                    Target::File(path) => {
+                        progress.reads(&path);
+                        read_input(&path, MAX_BYTES)
+                            .map_err(|error| format!("buffer {}: {error}. Copy it beside the model", path.display()))?
+                    }
                 },
             };
             if bytes.len() < buffer.length() {

@@ -10,20 +10,8 @@ use ::gltf::json::{Path, Root};
 use serde_json::{Value, json};
 
 use super::container::split;
-
-/// Extensions that a file may require.
-const READ: [&str; 10] = [
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_mesh_quantization",
-    "KHR_texture_transform",
-    "MSFT_texture_dds",
-];
+use super::supported;
+use crate::scene::warnings::Warnings;
 
 /// A document that has been checked.
 pub(super) struct Checks {
@@ -32,7 +20,7 @@ pub(super) struct Checks {
     pub blob: Option<Vec<u8>>,
     /// Accessors of a type that the format does not have: whoever needs one fails.
     pub unreadable: HashSet<usize>,
-    pub warnings: Vec<String>,
+    pub warnings: Warnings,
 }
 
 /// Parses a file, text or binary.
@@ -41,8 +29,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Checks, String> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut value: Value = serde_json::from_slice(text).map_err(|e| format!("it is no JSON: {e}"))?;
     check_version(&value)?;
-    check_extensions(&value)?;
-    let mut warnings = Vec::new();
+    supported::check_required(&value)?;
+    let mut warnings = Warnings::default();
+    supported::warn_of_used(&value, &mut warnings);
     write_out(&mut value, &mut warnings);
     let root: Root = serde_json::from_value(value).map_err(|e| e.to_string())?;
     check(&root)?;
@@ -60,17 +49,8 @@ fn check_version(value: &Value) -> Result<(), String> {
     }
 }
 
-fn check_extensions(value: &Value) -> Result<(), String> {
-    let required = value.get("extensionsRequired").and_then(Value::as_array).into_iter().flatten();
-    let missing: Vec<&str> = required.filter_map(Value::as_str).filter(|name| !READ.contains(name)).collect();
-    match missing.as_slice() {
-        [] => Ok(()),
-        list => Err(format!("it requires {}, which is not read", list.join(" and "))),
-    }
-}
-
 /// Writes out what the format leaves to defaults and the crate asks for.
-fn write_out(value: &mut Value, warnings: &mut Vec<String>) {
+fn write_out(value: &mut Value, warnings: &mut Warnings) {
     whole_numbers(value);
     let Some(root) = value.as_object_mut() else { return };
     root.remove("extensionsRequired");
@@ -84,17 +64,21 @@ fn write_out(value: &mut Value, warnings: &mut Vec<String>) {
         let before = channels.len();
         channels.retain(|channel| channel.get("target").is_none_or(moves_a_node));
         if channels.len() < before {
-            let count = before - channels.len();
-            warnings.push(format!("animation {i} has {count} channels that move no node, which are left out"));
+            for _ in channels.len()..before {
+                warnings.add("channels of animations that move no node are left out", format!("animation {i}"));
+            }
         }
     }
     let mut images = root.get("images").and_then(Value::as_array).map_or(0, Vec::len);
+    let known = images as u64;
     let mut absent = Vec::new();
     let textures = root.get_mut("textures").and_then(Value::as_array_mut).into_iter().flatten();
     for (i, texture) in textures.enumerate() {
-        let Some(texture) = texture.as_object_mut().filter(|t| !t.contains_key("source")) else { continue };
-        let dds = texture.get("extensions").and_then(|e| e.get("MSFT_texture_dds")?.get("source")).cloned();
-        let source = dds.unwrap_or_else(|| {
+        let exists = |source: &Value| source.as_u64().is_some_and(|source| source < known);
+        let Some(texture) = texture.as_object_mut().filter(|t| !t.get("source").is_some_and(exists)) else { continue };
+        let extensions = texture.get("extensions");
+        let other = |name: &str| extensions.and_then(|e| e.get(name)?.get("source")).filter(|s| exists(s)).cloned();
+        let source = other("MSFT_texture_dds").or_else(|| other("EXT_texture_webp")).unwrap_or_else(|| {
             absent.push(json!({ "name": format!("of texture {i}, which names none that can be read,") }));
             images += 1;
             json!(images - 1)
@@ -143,6 +127,8 @@ fn validate(root: &Root) -> Result<HashSet<usize>, String> {
         match (error, accessor) {
             (Error::Missing, Some((_, "bufferView"))) => {}
             (Error::Missing, _) if path.ends_with("attributes[\"POSITION\"]") => {}
+            // Bounds are computed.
+            _ if [".min", ".max"].iter().any(|end| path.ends_with(end)) => {}
             (Error::Invalid, Some((number, "type" | "componentType"))) => {
                 unreadable.extend(number.parse::<usize>());
             }

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::materials::finite3;
 use super::means::Means;
 use crate::scene::Material;
+use crate::scene::warnings::Warnings;
 
 /// What makes an extension matter, 0 by default: without it the material looks as if the extension were not there.
 const MATTERS: [(&str, &str); 7] = [
@@ -20,10 +21,10 @@ const MATTERS: [(&str, &str); 7] = [
 ];
 
 /// A warning for each extension of the material that is left out.
-pub(super) fn warn_of_others(from: &From, name: &str, warnings: &mut Vec<String>) {
+pub(super) fn warn_of_others(from: &From, name: &str, warnings: &mut Warnings) {
     let others = from.extensions().into_iter().flatten();
     for (extension, _) in others.filter(|(extension, value)| matters(extension, value)) {
-        warnings.push(format!("material '{name}': {extension} is left out"));
+        warnings.add(format!("{extension} is left out of materials"), name);
     }
 }
 
@@ -34,7 +35,7 @@ fn matters(extension: &str, value: &Value) -> bool {
 }
 
 /// KHR_materials_ior and KHR_materials_specular. Textures count with their mean: nobody else needs a lookup for them.
-pub(super) fn specular(material: &mut Material, from: &From, means: &Means, warnings: &mut Vec<String>) {
+pub(super) fn specular(material: &mut Material, from: &From, means: &Means, warnings: &mut Warnings) {
     if let Some(ior) = from.ior() {
         // 0 stands for a surface that reflects everything; what is below 1 is no medium.
         material.ior = if ior == 0.0 { 0.0 } else { ior.clamp(1.0, 1e6) };
@@ -44,15 +45,12 @@ pub(super) fn specular(material: &mut Material, from: &From, means: &Means, warn
     material.specular = (specular.specular_factor() * means.color(factor.as_ref()).w).clamp(0.0, 1.0);
     material.specular_color = finite3(specular.specular_color_factor()) * means.color(color.as_ref()).truncate();
     if factor.is_some() || color.is_some() {
-        warnings.push(format!(
-            "material '{}': textures of KHR_materials_specular count with their mean alone",
-            material.name
-        ));
+        warnings.add("of textures of KHR_materials_specular only the mean is used", &material.name);
     }
 }
 
 /// KHR_materials_transmission: a surface is there or it is not. Light is not bent, and takes no colour on.
-pub(super) fn transmission(material: &mut Material, from: &From, means: &Means, warnings: &mut Vec<String>) {
+pub(super) fn transmission(material: &mut Material, from: &From, means: &Means, warnings: &mut Warnings) {
     let Some(transmission) = from.transmission() else { return };
     let texture = transmission.transmission_texture();
     // Metals let nothing through; where a texture says what is metal, nothing is assumed to be.
@@ -60,17 +58,17 @@ pub(super) fn transmission(material: &mut Material, from: &From, means: &Means, 
     let share = transmission.transmission_factor() * means.data(texture.as_ref()).x * (1.0 - metallic);
     if share > 0.5 {
         leave_out(material);
-        warnings.push(format!(
-            "material '{}' lets {share:.2} of the light through (KHR_materials_transmission): it is left out",
-            material.name
-        ));
+        warnings.add(
+            "materials that let more than half of the light through (KHR_materials_transmission) are left out",
+            format!("{}, {share:.2}", material.name),
+        );
     } else if share > 0.0 {
         material.base_color *= Vec3::splat(1.0 - share).extend(1.0);
-        warnings.push(format!(
-            "material '{}' lets {share:.2} of the light through (KHR_materials_transmission): it is opaque, and its \
-             base colour that much darker",
-            material.name
-        ));
+        warnings.add(
+            "materials that let up to half of the light through (KHR_materials_transmission) are opaque, and their base \
+             colour is darker by that share",
+            format!("{}, {share:.2}", material.name),
+        );
     }
 }
 
@@ -84,6 +82,8 @@ fn leave_out(material: &mut Material) {
 pub(super) fn unlit(material: &mut Material) {
     material.emission = material.base_color.truncate();
     material.emission_texture = material.base_color_texture;
+    material.lookups.emission = material.lookups.base_color;
+    material.tinted_emission = true;
     material.base_color = Vec3::ZERO.extend(material.base_color.w);
     if material.alpha_cutoff == 0.0 {
         material.base_color_texture = None;

@@ -8,20 +8,21 @@ use glam::{Vec3, Vec4};
 
 use super::buffers::Buffers;
 use super::means::Means;
-use super::placing::UvSource;
+use super::placing::{Placing, UvSources};
 use super::{buffers, extensions};
 use crate::scene::progress::Progress;
 use crate::scene::texture::{Recipe, Requests, Source};
-use crate::scene::{Material, SceneError};
+use crate::scene::warnings::Warnings;
+use crate::scene::{Lookups, Material, SceneError};
 
 /// All materials, and after them the default one where a primitive has none; the coordinates that each reads.
 pub(super) fn read(
     document: &Document,
     data: &Buffers,
     folder: &Path,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
     progress: Progress,
-) -> Result<(Vec<Material>, Vec<UvSource>, Requests), SceneError> {
+) -> Result<(Vec<Material>, Vec<UvSources>, Requests), SceneError> {
     let mut requests = Requests::default();
     let images: Vec<Source> = document.images().map(|image| buffers::image(&image, document, data, folder)).collect();
     let means = Means::load(document, &images, warnings, progress)?;
@@ -33,8 +34,8 @@ pub(super) fn read(
         uv_sources.push(uv);
     }
     if document.meshes().flat_map(|mesh| mesh.primitives()).any(|p| p.material().index().is_none()) {
-        materials.push(Material { base_color: Vec4::ONE, ..Material::default() });
-        uv_sources.push(UvSource::default());
+        materials.push(Material { base_color: Vec4::ONE, metallic: 1.0, ..Material::default() });
+        uv_sources.push(UvSources::default());
     }
     Ok((materials, uv_sources, requests))
 }
@@ -75,7 +76,7 @@ fn specular_glossiness<'a>(
     name: &str,
     images: &[Source],
     means: &Means,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Base<'a> {
     let texture = from.specular_glossiness_texture();
     let specular = (finite3(from.specular_factor()) * means.color(texture.as_ref()).truncate()).min(Vec3::ONE);
@@ -83,10 +84,8 @@ fn specular_glossiness<'a>(
     let diffuse = finite4(from.diffuse_factor()) * Vec3::splat(1.0 - specular.max_element()).extend(1.0);
     let gloss = from.glossiness_factor().clamp(0.0, 1.0);
     if texture.is_some() {
-        warnings.push(format!(
-            "material '{name}': the specular colour in its texture (KHR_materials_pbrSpecularGlossiness) counts with its \
-             mean alone"
-        ));
+        let what = "of specular colours in textures (KHR_materials_pbrSpecularGlossiness) only the mean is used";
+        warnings.add(what, name);
     }
     let rough = texture.map(|t| {
         let image = source(&t, images);
@@ -107,8 +106,8 @@ fn convert(
     images: &[Source],
     means: &Means,
     requests: &mut Requests,
-    warnings: &mut Vec<String>,
-) -> (Material, UvSource) {
+    warnings: &mut Warnings,
+) -> (Material, UvSources) {
     let name = name(from);
     let Base { color, rough, material } = match from.pbr_specular_glossiness() {
         Some(gloss) => specular_glossiness(&gloss, &name, images, means, warnings),
@@ -116,29 +115,42 @@ fn convert(
     };
     let alpha_cutoff = match from.alpha_mode() {
         AlphaMode::Opaque => 0.0,
-        AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).clamp(0.0, 1.0),
+        AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).max(0.0),
         AlphaMode::Blend => {
-            warnings.push(match material.base_color.w {
-                a if a < 0.5 => format!("material '{name}' blends with an alpha of {a:.2} at most: it is left out"),
-                _ => format!("material '{name}' blends, which is shown as a mask at alpha 0.5"),
-            });
+            match material.base_color.w {
+                a if a < 0.5 => warnings.add(
+                    "materials that blend with an alpha below 0.5 everywhere are left out",
+                    format!("{name}, {a:.2}"),
+                ),
+                _ => warnings.add("materials that blend are shown as masks at alpha 0.5", &name),
+            }
             0.5
         }
     };
+    if alpha_cutoff > 1.0 {
+        warnings.add("materials with an alphaCutoff above 1 cut everything out", &name);
+    }
     let mask = (alpha_cutoff > 0.0).then_some((alpha_cutoff * 255.0).round() as u8);
     let lit = !from.unlit();
     let rough = rough.filter(|_| lit);
     let normal = from.normal_texture().filter(|_| lit);
     let emission = from.emissive_texture().filter(|_| lit);
 
-    // Vertices carry one set of coordinates; the most visible texture decides which.
-    let infos = [color.as_ref(), rough.as_ref().map(|r| &r.0), emission.as_ref()];
-    let mut placed: Vec<UvSource> = infos.into_iter().flatten().map(UvSource::of).collect();
-    placed.extend(UvSource::of_normal_map(from).filter(|_| lit));
-    let uv = placed.first().copied().unwrap_or_default();
-    if placed.iter().any(|other| *other != uv) {
-        warnings.push(format!("material '{name}' places its textures differently; all are placed like the first"));
+    let mut placing = Placing::default();
+    let references = [
+        color.as_ref().map(|t| placing.add(t)),
+        rough.as_ref().map(|(t, _)| placing.add(t)),
+        normal.as_ref().and_then(|_| placing.add_normal_map(from)),
+        emission.as_ref().map(|t| placing.add(t)),
+    ];
+    let (uv, more) = placing.sources();
+    if more {
+        let what = "textures of one material have more than two kinds of coordinates (sets or transforms); the rest \
+                    takes the commonest";
+        warnings.add(what, &name);
     }
+    let [base_color, metallic_roughness, normal_map, emission_map] =
+        references.map(|reference| placing.lookup(reference, &uv));
 
     let strength = from.emissive_strength().unwrap_or(1.0).max(0.0);
     let mut ask = |recipe: Recipe| requests.ask(recipe, &name);
@@ -151,6 +163,7 @@ fn convert(
         metallic_roughness_texture: rough.map(|(_, recipe)| ask(recipe)),
         normal_texture: normal.map(|t| ask(Recipe::Normal { image: images[t.texture().source().index()].clone() })),
         emission_texture: emission.map(|t| ask(Recipe::Color { image: source(&t, images), mask: None })),
+        lookups: Lookups { base_color, metallic_roughness, normal: normal_map, emission: emission_map },
         name: name.clone(),
         ..material
     };

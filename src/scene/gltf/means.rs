@@ -8,6 +8,7 @@ use glam::Vec4;
 use crate::scene::SceneError;
 use crate::scene::progress::Progress;
 use crate::scene::texture::{Recipe, Requests, Source};
+use crate::scene::warnings::Warnings;
 
 /// Linear means, by image and whether it holds colours.
 #[derive(Debug, Default)]
@@ -18,7 +19,7 @@ impl Means {
     pub fn load(
         document: &Document,
         images: &[Source],
-        warnings: &mut Vec<String>,
+        warnings: &mut Warnings,
         progress: Progress,
     ) -> Result<Means, SceneError> {
         let mut requests = Requests::default();
@@ -34,7 +35,7 @@ impl Means {
             }
         }
         let (means, more) = requests.means(progress)?;
-        warnings.extend(more);
+        more.into_iter().for_each(|line| warnings.add(line, ""));
         Ok(Means(indices.into_iter().map(|(key, i)| (key, means[i as usize])).collect()))
     }
 

@@ -1,14 +1,17 @@
 //! Meshes: each primitive is read and repaired by itself, then becomes a submesh.
 
+use ::gltf::accessor::Dimensions;
 use ::gltf::mesh::{Mode, Primitive};
 use ::gltf::{Document, Semantic};
 use glam::Vec2;
+use rayon::prelude::*;
 
 use super::accessors;
 use super::buffers::Buffers;
-use super::placing::UvSource;
-use crate::scene::mesh::{Dropped, RawMesh, prepare_all};
+use super::placing::{UvSource, UvSources};
+use crate::scene::mesh::{Dropped, RawMesh, flat, prepare_all};
 use crate::scene::progress::Progress;
+use crate::scene::warnings::Warnings;
 use crate::scene::{Material, Mesh, Submesh, Vertex};
 
 /// Vertices and indices that any file may have.
@@ -19,8 +22,8 @@ pub(super) fn read(
     document: &Document,
     buffers: &Buffers,
     materials: &[Material],
-    uv_sources: &[UvSource],
-    warnings: &mut Vec<String>,
+    uv_sources: &[UvSources],
+    warnings: &mut Warnings,
     progress: Progress,
 ) -> Result<(Vec<Mesh>, Dropped), String> {
     let mut owners = Vec::new();
@@ -41,8 +44,8 @@ pub(super) fn read(
             }
             let points = matches!(primitive.mode(), Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip);
             if points || primitive.get(&Semantic::Positions).is_none() {
-                let what = if points { "points or lines" } else { "a primitive without positions" };
-                warnings.push(format!("mesh '{name}' has {what}, which are left out"));
+                let what = if points { "points and lines" } else { "primitives without positions" };
+                warnings.add(format!("{what} are left out"), &name);
                 continue;
             }
             let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
@@ -52,12 +55,20 @@ pub(super) fn read(
             })?;
             primitives.push(raw);
             owners.push(mesh.index());
+            if primitive.get(&Semantic::Colors(1)).is_some() {
+                warnings.add("COLOR_1 and further colours of vertices are left out", &name);
+            }
             if primitive.morph_targets().next().is_some() {
-                warnings.push(format!("mesh '{name}' has morph targets, which stay at rest"));
+                warnings.add("morph targets stay at rest", &name);
             }
         }
         meshes.push(Mesh { name, ..Mesh::default() });
     }
+    // glTF 2.0, 3.7.2.1: without normals they are flat.
+    primitives.par_iter_mut().filter(|raw| !raw.has_normals).for_each(|raw| {
+        flat(&mut raw.mesh);
+        raw.has_normals = true;
+    });
     let (prepared, dropped) = prepare_all(primitives, materials, progress)?;
     for (owner, primitive) in owners.into_iter().zip(prepared) {
         append(&mut meshes[owner], primitive)?;
@@ -81,7 +92,7 @@ fn read_primitive(
     buffers: &Buffers,
     name: &str,
     material: usize,
-    uv_source: &UvSource,
+    uv_sources: &UvSources,
 ) -> Result<RawMesh, String> {
     let positions = primitive.get(&Semantic::Positions).ok_or("a primitive has no positions")?;
     let positions = accessors::floats::<3>(&positions, buffers)?;
@@ -93,8 +104,6 @@ fn read_primitive(
         positions.iter().map(|&position| Vertex { position, ..Vertex::default() }).collect();
     let normals = primitive.get(&Semantic::Normals).map(|a| accessors::floats::<3>(&a, buffers)).transpose()?;
     let tangents = primitive.get(&Semantic::Tangents).map(|a| accessors::floats::<4>(&a, buffers)).transpose()?;
-    let uvs = primitive.get(&Semantic::TexCoords(uv_source.set));
-    let uvs = uvs.map(|a| accessors::floats::<2>(&a, buffers)).transpose()?;
     if let Some(normals) = &normals {
         same_count(normals.len(), "normals")?;
         vertices.iter_mut().zip(normals).for_each(|(vertex, n)| vertex.normal = *n);
@@ -103,10 +112,19 @@ fn read_primitive(
         same_count(tangents.len(), "tangents")?;
         vertices.iter_mut().zip(tangents).for_each(|(vertex, t)| vertex.tangent = *t);
     }
-    if let Some(uvs) = &uvs {
+    if let Some(uvs) = texture_coordinates(primitive, buffers, &uv_sources.first)? {
         same_count(uvs.len(), "texture coordinates")?;
-        let placed = |uv: &[f32; 2]| uv_source.transform.transform_point2(Vec2::from_array(*uv)).to_array();
-        vertices.iter_mut().zip(uvs).for_each(|(vertex, uv)| vertex.uv = placed(uv));
+        vertices.iter_mut().zip(uvs).for_each(|(vertex, uv)| vertex.uv = uv);
+    }
+    let second =
+        uv_sources.second.as_ref().map(|source| texture_coordinates(primitive, buffers, source)).transpose()?;
+    if let Some(uvs) = second.flatten() {
+        same_count(uvs.len(), "texture coordinates")?;
+        vertices.iter_mut().zip(uvs).for_each(|(vertex, uv)| vertex.uv_second = uv);
+    }
+    if let Some(colors) = colors(primitive, buffers)? {
+        same_count(colors.len(), "colours")?;
+        vertices.iter_mut().zip(colors).for_each(|(vertex, color)| vertex.color = color);
     }
     let indices = match primitive.indices() {
         Some(accessor) => accessors::indices(&accessor, buffers)?,
@@ -115,8 +133,30 @@ fn read_primitive(
     let indices = triangles(primitive.mode(), indices);
     let submesh = Submesh { first_index: 0, index_count: indices.len() as u32, material: material as u32 };
     let mesh = Mesh { name: name.into(), vertices, indices, submeshes: vec![submesh] };
-    // Tangents without normals cannot have been meant for ours.
+    // Tangents without normals are ignored.
     Ok(RawMesh { mesh, has_normals: normals.is_some(), has_tangents: normals.is_some() && tangents.is_some() })
+}
+
+/// Of a set, with its transform; none where the primitive does not have it.
+fn texture_coordinates(
+    primitive: &Primitive,
+    buffers: &Buffers,
+    source: &UvSource,
+) -> Result<Option<Vec<[f32; 2]>>, String> {
+    let Some(accessor) = primitive.get(&Semantic::TexCoords(source.set)) else { return Ok(None) };
+    let placed = |uv| source.transform.transform_point2(Vec2::from_array(uv)).to_array();
+    Ok(Some(accessors::floats::<2>(&accessor, buffers)?.into_iter().map(placed).collect()))
+}
+
+/// COLOR_0, linear.
+fn colors(primitive: &Primitive, buffers: &Buffers) -> Result<Option<Vec<[f32; 4]>>, String> {
+    let Some(accessor) = primitive.get(&Semantic::Colors(0)) else { return Ok(None) };
+    Ok(Some(match accessor.dimensions() {
+        Dimensions::Vec3 => {
+            accessors::floats::<3>(&accessor, buffers)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()
+        }
+        _ => accessors::floats::<4>(&accessor, buffers)?,
+    }))
 }
 
 /// Strips and fans as separate triangles with the same winding.

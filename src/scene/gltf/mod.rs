@@ -1,7 +1,8 @@
 //! glTF 2.0, text or binary: the node hierarchy with its meshes, lights and cameras, and rigid animation.
 //!
 //! Numbers of KHR_lights_punctual are taken as they are, lux as irradiance and candela as radiant intensity:
-//! there is no division by 683 lm/W, as few exporters mean photometric units.
+//! there is no division by 683 lm/W, because few exporters write photometric units. Intensities that look photometric
+//! give a warning, and `lights_scale` of a scene file scales them.
 
 mod accessors;
 mod animation;
@@ -9,11 +10,14 @@ mod buffers;
 mod container;
 mod document;
 mod extensions;
+mod instancing;
+mod lights;
 mod materials;
 mod means;
 mod meshes;
 mod nodes;
 mod placing;
+mod supported;
 
 use std::path::Path;
 
@@ -23,6 +27,7 @@ use super::progress::Progress;
 use super::{Scene, SceneError};
 use buffers::Buffers;
 use document::Checks;
+pub(super) use lights::SCALE;
 
 /// Geometry, materials, textures, lights and cameras of a glTF file; no sky.
 pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
@@ -33,11 +38,10 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         hint: "Check the path and its permissions".into(),
         source,
     })?;
-    let Checks { document, blob, unreadable, mut warnings } = document::read(&bytes)
-        .map_err(|error| fail(format!("{error}. Export it again as glTF 2.0 without compression extensions")))?;
+    let Checks { document, blob, unreadable, mut warnings } = document::read(&bytes).map_err(fail)?;
     drop(bytes);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let buffers = Buffers::load(&document, blob, unreadable, folder);
+    let buffers = Buffers::load(&document, blob, unreadable, folder, progress);
 
     progress.step("materials", 0.2)?;
     let (materials, uv_sources, requests) = materials::read(&document, &buffers, folder, &mut warnings, progress)?;
@@ -46,10 +50,11 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings, progress).map_err(fail)?;
     progress.step("nodes", 0.6)?;
     let tracks = animation::tracks(&document, &buffers, &mut warnings).map_err(fail)?;
-    let mut scene = nodes::place(&document, &tracks, &mut warnings).map_err(fail)?;
+    let mut scene = nodes::place(&document, &buffers, &tracks, &mut warnings).map_err(fail)?;
+    lights::warn_of_units(&document, &scene.lights, &mut warnings);
     // Warnings so far know only parts of the file; each must name the file itself.
     let name = path.display().to_string();
-    scene.warnings = warnings.into_iter().map(|warning| format!("{name}: {warning}")).collect();
+    scene.warnings = warnings.lines(&name);
     scene.warnings.extend(dropped.warning(&name));
     progress.step("textures", 0.7)?;
     let (textures, texture_warnings) = requests.load(progress)?;

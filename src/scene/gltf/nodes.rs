@@ -1,16 +1,18 @@
 //! The node hierarchy, flattened: instances, lights and cameras in the world.
 
 use std::collections::HashMap;
-use std::f32::consts::FRAC_PI_2;
 
 use ::gltf::camera::Projection;
-use ::gltf::khr_lights_punctual::Kind;
 use ::gltf::{Document, Node};
 use glam::{Mat4, Quat, Vec3};
 
 use super::animation::Track;
+use super::buffers::Buffers;
+use super::instancing::{self, MAX_INSTANCES};
+use super::lights;
 use crate::scene::defaults::least_reach;
-use crate::scene::{Animation, Camera, Instance, Keyframe, Light, LightKind, Scene};
+use crate::scene::warnings::Warnings;
+use crate::scene::{Animation, Camera, Instance, Keyframe, Scene};
 
 /// A node to visit: what is above it.
 struct Visit<'a> {
@@ -18,6 +20,7 @@ struct Visit<'a> {
     parent: Mat4,
     /// The nearest moving node above (or here) and what lies between it and this node's parent.
     moving: Option<Moving>,
+    visible: bool,
 }
 
 #[derive(Clone)]
@@ -32,16 +35,18 @@ const MAX_KEYFRAMES: usize = 1 << 22;
 /// Instances, lights and cameras of the default scene (of the first, where none is the default).
 pub(super) fn place(
     document: &Document,
+    buffers: &Buffers,
     tracks: &HashMap<usize, Track>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Warnings,
 ) -> Result<Scene, String> {
     let mut placed = Scene::default();
     let Some(root) = document.default_scene().or_else(|| document.scenes().next()) else {
-        warnings.push("the file has no scene".into());
+        warnings.add("the file has no scene", "");
         return Ok(placed);
     };
     let mut seen = vec![false; document.nodes().count()];
-    let mut stack: Vec<Visit> = root.nodes().map(|node| Visit { node, parent: Mat4::IDENTITY, moving: None }).collect();
+    let top = |node| Visit { node, parent: Mat4::IDENTITY, moving: None, visible: true };
+    let mut stack: Vec<Visit> = root.nodes().map(top).collect();
     stack.reverse();
     let mut keyframes = 0;
     while let Some(visit) = stack.pop() {
@@ -57,20 +62,24 @@ pub(super) fn place(
         let world = visit.parent * local;
         let moving = match (tracks.get(&node.index()), visit.moving) {
             (Some(_), Some(above)) => {
-                warnings.push(format!("node '{name}' moves inside a moving node; its own motion is left out"));
+                warnings.add("motion inside of moving nodes is left out", &name);
                 Some(Moving { below: above.below * local, ..above })
             }
             (None, Some(above)) => Some(Moving { below: above.below * local, ..above }),
             (Some(track), None) => start_moving(node, visit.parent, track).or_else(|| {
-                warnings.push(format!("node '{name}' moves inside an unevenly scaled node; it stays at rest"));
+                warnings.add("nodes that move inside of unevenly scaled ones stay at rest", &name);
                 None
             }),
             (None, None) => None,
         };
         if node.skin().is_some() {
-            warnings.push(format!("node '{name}' has a skin, which stays in its bind pose"));
+            warnings.add("skins stay in their bind pose", &name);
         }
-        if let Some(mesh) = node.mesh() {
+        let visible = visit.visible && is_visible(node);
+        if !visible && (node.mesh().is_some() || node.light().is_some()) {
+            warnings.add("invisible nodes (KHR_node_visibility) are left out", &name);
+        }
+        if let Some(mesh) = node.mesh().filter(|_| visible) {
             let (transform, animation) = match &moving {
                 Some(moving) => (moving.below, Some(moving.animation.clone())),
                 None => (world, None),
@@ -79,16 +88,28 @@ pub(super) fn place(
             if !keys.iter().all(|k| k.translation.is_finite() && k.rotation.is_finite()) {
                 return Err(format!("node '{name}' has a motion that is not finite. Export it again"));
             }
-            keyframes += keys.len();
-            if keyframes > MAX_KEYFRAMES {
-                return Err(format!("its moving meshes have more than {MAX_KEYFRAMES} keyframes in all"));
+            let places = instancing::places(node, document, buffers).map_err(|why| format!("node '{name}': {why}"))?;
+            let copies = places.as_ref().map_or(1, Vec::len);
+            keyframes += keys.len().saturating_mul(copies);
+            if keyframes > MAX_KEYFRAMES || placed.instances.len() + copies > MAX_INSTANCES {
+                let most = format!("{MAX_INSTANCES} instances, or its moving ones more than {MAX_KEYFRAMES} keyframes");
+                return Err(format!("it has more than {most}"));
             }
-            placed.instances.push(Instance { name: name.clone(), mesh: mesh.index() as u32, transform, animation });
+            let mesh = mesh.index() as u32;
+            match places {
+                None => placed.instances.push(Instance { name: name.clone(), mesh, transform, animation }),
+                Some(places) => placed.instances.extend((1..).zip(places).map(|(i, place)| Instance {
+                    name: format!("{name} {i}"),
+                    mesh,
+                    transform: transform * place,
+                    animation: animation.clone(),
+                })),
+            }
         }
-        if let Some(light) = node.light() {
-            match read_light(&light, &name, world) {
+        if let Some(light) = node.light().filter(|_| visible) {
+            match lights::read(&light, &name, world, warnings) {
                 Ok(light) => placed.lights.push(light),
-                Err(why) => warnings.push(format!("light '{name}' {why}; it is left out")),
+                Err(why) => warnings.add(format!("lights that have {why} are left out"), &name),
             }
         }
         if let Some(camera) = node.camera() {
@@ -96,11 +117,11 @@ pub(super) fn place(
                 Some(view) => {
                     placed.cameras.insert(camera.name().unwrap_or(&name).to_owned(), view);
                 }
-                None => warnings.push(format!("camera '{name}' is not a usable perspective; it is left out")),
+                None => warnings.add("cameras that are no usable perspective are left out", &name),
             }
         }
         let children: Vec<Visit> =
-            node.children().map(|node| Visit { node, parent: world, moving: moving.clone() }).collect();
+            node.children().map(|node| Visit { node, parent: world, moving: moving.clone(), visible }).collect();
         stack.extend(children.into_iter().rev());
     }
     Ok(placed)
@@ -119,30 +140,10 @@ fn start_moving(node: &Node, parent: Mat4, track: &Track) -> Option<Moving> {
     Some(Moving { animation, below: Mat4::from_scale(Vec3::from_array(scale) * size) })
 }
 
-fn read_light(light: &::gltf::khr_lights_punctual::Light, name: &str, world: Mat4) -> Result<Light, &'static str> {
-    let color = Vec3::from_array(light.color()) * light.intensity();
-    if !color.is_finite() || color.min_element() < 0.0 {
-        return Err("has a colour or intensity that is negative or too large");
-    }
-    let kind = match light.kind() {
-        Kind::Directional => LightKind::Directional,
-        Kind::Point => LightKind::Point,
-        Kind::Spot { inner_cone_angle, outer_cone_angle } => {
-            let in_order = 0.0 <= inner_cone_angle && inner_cone_angle <= outer_cone_angle;
-            if !in_order || outer_cone_angle > FRAC_PI_2 + 1e-6 {
-                return Err("has cone angles that do not obey 0 <= inner <= outer <= 90 degrees");
-            }
-            LightKind::Spot { inner: inner_cone_angle, outer: outer_cone_angle.min(FRAC_PI_2) }
-        }
-    };
-    Ok(Light {
-        name: light.name().unwrap_or(name).to_owned(),
-        kind,
-        color,
-        position: world.w_axis.truncate(),
-        direction: world.transform_vector3(Vec3::NEG_Z).normalize_or(Vec3::NEG_Y),
-        shadow: true,
-    })
+/// KHR_node_visibility.
+fn is_visible(node: &Node) -> bool {
+    let extension = node.extension_value("KHR_node_visibility");
+    extension.and_then(|e| e.get("visible")).and_then(serde_json::Value::as_bool).unwrap_or(true)
 }
 
 fn read_camera(projection: &Projection, world: Mat4) -> Option<Camera> {

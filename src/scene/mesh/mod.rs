@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 pub use closed::Side;
-pub(super) use normals::{corner_angles, is_creased, point_key};
+pub(super) use normals::{corner_angles, flat, is_creased, point_key};
 
 use super::progress::Progress;
 use super::{Material, Mesh, Vertex};
@@ -72,11 +72,12 @@ fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Dropped), Stri
     } else {
         normals::generate(&mut mesh);
     }
-    let normal_mapped = mesh.submeshes.iter().any(|p| materials[p.material as usize].normal_texture.is_some());
+    let used = mesh.submeshes.iter().map(|p| &materials[p.material as usize]);
+    let normal_map = used.filter(|m| m.normal_texture.is_some()).map(|m| m.lookups.normal).next();
     if has_tangents {
         tangents::repair(&mut mesh);
-    } else if normal_mapped {
-        tangents::generate(&mut mesh);
+    } else if let Some(lookup) = normal_map {
+        tangents::generate(&mut mesh, lookup.second_set);
     } else {
         tangents::any(&mut mesh);
     }
@@ -157,9 +158,13 @@ fn drop_unused_vertices(mesh: &mut Mesh) {
 
 fn clear_bad_attributes(mesh: &mut Mesh) {
     for vertex in &mut mesh.vertices {
-        if vertex.uv.iter().any(|c| !c.is_finite()) {
-            vertex.uv = [0.0; 2];
+        for uv in [&mut vertex.uv, &mut vertex.uv_second] {
+            if uv.iter().any(|c| !c.is_finite()) {
+                *uv = [0.0; 2];
+            }
         }
+        // glTF 2.0, 3.7.2.1: colours are clamped.
+        vertex.color = vertex.color.map(|c| if c.is_nan() { 1.0 } else { c.clamp(0.0, 1.0) });
         if vertex.normal.iter().any(|c| !c.is_finite()) {
             vertex.normal = [0.0; 3];
         }
@@ -171,10 +176,11 @@ fn clear_bad_attributes(mesh: &mut Mesh) {
 
 /// Shared vertices from one vertex per corner; equal means equal bits.
 pub(super) fn weld(corners: &[Vertex]) -> (Vec<Vertex>, Vec<u32>) {
-    let mut seen: HashMap<[u8; 48], u32> = HashMap::with_capacity(corners.len() / 3);
+    const BYTES: usize = size_of::<Vertex>();
+    let mut seen: HashMap<[u8; BYTES], u32> = HashMap::with_capacity(corners.len() / 3);
     let mut vertices = Vec::new();
     let indices = corners.iter().map(|corner| {
-        let bytes: [u8; 48] = bytemuck::cast(*corner);
+        let bytes: [u8; BYTES] = bytemuck::cast(*corner);
         *seen.entry(bytes).or_insert_with(|| {
             vertices.push(*corner);
             vertices.len() as u32 - 1

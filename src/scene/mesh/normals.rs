@@ -34,6 +34,17 @@ pub(super) fn repair(mesh: &mut Mesh) {
     }
 }
 
+/// Gives every corner the normal of its face. Leaves a mesh with indices outside of it to [`super::prepare_all`].
+pub(in crate::scene) fn flat(mesh: &mut Mesh) {
+    let corners = mesh.indices.iter().map(|&i| mesh.vertices.get(i as usize).copied());
+    let Some(mut corners) = corners.collect::<Option<Vec<Vertex>>>() else { return };
+    for triangle in corners.as_chunks_mut::<3>().0 {
+        let normal = face_normal(triangle.map(|v| v.position)).to_array();
+        triangle.iter_mut().for_each(|corner| corner.normal = normal);
+    }
+    (mesh.vertices, mesh.indices) = weld(&corners);
+}
+
 /// Smooth normals weighted by corner angle, over faces that meet at 60 degrees or less.
 pub(super) fn generate(mesh: &mut Mesh) {
     let mut corners: Vec<Vertex> = mesh.indices.iter().map(|&i| mesh.vertices[i as usize]).collect();

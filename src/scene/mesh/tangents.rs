@@ -9,9 +9,9 @@ use glam::Vec3;
 ///
 /// MikkTSpace's bitangent points along increasing v, which is down in the picture (glTF 2.0, 3.8.3). Normal maps have
 /// +y up (glTF 2.0, `material.normalTexture`), so the sign is negated.
-pub(super) fn generate(mesh: &mut Mesh) {
+pub(super) fn generate(mesh: &mut Mesh, second_set: bool) {
     let corners = mesh.indices.iter().map(|&i| mesh.vertices[i as usize]).collect();
-    let mut soup = Soup { corners };
+    let mut soup = Soup { corners, second_set };
     if bevy_mikktspace::generate_tangents(&mut soup).is_ok() && !soup.corners.is_empty() {
         (mesh.vertices, mesh.indices) = weld(&soup.corners);
     }
@@ -44,6 +44,8 @@ fn any_tangent(normal: [f32; 3]) -> [f32; 4] {
 
 struct Soup {
     corners: Vec<Vertex>,
+    /// Of texture coordinates.
+    second_set: bool,
 }
 
 impl Geometry for Soup {
@@ -60,7 +62,8 @@ impl Geometry for Soup {
         self.corners[face * 3 + vertex].normal
     }
     fn tex_coord(&self, face: usize, vertex: usize) -> [f32; 2] {
-        self.corners[face * 3 + vertex].uv
+        let corner = &self.corners[face * 3 + vertex];
+        if self.second_set { corner.uv_second } else { corner.uv }
     }
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, vertex: usize) {
         // Where a triangle without area has no neighbour to take it from there is none: `repair` makes one.

@@ -105,6 +105,7 @@ pub(super) fn read(definition: &Definition, pictures: &mut Pictures, warnings: &
         normal_texture,
         emission_texture,
         name,
+        ..Material::default()
     };
     Read { material, placement, mask_by_alpha, is_bump }
 }

@@ -116,8 +116,8 @@ impl Builder {
             self.mesh.vertices.push(Vertex {
                 position: geometry.positions[corner.position as usize],
                 normal: geometry.normals.get(corner.normal as usize).copied().unwrap_or_default(),
-                tangent: [0.0; 4],
                 uv,
+                ..Vertex::default()
             });
         }
         Ok(index)

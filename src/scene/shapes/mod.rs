@@ -127,8 +127,8 @@ impl<'a> MeshBuilder<'a> {
         self.vertices.push(Vertex {
             position: position.to_array(),
             normal: normal.normalize_or(Vec3::Y).to_array(),
-            tangent: [0.0; 4],
             uv: uv.to_array(),
+            ..Vertex::default()
         });
         self.vertices.len() as u32 - 1
     }

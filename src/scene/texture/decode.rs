@@ -10,6 +10,9 @@ use crate::files::read_input;
 
 use super::{Filter, Recipe, Source, Texture, TextureFormat, dds, mips, texture_from_rgba};
 
+/// Formats of image files, besides DDS.
+const READ: [ImageFormat; 5] =
+    [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP, ImageFormat::Tga, ImageFormat::Bmp];
 /// Largest width and height of an image file.
 const MAX_FILE_SIDE: u32 = 16384;
 /// Largest memory of a decoded image.
@@ -172,8 +175,9 @@ fn is_dds(bytes: &[u8]) -> bool {
 /// By the file's own magic; TGA has none, so there the name's extension decides.
 fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
     let by_name = || ImageFormat::from_path(name).ok();
-    let format = image::guess_format(bytes).ok().or_else(by_name).ok_or("not a PNG, JPEG, TGA, BMP or DDS image")?;
-    if !matches!(format, ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tga | ImageFormat::Bmp) {
+    let format =
+        image::guess_format(bytes).ok().or_else(by_name).ok_or("not a PNG, JPEG, WebP, TGA, BMP or DDS image")?;
+    if !READ.contains(&format) {
         return Err(format!("{format:?} images are not supported; convert it to PNG"));
     }
     decode_limited(bytes, format).map(DynamicImage::into_rgba8)
