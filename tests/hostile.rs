@@ -169,7 +169,7 @@ fn a_model_without_triangles_has_a_warning_and_one_of_another_format_an_error() 
     }
 }
 
-/// A polygon of 200,000 corners whose edges cross, and lines of a megabyte.
+/// A polygon of 200,000 corners with crossing edges, and lines of a megabyte.
 #[test]
 fn hostile_polygons_and_lines_end() {
     let folder = folder();

@@ -227,8 +227,10 @@ fn many_files_that_are_not_there_are_searched_for_a_bounded_time() {
     let mtl: String =
         (0..20_000).map(|i| format!("newmtl m{i}\nmap_Ks C:\\a\\b\\c\\{i}.png\nmap_Ka {i}.png\n")).collect();
     std::fs::write(folder.path().join("a.mtl"), mtl).unwrap();
-    let lines = "mtllib a.mtl\n".repeat(1000) + &(0..1000).map(|i| format!("mtllib {i}.mtl\n")).collect::<String>();
-    std::fs::write(folder.path().join("a.obj"), lines + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let mut obj = "mtllib a.mtl\n".repeat(1000);
+    obj.extend((0..1000).map(|i| format!("mtllib {i}.mtl\n")));
+    obj += "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::fs::write(folder.path().join("a.obj"), obj).unwrap();
     let scene = open(&folder.path().join("a.obj")).unwrap();
     assert_eq!(scene.materials.len(), 20_001);
     assert_eq!(scene.warnings.len(), 4, "{:#?}", scene.warnings);

@@ -11,7 +11,7 @@ pub(super) struct Corner {
     pub normal: u32,
 }
 
-/// Attributes that the file has given so far: negative numbers count back from these.
+/// Counts of the attributes above the line. Negative numbers count back from them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counts {
     pub positions: usize,

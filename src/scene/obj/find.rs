@@ -92,7 +92,7 @@ impl Finder {
         })
     }
 
-    /// A path below the model's folder whose parts may have another case.
+    /// A path below the model's folder, in any case.
     fn without_case(&mut self, name: &str) -> Option<PathBuf> {
         let mut path = self.folder.clone();
         for part in Path::new(name).components() {

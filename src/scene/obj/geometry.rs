@@ -14,7 +14,7 @@ const UNNAMED: &str = "unnamed_object";
 /// Lines between two looks at whether the reader is still wanted.
 const LOOK: usize = 4096;
 
-/// Which triangles have smooth normals together, where the file gives none.
+/// How normals are generated if the file gives none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Smoothing {
     /// The file has no groups: by angle.
@@ -83,7 +83,7 @@ pub(super) fn read(text: &str, warnings: &mut Warnings, progress: Progress) -> R
 
 struct Reader<'a> {
     all: Geometry,
-    /// Of the line.
+    /// The line's number.
     number: usize,
     object: String,
     material: Option<u32>,
@@ -125,7 +125,9 @@ impl Reader<'_> {
             "o" | "g" => self.begin_object(without_comment(rest)),
             "usemtl" => self.use_material(rest),
             "mtllib" if rest.is_empty() => self.left_out("'mtllib' without a file is left out"),
-            "mtllib" => drop(self.all.libraries.insert(rest.into())),
+            "mtllib" => {
+                self.all.libraries.insert(rest.into());
+            }
             "s" => self.smooth(words(rest).next().unwrap_or("off")),
             "l" => self.left_out("lines (l) are left out: only faces are rendered"),
             "p" => self.left_out("points (p) are left out: only faces are rendered"),
@@ -229,7 +231,7 @@ impl Reader<'_> {
                 corners.iter().any(|c| outside(c.normal, counts[2])),
             ];
             without(corners, wrong, face.line, self.warnings);
-            // By the format, smoothing is off until the first group.
+            // Smoothing is off until the first group.
             if grouped && face.smoothing == Smoothing::Angle {
                 face.smoothing = Smoothing::Off;
             }
@@ -254,7 +256,7 @@ fn without(corners: &mut [Corner], wrong: [bool; 2], line: u32, warnings: &mut W
     }
 }
 
-/// The first numbers of a line, of which at least so many are needed.
+/// The first numbers of a line, at least `needed`.
 fn numbers<const N: usize>(rest: &str, what: &str, needed: usize) -> Result<[f32; N], String> {
     let mut numbers = [0.0; N];
     let mut words = words(rest);

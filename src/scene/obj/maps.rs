@@ -84,7 +84,7 @@ impl Map {
     }
 }
 
-/// The first word and what follows it.
+/// The first word and the rest.
 fn word(text: &str) -> (&str, &str) {
     let (first, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
     (first, rest.trim_start())
@@ -96,7 +96,7 @@ fn pair(rest: &mut &str, default: [f32; 2]) -> [f32; 2] {
     [x.unwrap_or(default[0]), y.unwrap_or(default[1])]
 }
 
-/// The numbers at the beginning, at most so many. The last word is a file, even if it is a number.
+/// The numbers at the beginning, at most `N`. The last word is a file, even if it is a number.
 fn numbers<const N: usize>(rest: &mut &str) -> [Option<f32>; N] {
     let mut found = [None; N];
     for number in &mut found {

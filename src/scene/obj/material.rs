@@ -25,7 +25,7 @@ pub(super) fn surface_of(surfaces: &[Surface], material: Option<u32>) -> Surface
     material.map_or(surfaces.last(), |used| surfaces.get(used as usize)).copied().unwrap_or_default()
 }
 
-/// A material, and what is decided once its pictures are loaded.
+/// A material, with questions that its pictures answer.
 #[derive(Debug)]
 pub(super) struct Read {
     pub material: Material,
@@ -36,7 +36,7 @@ pub(super) struct Read {
     pub is_bump: bool,
 }
 
-/// Where pictures are looked for and asked for.
+/// Finds pictures and requests them.
 pub(super) struct Pictures<'a> {
     pub finder: &'a mut Finder,
     pub requests: &'a mut Requests,
@@ -168,7 +168,7 @@ impl Reader<'_, '_> {
             return (given, false);
         }
         let Some((source, map)) = bump.or(other_bump) else { return (None, false) };
-        // Nothing stands in for a picture that was no normal map to begin with, most likely.
+        // Most bump maps hold heights: a checkerboard of normals would be wrong.
         if self.pictures.finder.look(&map.file).1 == Found::No {
             self.warnings.add("bump maps that are not there are left out", shown(&source.name()));
             return (None, false);

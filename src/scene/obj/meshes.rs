@@ -46,7 +46,7 @@ pub(super) fn build(
 
 struct Builder {
     mesh: Mesh,
-    /// Of each triangle.
+    /// One for each triangle.
     groups: Vec<Group>,
     has_normals: bool,
     lacks_normals: bool,

@@ -13,15 +13,15 @@ const MAX_VALENCE: usize = 256;
 /// Triangles of one group are smooth together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Group {
-    /// Those that meet at a small angle.
+    /// Triangles that meet at a small angle.
     Angle,
-    /// Those of one face.
+    /// Triangles of one face.
     Face(u32),
-    /// Those of one smoothing group.
+    /// Triangles of one smoothing group.
     Number(u32),
 }
 
-/// Gives a normal to each corner whose normal is zero: the mean over the triangles of its group at that point, weighted
+/// Gives a normal to each corner with a normal of zero: the mean over the triangles of its group at that point, weighted
 /// by their angles. `groups` has one for each triangle.
 pub(super) fn complete(mesh: &mut Mesh, groups: &[Group]) {
     let mut corners: Vec<Vertex> = mesh.indices.iter().map(|i| mesh.vertices[*i as usize]).collect();

@@ -11,8 +11,11 @@ use std::collections::VecDeque;
 use plane::{Inside, Point, cross, enters, inside};
 use tree::Tree;
 
-/// Tests of a polygon for each of its corners. Combs, spirals and stars of 100,000 corners need 36 to 300.
+/// Tests of a polygon for each corner. Combs, spirals and stars of 100,000 corners need 36 to 300.
 const TESTS: usize = 400;
+/// Corners of a polygon that have as many tests; with more, each has fewer, which bounds the time.
+const LARGE: usize = 100_000;
+const LARGE_TESTS: usize = 100;
 
 /// What became of a polygon.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,7 +49,7 @@ pub(super) fn triangulate(polygon: &[[f32; 3]], out: &mut Vec<[u32; 3]>) -> Cut 
         let mut clipper = Clipper::new(&points);
         clipper.run(out);
         all = Cut { rough: clipper.rough, tests: all.tests + clipper.tests };
-        if !all.rough {
+        if !all.rough || clipper.is_exhausted() {
             break;
         }
     }
@@ -111,6 +114,11 @@ impl Clipper<'_> {
         clipper
     }
 
+    fn is_exhausted(&self) -> bool {
+        let count = self.points.len();
+        self.tests > TESTS * count.min(LARGE) + LARGE_TESTS * count
+    }
+
     fn point(&self, corner: u32) -> Point {
         self.points[corner as usize]
     }
@@ -126,10 +134,9 @@ impl Clipper<'_> {
     }
 
     fn run(&mut self, out: &mut Vec<[u32; 3]>) {
-        let most = TESTS.saturating_mul(self.points.len());
         let mut at = 0;
         while self.left > 3 {
-            if self.tests > most {
+            if self.is_exhausted() {
                 self.rough = true;
                 return self.fan(at, out);
             }

@@ -1,4 +1,4 @@
-//! What a picture holds, for formats that do not say.
+//! Kinds of pictures by their texels, for formats that do not name the kind.
 
 use rayon::prelude::*;
 
@@ -7,7 +7,7 @@ use super::{Filter, Texture, TextureFormat, first_level_rgba, texture_from_rgba}
 /// Texels of a picture that are looked at to know its kind.
 const SAMPLES: usize = 1 << 16;
 
-/// Texels of a picture whose alpha is below 0.5.
+/// Texels of a picture with an alpha below 0.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::scene) enum Holes {
     None,
@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn normals_are_known_by_their_length_and_colour() {
-        let cases: [(&str, fn(u32) -> [u8; 4], bool); 9] = [
+        type Texel = fn(u32) -> [u8; 4];
+        let cases: [(&str, Texel, bool); 9] = [
             ("flat", |_| [128, 128, 255, 255], true),
             ("rough", rough, true),
             ("leans by 45 degrees", |_| [128, 218, 218, 255], true),

@@ -33,14 +33,16 @@ pub(super) fn project(polygon: &[[f32; 3]]) -> Option<impl Iterator<Item = Vec<P
         (right, up) = (up, right);
     }
     let point = move |p: &[f32; 3]| Point { x: f64::from(p[right]), y: f64::from(p[up]) };
-    // Along the normal to where the largest axis is 0: a shear keeps what crosses and what does not.
+    // Moves points along the normal to the plane of the two axes. Such a shear keeps crossings.
     let slope = [right, up].map(|k| normal[k] / normal[axis]);
     let own = move |p: &[f32; 3]| {
         let (Point { x, y }, depth) = (point(p), f64::from(p[axis]));
         Point { x: x - slope[0] * depth, y: y - slope[1] * depth }
     };
     let exact = polygon.iter().map(point).collect();
-    Some(std::iter::once(exact).chain(std::iter::once_with(move || polygon.iter().map(own).collect())))
+    // It is the same plane if the normal is along the axis.
+    let other = (slope != [0.0; 2]).then_some(own);
+    Some(std::iter::once(exact).chain(other.into_iter().map(|own| polygon.iter().map(own).collect())))
 }
 
 /// Twice the polygon's area along each axis.
@@ -51,9 +53,9 @@ fn newell(polygon: &[[f32; 3]]) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for (i, p) in polygon.iter().enumerate() {
         let (a, b) = (from(p), from(polygon.get(i + 1).unwrap_or(first)));
-        for k in 0..3 {
+        for (k, sum) in sum.iter_mut().enumerate() {
             let (x, y) = ((k + 1) % 3, (k + 2) % 3);
-            sum[k] += a[x] * b[y] - a[y] * b[x];
+            *sum += a[x] * b[y] - a[y] * b[x];
         }
     }
     sum
