@@ -5,7 +5,7 @@ mod cases;
 mod common;
 
 use cases::{CASES, Case, Expect};
-use conelab::scene::{Material, Mesh, Scene, Vertex};
+use conelab::scene::{Material, Mesh, Scene, Vertex, Wrap};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -106,6 +106,13 @@ impl Opened {
             Expect::Face(at, color) => {
                 let mut found = self.corners(at).into_iter();
                 found.try_for_each(|(_, material)| near(&material.base_color.truncate().to_array(), &color))
+            }
+            Expect::Painted(at, color) => {
+                self.corners(at).iter().try_for_each(|(vertex, _)| near(&vertex.color[..3], &color))
+            }
+            Expect::Wraps(name, clamped) => {
+                let wrap = if clamped { Wrap::Clamp } else { Wrap::Repeat };
+                same(format!("{:?}", self.material(name).lookups.base_color.wrap), format!("{:?}", [wrap; 2]))
             }
             Expect::Base(name, color) => near(&self.material(name).base_color.truncate().to_array(), &color),
             Expect::Emission(name, color) => near(&self.material(name).emission.to_array(), &color),

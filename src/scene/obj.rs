@@ -15,7 +15,7 @@ mod triangulate;
 use std::collections::HashMap;
 use std::path::Path;
 
-use glam::Mat4;
+use glam::{Mat4, Vec4};
 use indexmap::IndexSet;
 
 use crate::files::read_input;
@@ -59,7 +59,10 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let surfaces = surfaces(&geometry.used, &libraries, &materials, &mut warnings);
     let mut materials: Vec<Material> = materials.into_iter().map(|(_, read)| read.material).collect();
     if geometry.pieces.iter().any(|piece| surface_of(&surfaces, piece.material).material as usize == materials.len()) {
-        materials.push(Material { two_sided: true, ..Material::default() });
+        let grey = Material::default().base_color;
+        // Colours of vertices are the whole colour of a surface without a material.
+        let base_color = if geometry.colors.is_empty() { grey } else { Vec4::ONE };
+        materials.push(Material { base_color, two_sided: true, ..Material::default() });
     }
     let raw = meshes::build(&geometry, &surfaces, &mut warnings, progress).map_err(fail)?;
     drop(geometry);

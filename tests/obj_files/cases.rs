@@ -22,7 +22,11 @@ pub enum Expect {
     Normals(Point, usize),
     /// The base colour of every face at a point.
     Face(Point, Color),
+    /// The colour of every vertex at a point.
+    Painted(Point, Color),
     Base(&'static str, Color),
+    /// Whether the picture of the base colour is clamped along both axes.
+    Wraps(&'static str, bool),
     Emission(&'static str, Color),
     Roughness(&'static str, f32),
     Metallic(&'static str, f32),
@@ -242,7 +246,25 @@ pub const CASES: &[Case] = &[
     plain(
         "colours of vertices, some of them behind tabs",
         b"v\t0 0 0 1 0 0\nv\t1 0 0\nv 0 1 0 0 0 1\nf 1 2 3\n",
-        &[Triangles(1), Warns("a.obj: colours of vertices are left out"), Warnings(1)],
+        &[
+            Triangles(1),
+            Painted([0.0; 3], [1.0, 0.0, 0.0]),
+            Painted(X, [1.0; 3]),
+            Painted(Y, [0.0, 0.0, 1.0]),
+            Face(Y, [1.0; 3]),
+            Warnings(0),
+        ],
+    ),
+    plain(
+        "colours of vertices as screens show them, one behind a weight, one that is no number",
+        b"v 0 0 0 0.5 0.5 0.5\nv 1 0 0 1 0.25 0.25 0.25\nv 0 1 0 a b c\nf 1 2 3\n",
+        &[
+            Painted([0.0; 3], [0.21404114; 3]),
+            Painted(X, [0.05087609; 3]),
+            Painted(Y, [1.0; 3]),
+            Warns("a.obj: colours of vertices that are not numbers are left out ('line 3')"),
+            Warnings(1),
+        ],
     ),
     // Smoothing.
     plain(
@@ -448,13 +470,14 @@ pub const CASES: &[Case] = &[
     },
     quad("options without effect", b"newmtl m\nmap_Kd -blendu on -mm 0 1 -texres 512 -clamp off -cc off checker.png\n", &[
         BaseMap("m", CHECKER),
+        Wraps("m", false),
         Warnings(0),
     ]),
     quad("options that are left out", b"newmtl m\nmap_Kd -clamp on -mm 0.1 2 -imfchan r -cc on -t 1 1 1 checker.png\n", &[
         BaseMap("m", CHECKER),
-        Warns("a.mtl: the option -clamp of maps is left out ('m')"),
-        Warns("-imfchan"),
-        Warnings(5),
+        Warns("a.mtl: the option -imfchan of maps is left out ('m')"),
+        Wraps("m", true),
+        Warnings(4),
     ]),
     quad("a normal map as norm", b"newmtl m\nnorm -bm 0.5 lean.png\n", &[NormalMap("m", LEAN), NormalScale("m", 0.5), Warnings(0)]),
     quad("a normal map as bump, with any name", b"newmtl m\nmap_Bump -bm 1.5 brick_nor_gl_1k.png\n", &[

@@ -46,6 +46,8 @@ pub(super) struct Piece {
 #[derive(Debug, Default)]
 pub(super) struct Geometry {
     pub positions: Vec<[f32; 3]>,
+    /// sRGB of the first positions; the rest is white.
+    pub colors: Vec<[f32; 3]>,
     pub uvs: Vec<[f32; 2]>,
     pub normals: Vec<[f32; 3]>,
     pub corners: Vec<Corner>,
@@ -91,7 +93,6 @@ struct Reader<'a> {
     /// Whether the next face begins a piece.
     changed: bool,
     groups: HashMap<String, u32>,
-    has_colors: bool,
     /// Statements that belong to the format, and those that do not.
     known: usize,
     unknown: usize,
@@ -108,7 +109,6 @@ impl Reader<'_> {
             smoothing: Smoothing::Angle,
             changed: true,
             groups: HashMap::new(),
-            has_colors: false,
             known: 0,
             unknown: 0,
             warnings,
@@ -154,10 +154,15 @@ impl Reader<'_> {
 
     fn vertex(&mut self, rest: &str) -> Result<(), String> {
         self.all.positions.push(numbers(rest, "a position", 3)?);
-        // `x y z r g b`, or the same behind a weight. Vertices have no colour yet: it would be handed on from here.
-        if !self.has_colors && words(rest).nth(5).is_some() {
-            self.has_colors = true;
-            self.left_out("colours of vertices are left out, here and below");
+        let others: Vec<&str> = words(rest).skip(3).take(4).collect();
+        // `x y z r g b`, or the same behind a weight.
+        let Some(color) = others.len().checked_sub(3).map(|weights| &others[weights..]) else { return Ok(()) };
+        match <[f32; 3]>::try_from(color.iter().filter_map(|word| word.parse().ok()).collect::<Vec<_>>()) {
+            Ok(color) => {
+                self.all.colors.resize(self.all.positions.len() - 1, [1.0; 3]);
+                self.all.colors.push(color);
+            }
+            Err(_) => self.left_out("colours of vertices that are not numbers are left out"),
         }
         Ok(())
     }

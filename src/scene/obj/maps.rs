@@ -8,6 +8,8 @@ pub(super) struct Map {
     /// As the library writes it; may have quotes, blanks and a comment.
     pub file: String,
     pub placement: Placement,
+    /// `-clamp on`: beyond the picture is the colour of its edge.
+    pub clamp: bool,
     /// `-bm`: the strength of a bump map.
     pub strength: Option<f32>,
     /// Options that have an effect elsewhere and none here.
@@ -42,7 +44,13 @@ impl Placement {
 
 /// The options and the file of an entry; none where no file is named.
 pub(super) fn parse(entry: &str) -> Option<Map> {
-    let mut map = Map { file: String::new(), placement: Placement::default(), strength: None, left_out: Vec::new() };
+    let mut map = Map {
+        file: String::new(),
+        placement: Placement::default(),
+        clamp: false,
+        strength: None,
+        left_out: Vec::new(),
+    };
     let mut rest = entry.trim();
     while let Some((option, after)) = rest.starts_with('-').then(|| word(rest)) {
         rest = after;
@@ -60,8 +68,12 @@ pub(super) fn parse(entry: &str) -> Option<Map> {
                 }
             }
             "-bm" => map.strength = numbers::<1>(&mut rest)[0],
-            "-clamp" => map.switch(&mut rest, "-clamp"),
-            "-cc" => map.switch(&mut rest, "-cc"),
+            "-clamp" => map.clamp = is_on(&mut rest),
+            "-cc" => {
+                if is_on(&mut rest) {
+                    map.left_out.push("-cc");
+                }
+            }
             "-imfchan" => {
                 rest = word(rest).1;
                 map.left_out.push("-imfchan");
@@ -74,14 +86,10 @@ pub(super) fn parse(entry: &str) -> Option<Map> {
     (!without_comment(rest).is_empty() && !rest.starts_with('#')).then_some(map)
 }
 
-impl Map {
-    fn switch(&mut self, rest: &mut &str, option: &'static str) {
-        let (value, after) = word(rest);
-        *rest = after;
-        if value.eq_ignore_ascii_case("on") {
-            self.left_out.push(option);
-        }
-    }
+fn is_on(rest: &mut &str) -> bool {
+    let (value, after) = word(rest);
+    *rest = after;
+    value.eq_ignore_ascii_case("on")
 }
 
 /// The first word and the rest.
@@ -117,7 +125,7 @@ mod tests {
         for (entry, file, [scale, offset], strength, left_out) in [
             ("a b.png", "a b.png", [[1.0; 2], [0.0; 2]], None, &[][..]),
             ("-bm 0.5 t\\wall.png", "t\\wall.png", [[1.0; 2], [0.0; 2]], Some(0.5), &[]),
-            ("-o 1 2 -s 4 4 1 -clamp on a.png", "a.png", [[4.0; 2], [1.0, 2.0]], None, &["-clamp"]),
+            ("-o 1 2 -s 4 4 1 -clamp on a.png", "a.png", [[4.0; 2], [1.0, 2.0]], None, &[]),
             ("-O 1 -S 2 a.png", "a.png", [[2.0, 1.0], [1.0, 0.0]], None, &[]),
             ("  -mm 0 1 -blendu on -texres 512 a.png", "a.png", [[1.0; 2], [0.0; 2]], None, &[]),
             ("-mm 0.1 2 -imfchan r -t 1 a.png", "a.png", [[1.0; 2], [0.0; 2]], None, &["-mm", "-imfchan", "-t"]),
@@ -126,7 +134,8 @@ mod tests {
         ] {
             let map = parse(entry).unwrap();
             let expected = (file, scale, offset, strength, left_out);
-            let Map { file, placement, strength, left_out } = &map;
+            let Map { file, placement, strength, left_out, clamp } = &map;
+            assert_eq!(*clamp, entry.contains("-clamp on"), "{entry}");
             assert_eq!(
                 (file.as_str(), placement.scale, placement.offset, *strength, &left_out[..]),
                 expected,

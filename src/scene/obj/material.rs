@@ -6,9 +6,9 @@ use super::find::{Finder, Found};
 use super::library::Definition;
 use super::lines::shown;
 use super::maps::{Map, Placement, parse};
-use crate::scene::Material;
 use crate::scene::texture::{Recipe, Requests, Source};
 use crate::scene::warnings::Warnings;
+use crate::scene::{Lookup, Lookups, Material, Wrap};
 
 /// What faces need of their material.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,6 +57,16 @@ pub(super) fn read(definition: &Definition, pictures: &mut Pictures, warnings: &
     let (normal_map, is_bump) = reader.normal_map();
     let strength = normal_map.as_ref().and_then(|(_, map)| map.strength);
     let placement = reader.placement([&color, &alpha, &emission_map, &rough_map, &metal_map, &normal_map]);
+    let lookup = |map: &Option<(Source, Map)>| Lookup {
+        wrap: if map.as_ref().is_some_and(|(_, map)| map.clamp) { [Wrap::Clamp; 2] } else { [Wrap::Repeat; 2] },
+        ..Lookup::default()
+    };
+    let lookups = Lookups {
+        base_color: lookup(if color.is_some() { &color } else { &alpha }),
+        metallic_roughness: lookup(if rough_map.is_some() { &rough_map } else { &metal_map }),
+        normal: lookup(&normal_map),
+        emission: lookup(&emission_map),
+    };
     let file = |map: Option<(Source, Map)>| map.map(|(source, _)| source);
     let (color, alpha, emission_map) = (file(color), file(alpha), file(emission_map));
     let (rough_map, metal_map, normal_map) = (file(rough_map), file(metal_map), file(normal_map));
@@ -104,6 +114,7 @@ pub(super) fn read(definition: &Definition, pictures: &mut Pictures, warnings: &
         metallic_roughness_texture,
         normal_texture,
         emission_texture,
+        lookups,
         name,
         ..Material::default()
     };

@@ -12,6 +12,7 @@ use super::smoothing::{self, Group};
 use super::triangulate::triangulate;
 use crate::scene::mesh::RawMesh;
 use crate::scene::progress::Progress;
+use crate::scene::texture::srgb_to_linear;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Mesh, Submesh, Vertex};
 
@@ -117,6 +118,7 @@ impl Builder {
                 position: geometry.positions[corner.position as usize],
                 normal: geometry.normals.get(corner.normal as usize).copied().unwrap_or_default(),
                 uv,
+                color: geometry.colors.get(corner.position as usize).map_or([1.0; 4], linear),
                 ..Vertex::default()
             });
         }
@@ -132,4 +134,10 @@ impl Builder {
         }
         RawMesh { mesh, has_normals, has_tangents: false }
     }
+}
+
+/// A colour of a vertex: programs that write them write what the screen shows.
+fn linear(srgb: &[f32; 3]) -> [f32; 4] {
+    let [r, g, b] = srgb.map(|c| if c.is_finite() { srgb_to_linear(c.clamp(0.0, 1.0)) } else { 1.0 });
+    [r, g, b, 1.0]
 }
