@@ -25,11 +25,21 @@ pub(super) struct Checks {
 
 /// Parses a file, text or binary.
 pub(super) fn read(bytes: &[u8]) -> Result<Checks, String> {
+    let again = |problem: String| format!("{problem}. Export it again as glTF 2.0");
+    let (value, blob) = parse(bytes).map_err(again)?;
+    supported::check_required(&value)?;
+    checked(value, blob).map_err(again)
+}
+
+fn parse(bytes: &[u8]) -> Result<(Value, Option<Vec<u8>>), String> {
     let (text, blob) = split(bytes)?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let mut value: Value = serde_json::from_slice(text).map_err(|e| format!("it is no JSON: {e}"))?;
+    let value: Value = serde_json::from_slice(text).map_err(|e| format!("it is no JSON: {e}"))?;
     check_version(&value)?;
-    supported::check_required(&value)?;
+    Ok((value, blob))
+}
+
+fn checked(mut value: Value, blob: Option<Vec<u8>>) -> Result<Checks, String> {
     let mut warnings = Warnings::default();
     supported::warn_of_used(&value, &mut warnings);
     write_out(&mut value, &mut warnings);
