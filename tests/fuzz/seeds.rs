@@ -104,7 +104,7 @@ pub fn write(folder: &Path) {
     let put = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).unwrap();
     let builtin = |name: &str| Scene::open(name, &|_, _| ControlFlow::Continue(())).unwrap();
     let (room, moving) = (builtin("cornell"), builtin("moving-box"));
-    ["room.obj", "room.gltf", "room.glb"].iter().for_each(|name| room.export(&folder.join(name)).unwrap());
+    ["room.obj", "room.gltf", "room.glb"].iter().for_each(|name| drop(room.export(&folder.join(name)).unwrap()));
     moving.export(&folder.join("moving.gltf")).unwrap();
     put("small.obj", SMALL_OBJ.as_bytes());
     put("small.mtl", SMALL_MTL.as_bytes());

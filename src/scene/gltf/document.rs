@@ -25,17 +25,18 @@ pub(super) struct Checks {
 
 /// Parses a file, text or binary.
 pub(super) fn read(bytes: &[u8]) -> Result<Checks, String> {
-    let (text, blob) = split(bytes)?;
+    let wrong = |problem: String| format!("{problem}. Export it again as glTF 2.0");
+    let (text, blob) = split(bytes).map_err(wrong)?;
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let mut value: Value = serde_json::from_slice(text).map_err(|e| format!("it is no JSON: {e}"))?;
-    check_version(&value)?;
+    let mut value: Value = serde_json::from_slice(text).map_err(|e| wrong(format!("it is no JSON: {e}")))?;
+    check_version(&value).map_err(wrong)?;
     supported::check_required(&value)?;
     let mut warnings = Warnings::default();
     supported::warn_of_used(&value, &mut warnings);
     write_out(&mut value, &mut warnings);
-    let root: Root = serde_json::from_value(value).map_err(|e| e.to_string())?;
-    check(&root)?;
-    let unreadable = validate(&root)?;
+    let root: Root = serde_json::from_value(value).map_err(|e| wrong(e.to_string()))?;
+    check(&root).map_err(wrong)?;
+    let unreadable = validate(&root).map_err(wrong)?;
     Ok(Checks { document: Document::from_json_without_validation(root), blob, unreadable, warnings })
 }
 
