@@ -327,7 +327,7 @@ const ROWS: &[Row] = &[
             assert_eq!((s.lights.len(), light.color), (1, Vec3::new(10.0, 5.0, 2.5)));
             assert_eq!((light.position, light.direction), (Vec3::new(1.0, 2.0, 3.0), Vec3::NEG_Z));
             assert_eq!(light.kind, LightKind::Spot { inner: 0.2, outer: 0.4 });
-            // It is the only light: there is no sky beside it.
+            // It is the only light: there is no sky.
             assert_eq!((s.sky, s.warnings.len()), (Vec3::ZERO, 0));
         },
     ),
@@ -500,7 +500,7 @@ const ROWS: &[Row] = &[
             assert_ne!(base_color.second_set, normal.second_set);
             for vertex in &s.meshes[0].vertices {
                 let sets = Vec4::new(vertex.uv[0], vertex.uv[1], vertex.uv_second[0], vertex.uv_second[1]);
-                // [x, y] of the square is at u = (x + 1) / 2, v = (1 - y) / 2; turned, (u, v) goes to (v, 1 - u) / 2 + (0, .5).
+                // [x, y] of the square is at u = (x + 1) / 2, v = (1 - y) / 2; turned, (u, v) goes to (v, 1 - u) / 2 + (0, 0.5).
                 let (u, v) = ((vertex.position[0] + 1.0) * 0.5, (1.0 - vertex.position[1]) * 0.5);
                 assert!(normal.place(sets).distance(Vec2::new(u, v)) < 1e-6);
                 assert!(base_color.place(sets).distance(Vec2::new(0.5 * v, 1.0 - 0.5 * u)) < 1e-6, "{vertex:?}");
@@ -588,7 +588,7 @@ fn near(a: Vec3, b: Vec3, tolerance: f32) {
     assert!(a.distance(b) <= tolerance, "{a} is not {b}");
 }
 
-/// So many lines of the warnings have a piece.
+/// Counts the warnings with a piece of text.
 #[track_caller]
 fn warned(scene: &Scene, piece: &str, lines: usize) {
     let count = scene.warnings.iter().filter(|w| w.contains(piece)).count();
@@ -601,7 +601,7 @@ fn corner_normals(scene: &Scene) -> Vec<Vec3> {
     corners.collect()
 }
 
-/// Of all triangles, each mesh once.
+/// Area of all triangles, each mesh once.
 fn area(scene: &Scene) -> f32 {
     let triangle = |p: [Vec3; 3]| 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).length();
     let of = |m: &conelab::scene::Mesh| -> f32 {

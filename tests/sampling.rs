@@ -25,7 +25,7 @@ const MIRROR: u32 = 33648;
 const NEAREST: u32 = 9728;
 const LINEAR: u32 = 9729;
 
-/// What is seen of a square: a colour by the place, -1 to 1 to the right and up.
+/// Colour of a square by place, -1 to 1 to the right and up.
 type Expected = Box<dyn Fn(DVec2) -> DVec3>;
 
 /// Texels of 4 x 4, from the top: no two are alike, and most are far apart.
@@ -73,7 +73,7 @@ fn coordinates(at: DVec2) -> DVec2 {
     0.5 + DVec2::new(1.5, -1.5) * at
 }
 
-/// A file of squares, each with its material and what is seen of it.
+/// A file of squares, each with its material and expected colours.
 struct Squares {
     model: Model,
     expected: Vec<Expected>,
@@ -84,7 +84,7 @@ impl Squares {
         self.model.texture(4, 4, &texels(), json!({ "wrapS": wrap[0], "wrapT": wrap[1], "magFilter": filter }))
     }
 
-    /// A square whose second set of coordinates is the first one's half, with more attributes.
+    /// Adds a square with more attributes. Its second set of coordinates is half of the first.
     fn add(&mut self, material: Value, more: Value, expected: impl Fn(DVec2) -> DVec3 + 'static) {
         let m = &mut self.model;
         let corners = [[-1., -1.], [1., -1.], [1., 1.], [-1., -1.], [1., 1.], [-1., 1.]].map(|[x, y]| DVec2::new(x, y));
@@ -165,7 +165,7 @@ fn squares() -> Squares {
     s.add(matte(pbr), colors, |at| color_of(at) * looked_up(coordinates(at), [CLAMP, REPEAT], NEAREST));
     let colors = s.colors(U16, 3, even);
     s.add(unlit(json!({})), colors, color_of);
-    // The second set, alone with a transform and beside the first.
+    // The second set, alone with a transform, and next to the first.
     let texture = s.texture([CLAMP, MIRROR], LINEAR);
     let transform = json!({ "KHR_texture_transform": { "scale": [2, 4], "offset": [0.25, -0.5] } });
     let reference = json!({ "index": texture, "texCoord": 1, "extensions": transform });
@@ -199,7 +199,7 @@ fn opened() -> (Scene, Vec<Expected>) {
     (scene, expected)
 }
 
-/// From the front, with irradiance pi: what is lit is as bright as its base colour.
+/// From the front, with irradiance pi: lit surfaces are as bright as their base colour.
 fn sun() -> Light {
     Light {
         name: "sun".into(),
@@ -298,7 +298,7 @@ fn every_pixel_of_a_texture_or_colour_is_what_the_specification_says() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A square whose corners have these colours, a metre above a floor.
+/// A square with these colours at its ends, 1 m above a floor.
 fn under_a_coloured_lamp(colors: [Vec4; 2], floor: f32) -> Scene {
     let square = |edge: f32, material: u32, colors: [Vec4; 2]| {
         let at = |x: f32, z: f32| Vertex {

@@ -5,6 +5,7 @@
 #ifndef MATERIALS_GLSL
 #define MATERIALS_GLSL
 #include "common/dielectrics.glsl"
+#include "common/scene.glsl"
 
 struct Material {
     vec4 base_color;
@@ -61,11 +62,11 @@ struct Gradient {
 };
 
 bool isColored(Material m) {
-    return (m.flags & (COLORED | TINTED)) != 0;
+    return COLORS && (m.flags & (COLORED | TINTED)) != 0;
 }
 
 bool usesSecondSet(uint handle) {
-    return handle != NO_TEXTURE && (handle & SECOND_SET) != 0;
+    return LOOKUPS && handle != NO_TEXTURE && (handle & SECOND_SET) != 0;
 }
 
 vec2 texelsOf(uint handle) {
@@ -92,8 +93,8 @@ float folded(uint wrap, float t, float margin) {
     return clamp(inside, margin, 1.0 - margin);
 }
 
-// Puts coordinates where the sampler, which repeats and filters, reads what the texture's own modes ask for. At edges that is
-// half a texel inside, of the level and of the footprint that are read, so that nothing comes from the opposite edge.
+// Moves coordinates to where the sampler, which repeats and filters, reads the result of the texture's own modes. Edges are
+// moved inwards by half a texel of the level and footprint that are read, so that nothing comes from the opposite edge.
 void fold(uint handle, inout vec2 uv, inout vec2 x, inout vec2 y) {
     vec2 texels = texelsOf(handle);
     float a = length(x * texels), b = length(y * texels), longest = max(a, b);
@@ -110,7 +111,7 @@ void fold(uint handle, inout vec2 uv, inout vec2 x, inout vec2 y) {
 vec4 sampleTexture(uint handle, vec4 sets, Gradient g) {
     bool second = usesSecondSet(handle);
     vec2 uv = second ? sets.zw : sets.xy, x = second ? g.x.zw : g.x.xy, y = second ? g.y.zw : g.y.xy;
-    if ((handle & FOLDED) != 0) fold(handle, uv, x, y);
+    if (LOOKUPS && (handle & FOLDED) != 0) fold(handle, uv, x, y);
     vec3 at = vec3(uv, float(handle & 0xffffu));
     switch (handle >> 16 & 15u) {
         case 0: return textureGrad(materialTexture0, at, x, y);
@@ -131,14 +132,14 @@ vec4 sampleTexture(uint handle, vec4 sets, Gradient g) {
 
 vec4 baseColor(Material m, Place at, Gradient g) {
     vec4 c = m.base_color;
-    if ((m.flags & COLORED) != 0) c *= at.color;
+    if (COLORS && (m.flags & COLORED) != 0) c *= at.color;
     if (m.base_color_texture != NO_TEXTURE) c *= sampleTexture(m.base_color_texture, at.uv, g);
     return c;
 }
 
 vec3 emission(Material m, Place at, Gradient g) {
     vec3 e = m.emission;
-    if ((m.flags & TINTED) != 0) e *= at.color.rgb;
+    if (COLORS && (m.flags & TINTED) != 0) e *= at.color.rgb;
     if (m.emission_texture != NO_TEXTURE) e *= sampleTexture(m.emission_texture, at.uv, g).rgb;
     return e;
 }

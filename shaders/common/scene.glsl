@@ -49,6 +49,11 @@ struct Draw {
     uint index_count;
 };
 
+// Whether any vertex of the scene has a colour, and whether any texture wraps, filters or is placed in another way than by the
+// sampler and the first set of coordinates. Set by the program.
+layout(constant_id = 2040) const bool COLORS = true;
+layout(constant_id = 2041) const bool LOOKUPS = true;
+
 struct VertexAttributes {
     vec3 normal;
     vec4 tangent; // w: sign of the bitangent
@@ -70,8 +75,8 @@ VertexAttributes loadAttributes(uint vertex) {
     vec4 a = attributes.attributes[3 * vertex];
     vec4 b = attributes.attributes[3 * vertex + 1];
     vec4 c = attributes.attributes[3 * vertex + 2];
-    vec4 color = unpackUnorm4x8(floatBitsToUint(c.y)); // square roots, as an eighth of a byte near black is seen
-    return VertexAttributes(a.xyz, b, vec4(a.w, c.x, c.zw), vec4(color.rgb * color.rgb, color.a));
+    vec4 root = COLORS ? unpackUnorm4x8(floatBitsToUint(c.y)) : vec4(1.0); // square roots of red, green and blue
+    return VertexAttributes(a.xyz, b, vec4(a.w, c.x, LOOKUPS ? c.zw : vec2(0.0)), vec4(root.rgb * root.rgb, root.a));
 }
 
 vec3 toWorld(uint instance, vec3 position) {

@@ -10,7 +10,8 @@
 // Texture coordinates and vertex alpha at a point of the screen, of a piece's plane.
 vec3 lookupAt(Piece p, Outline o, vec2 at) {
     vec3 b = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at)) * vec3(p.per_w[0], p.per_w[1], p.per_w[2]);
-    return (b.x * vec3(p.uv[0], p.alpha[0]) + b.y * vec3(p.uv[1], p.alpha[1]) + b.z * vec3(p.uv[2], p.alpha[2])) / (b.x + b.y + b.z);
+    float alpha = COLORS ? dot(b, unpackUnorm4x8(p.alphas).xyz) : 0.0;
+    return vec3(b.x * p.uv[0] + b.y * p.uv[1] + b.z * p.uv[2], alpha) / (b.x + b.y + b.z);
 }
 
 bool isCutOut(Piece p, Outline o, vec2 at) {

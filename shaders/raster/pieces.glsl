@@ -11,7 +11,7 @@ struct Piece {
     vec2 corner[3]; // pixels
     float per_w[3]; // 1 / w of clip positions
     vec2 uv[3]; // of the mask
-    float alpha[3]; // of the vertices' colours
+    uint alphas; // of the vertices' colours, a byte each
     float depth; // at the centre of the first pixel of its bounding rectangle
     vec2 slope; // of depth, a pixel
     vec2 range; // of depth

@@ -6,7 +6,8 @@ layout(local_size_x = 64) in;
 
 struct Corner {
     vec4 clip;
-    vec3 lookup; // texture coordinates of the mask, and the alpha of the vertex
+    vec2 uv; // of the mask
+    float alpha; // of the vertex's colour
 };
 
 // Depth as a linear function of the place on the screen, [-1,1]: from clip positions, before the near plane cuts anything and
@@ -21,8 +22,8 @@ vec3 depthPlane(Corner a, Corner b, Corner c) {
 void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, uint mask) {
     ivec2 size = targetSize();
     Piece p;
-    p.uv = vec2[3](a.lookup.xy, b.lookup.xy, c.lookup.xy);
-    p.alpha = float[3](a.lookup.z, b.lookup.z, c.lookup.z);
+    p.uv = vec2[3](a.uv, b.uv, c.uv);
+    if (COLORS) p.alphas = packUnorm4x8(vec4(a.alpha, b.alpha, c.alpha, 0.0));
     p.triangle = triangle;
     p.layer = layer;
     p.mask = mask;
@@ -57,7 +58,7 @@ void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, u
 Corner cut(Corner before, Corner behind, float near) {
     precise float t = (before.clip.w - near) / (before.clip.w - behind.clip.w);
     precise vec4 clip = before.clip + t * (behind.clip - before.clip);
-    return Corner(vec4(clip.xyz, near), mix(before.lookup, behind.lookup, t));
+    return Corner(vec4(clip.xyz, near), mix(before.uv, behind.uv, t), COLORS ? mix(before.alpha, behind.alpha, t) : 1.0);
 }
 
 void setUp(uint triangle, uint layer) {
@@ -66,7 +67,7 @@ void setUp(uint triangle, uint layer) {
     Corner corner[3];
     for (int i = 0; i < 3; i++) {
         uint vertex = indices.indices[t.y + i];
-        corner[i] = Corner(targetClip(toWorld(d.instance, loadPosition(vertex)), layer), vec3(0.0));
+        corner[i] = Corner(targetClip(toWorld(d.instance, loadPosition(vertex)), layer), vec2(0.0), 1.0);
     }
     for (int k = 0; k < 2; k++) {
         vec3 x = vec3(corner[0].clip[k], corner[1].clip[k], corner[2].clip[k]);
@@ -82,7 +83,8 @@ void setUp(uint triangle, uint layer) {
         bool second = usesSecondSet(materials.materials[d.material].base_color_texture);
         for (int i = 0; i < 3; i++) {
             VertexAttributes v = loadAttributes(indices.indices[t.y + i]);
-            corner[i].lookup = vec3(second ? v.uv.zw : v.uv.xy, v.color.a);
+            corner[i].uv = second ? v.uv.zw : v.uv.xy;
+            if (COLORS) corner[i].alpha = v.color.a;
         }
     }
     vec3 plane = depthPlane(corner[0], corner[1], corner[2]);

@@ -64,7 +64,7 @@ void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Covered
     }
     mat2 across = mat2(p[1] - p[0], p[2] - p[0]);
     if (abs(determinant(across)) < 1e-6) return;
-    // Of texture coordinates and of the vertices' alpha, from part to part.
+    // Change of texture coordinates and vertex alpha from part to part.
     mat2x4 step = mat2x4(v[1].uv - v[0].uv, v[2].uv - v[0].uv) * inverse(across);
     vec2 alpha_step = vec2(v[1].color.a - v[0].color.a, v[2].color.a - v[0].color.a) * inverse(across);
     Gradient g = Gradient(step[0], step[1]);

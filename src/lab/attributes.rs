@@ -1,7 +1,7 @@
-//! What the buffer `attributes` holds of a vertex besides its position (`shaders/common/scene.glsl`): normal and u, tangent
-//! and its sign, v, the packed colour, and the second set of texture coordinates.
+//! The buffer `attributes` (`shaders/common/scene.glsl`): for each vertex its normal and u, tangent and sign, v, packed
+//! colour, and second set of texture coordinates.
 
-use crate::scene::Scene;
+use crate::scene::{Lookups, Scene};
 use glam::{Vec3, Vec4};
 use std::collections::HashSet;
 
@@ -20,7 +20,7 @@ pub(super) fn color_of(a: &Attributes) -> Vec4 {
     (root * root).extend(alpha)
 }
 
-/// A byte a channel. Of red, green and blue the square roots: a linear byte is too coarse near black.
+/// One byte per channel. Red, green and blue are stored as square roots, because linear bytes are too coarse near black.
 pub(super) fn pack_color([r, g, b, alpha]: [f32; 4]) -> u32 {
     u32::from_le_bytes([r.sqrt(), g.sqrt(), b.sqrt(), alpha].map(|c| (c * 255.0).round() as u8))
 }
@@ -38,6 +38,15 @@ pub(super) fn colored_materials(scene: &Scene) -> HashSet<u32> {
         }
     }
     found
+}
+
+/// Specialisation constants of `common/scene.glsl`: whether there are colours, and whether any lookup needs more than the
+/// sampler and the first set. Software devices execute code behind branches that nothing takes.
+pub(super) fn constants(scene: &Scene, colored: &HashSet<u32>) -> Vec<(u32, u32)> {
+    const COLORS: u32 = 2040;
+    const LOOKUPS: u32 = 2041;
+    let lookups = scene.materials.iter().any(|m| m.lookups != Lookups::default());
+    vec![(COLORS, u32::from(!colored.is_empty())), (LOOKUPS, u32::from(lookups))]
 }
 
 #[cfg(test)]

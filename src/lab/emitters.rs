@@ -20,7 +20,7 @@ const LARGEST_LAMP: f32 = 0.25;
 /// Most parts of a textured triangle's edge. Each of its parts has one radiance.
 const MOST_PARTS: u32 = 8;
 
-/// Parts of the edge of a triangle whose corners have different colours.
+/// Parts of an edge if the corners of the triangle have different colours.
 const TINTED_PARTS: u32 = 4;
 
 /// Texels of an emission texture along an edge that parts are told by.
@@ -204,7 +204,7 @@ fn choose(blocks: &mut [EmitterBlock], power: &[f64], all: f64) {
     blocks.iter_mut().zip(power).filter(|(b, p)| **p == 0.0 && b.chance == 1.0).for_each(|(b, _)| b.chance = 0.0);
 }
 
-/// What a material emits at a place.
+/// Emission of a material, by place.
 struct Shine {
     emission: Vec3,
     /// Times the colour of the vertices.

@@ -183,6 +183,7 @@ impl SceneGpu {
                     draws: draws.iter().map(|d| (d.first_index, d.index_count)).collect(),
                     opaque: count(opaque),
                 },
+                constants: attributes::constants(scene, &colored),
             },
             camera,
             bytes,

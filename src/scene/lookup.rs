@@ -28,13 +28,13 @@ pub struct Lookup {
 /// How the textures of a material are looked up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lookups {
-    /// Of the base colour's.
+    /// Lookup of the base colour.
     pub base_color: Lookup,
-    /// Of the one of roughness and metallic.
+    /// Lookup of roughness and metallic.
     pub metallic_roughness: Lookup,
-    /// Of the normal map.
+    /// Lookup of the normal map.
     pub normal: Lookup,
-    /// Of the emission's.
+    /// Lookup of the emission.
     pub emission: Lookup,
 }
 

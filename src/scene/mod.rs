@@ -80,7 +80,7 @@ pub struct Vertex {
     pub tangent: [f32; 4],
     /// Where in textures; v grows downwards.
     pub uv: [f32; 2],
-    /// The same for textures whose [`Lookup`] takes the second set.
+    /// Second set, for textures with [`Lookup::second_set`].
     pub uv_second: [f32; 2],
     /// Multiplies the base colour: linear RGB and alpha, 0 to 1.
     pub color: [f32; 4],

@@ -3,7 +3,6 @@
 use crate::graph::definition::Graph;
 use crate::graph::file::{AddressMode, Compare, Cull, FilterMode, PassDecl, SamplerDecl, Topology};
 use crate::graph::link::{Linked, Target};
-use crate::graph::param::Params;
 use crate::graph::plan::{Plan, Step};
 use crate::shader::{MAX_VARIABLE_BYTES, Resource, check_sizes, strip_images, strip_outputs};
 use crate::vulkan::{
@@ -39,7 +38,7 @@ pub(super) fn make_pipelines(
     graph: &Graph,
     linked: &[Linked],
     plan: &Plan,
-    params: &Params,
+    constants: &[(u32, u32)],
     kept: &[(PipelineDesc, Arc<Pipeline>)],
 ) -> Result<Made> {
     let mut descs: Vec<(&Step, PipelineDesc)> = Vec::new();
@@ -55,7 +54,7 @@ pub(super) fn make_pipelines(
         let same = |s: &Step| s.pass == step.pass && s.stripped == step.stripped;
         let known = descs.iter().position(|(s, d)| same(s) && d.draw == draw);
         keys.push(Some(known.unwrap_or_else(|| {
-            descs.push((step, pipeline_desc(pass, link, step, params, draw)));
+            descs.push((step, pipeline_desc(pass, link, step, constants, draw)));
             descs.len() - 1
         })));
     }
@@ -86,10 +85,9 @@ fn pipeline_desc(
     pass: &PassDecl,
     link: &Linked,
     step: &Step,
-    params: &Params,
+    constants: &[(u32, u32)],
     draw: Option<(DrawState, Attachments)>,
 ) -> PipelineDesc {
-    let constants = params.constants();
     let stripped: Vec<u32> = step.stripped.iter().map(|i| link.bound[*i].binding).collect();
     // A texture without a binding in the step is one that the stripped shader does not know.
     let bound = link.bound.iter().enumerate().filter(|(i, b)| {

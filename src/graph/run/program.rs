@@ -118,7 +118,8 @@ impl Program {
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
         let size = params.uniform_bytes(&set.values).len() as u64;
         let params_buffer = Arc::new(Buffer::new(gpu, "params", size, usage, MemoryLocation::GpuOnly)?);
-        let made = make_pipelines(gpu, graph, linked, &plan, params, &parts.pipelines)?;
+        let constants = [params.constants(), scene.constants.clone()].concat();
+        let made = make_pipelines(gpu, graph, linked, &plan, &constants, &parts.pipelines)?;
         change.built = made.built;
         change.kept = made.pipelines.len() - made.built;
         let offered = Offered { gpu, graph, linked, plan: &plan, resources: &resources, scene, params: &params_buffer };

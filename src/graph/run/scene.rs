@@ -28,4 +28,6 @@ pub struct SceneResources {
     pub sampler: Arc<Sampler>,
     /// What is drawn.
     pub geometry: Geometry,
+    /// Specialisation constants (id, value) by which shaders leave out code that the scene does not need.
+    pub constants: Vec<(u32, u32)>,
 }

@@ -286,7 +286,7 @@ fn material(material: &Material, colored: bool, textures: &mut Textures) -> Valu
     value
 }
 
-/// A material whose emission takes the colour of vertices, which no lit one of glTF does.
+/// KHR_materials_unlit: in glTF, vertex colours multiply the emission of unlit materials only.
 fn unlit(material: &Material, mut value: Value) -> Value {
     let pbr = &mut value["pbrMetallicRoughness"];
     pbr["baseColorFactor"] = json!(material.emission.extend(material.base_color.w).to_array());

@@ -18,7 +18,7 @@ impl Scene {
     ///
     /// OBJ holds the pose at time 0 and no lights or cameras. glTF holds everything but the sky and whether a
     /// light casts shadows; a picture of the sky is written beside it, .sky.exr, as bright as it is here and not turned.
-    /// Each file appears whole or not at all. Returns warnings of what the format does not hold.
+    /// Each file appears whole or not at all. Returns warnings for content that the format cannot hold.
     pub fn export(&self, path: &Path) -> Result<Vec<String>, SceneError> {
         let extension = crate::files::ending(path);
         match extension.as_str() {

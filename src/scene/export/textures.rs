@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::scene::{Lookup, Wrap};
 
-/// Those that materials refer to, each pair of an image and a sampler once.
+/// The textures that materials refer to: each pair of an image and a sampler once.
 #[derive(Default)]
 pub(super) struct Textures {
     pairs: IndexSet<(u32, Lookup)>,
@@ -14,7 +14,7 @@ pub(super) struct Textures {
 impl Textures {
     /// A material's reference to an image.
     pub fn reference(&mut self, image: u32, lookup: Lookup) -> Value {
-        // Which set is taken is said by the reference, not by the texture.
+        // The reference names the set of coordinates, not the texture.
         let (index, _) = self.pairs.insert_full((image, Lookup { second_set: false, ..lookup }));
         if lookup.second_set { json!({ "index": index, "texCoord": 1 }) } else { json!({ "index": index }) }
     }

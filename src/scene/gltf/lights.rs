@@ -9,7 +9,7 @@ use glam::{Mat4, Vec3};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Light, LightKind};
 
-/// What the warning about photometric units contains; a scene file that sets it does not repeat the warning.
+/// Part of the warning about photometric units. Scene files that set this field drop the warning.
 pub(in crate::scene) const SCALE: &str = "lights_scale";
 
 /// An intensity from here on is photometric: a radiometric sun has about 1000 W/m^2, and a 60 W lamp 5 W/sr.

@@ -137,7 +137,7 @@ fn read_primitive(
     Ok(RawMesh { mesh, has_normals: normals.is_some(), has_tangents: normals.is_some() && tangents.is_some() })
 }
 
-/// Of a set, with its transform; none where the primitive does not have it.
+/// Texture coordinates of a set, with its transform; none if the primitive has no such set.
 fn texture_coordinates(
     primitive: &Primitive,
     buffers: &Buffers,

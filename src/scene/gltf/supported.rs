@@ -1,4 +1,4 @@
-//! Extensions: which ones a file may require, and what is said of the others.
+//! Extensions: the ones that a file may require, and messages about the others.
 
 use serde_json::Value;
 
@@ -25,7 +25,7 @@ const READ: [&str; 15] = [
     "MSFT_texture_dds",
 ];
 
-/// Compressions that a file may have beside uncompressed data, which is read; and how to undo each.
+/// Compressions that a file may use next to uncompressed data, which is read; and how to undo each.
 const COMPRESSED: [(&str, &str); 4] = [
     (
         "KHR_draco_mesh_compression",
@@ -57,7 +57,7 @@ pub(super) fn check_required(file: &Value) -> Result<(), String> {
     }
 }
 
-/// Warns of extensions that the file uses and that are not read. Those of materials are told by material.
+/// Warns of used extensions that are not read. Material extensions are left to [`super::extensions`].
 pub(super) fn warn_of_used(file: &Value, warnings: &mut Warnings) {
     let quiet = |name: &&str| {
         READ.contains(name) || COMPRESSED.iter().any(|(known, _)| known == name) || name.starts_with("KHR_materials_")

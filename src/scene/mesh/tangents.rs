@@ -44,7 +44,7 @@ fn any_tangent(normal: [f32; 3]) -> [f32; 4] {
 
 struct Soup {
     corners: Vec<Vertex>,
-    /// Of texture coordinates.
+    /// Whether the normal map takes the second set of texture coordinates.
     second_set: bool,
 }
 
