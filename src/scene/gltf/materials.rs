@@ -115,7 +115,8 @@ fn convert(
     };
     let alpha_cutoff = match from.alpha_mode() {
         AlphaMode::Opaque => 0.0,
-        AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).max(0.0),
+        // All cutoffs above 1 are alike.
+        AlphaMode::Mask => from.alpha_cutoff().unwrap_or(0.5).clamp(0.0, 2.0),
         AlphaMode::Blend => {
             match material.base_color.w {
                 a if a < 0.5 => warnings.add(
