@@ -48,6 +48,7 @@ const ROWS: &[Row] = &[
                 json!({ "alphaMode": "MASK", "alphaCutoff": 0.25 }),
                 json!({ "alphaMode": "MASK" }),
                 json!({ "alphaMode": "MASK", "alphaCutoff": 0.75 }),
+                json!({ "alphaMode": "MASK", "alphaCutoff": 1e39 }),
             ] {
                 let material = m.material(material);
                 placed_square(m, Some(material), json!({}));
@@ -55,7 +56,8 @@ const ROWS: &[Row] = &[
         },
         |s| {
             let cutoffs: Vec<f32> = s.materials.iter().map(|m| m.alpha_cutoff).collect();
-            assert_eq!(cutoffs, [0.0, 0.5, 0.25, 0.5, 0.75]);
+            // Numbers beyond the largest one stay finite: an export must be able to write them.
+            assert_eq!(cutoffs, [0.0, 0.5, 0.25, 0.5, 0.75, 2.0]);
             warned(s, "blend are shown as masks", 1);
         },
     ),
