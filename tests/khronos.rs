@@ -530,6 +530,163 @@ const ROWS: &[Row] = &[
             warned(s, "more than two kinds of coordinates", 1);
         },
     ),
+    (
+        "SpecularTest",
+        |m| {
+            let material = m.material(json!({ "extensions": { "KHR_materials_specular": {
+                "specularFactor": 0.5, "specularColorFactor": [1, 0.5, 0.25] } } }));
+            placed_square(m, Some(material), json!({}));
+        },
+        |s| {
+            let reflected = s.materials[0].dielectric();
+            near(reflected.truncate(), 0.02 * Vec3::new(1.0, 0.5, 0.25), 1e-6);
+            assert!((reflected.w - 0.5).abs() < 1e-6, "{reflected}");
+        },
+    ),
+    (
+        "TransmissionTest",
+        |m| {
+            for share in [0.25, 0.75] {
+                let material = m.material(json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "extensions": {
+                    "KHR_materials_transmission": { "transmissionFactor": share } } }));
+                placed_square(m, Some(material), json!({}));
+            }
+        },
+        |s| {
+            near(s.materials[0].base_color.truncate(), Vec3::splat(0.75), 1e-6);
+            assert!(s.materials[1].is_left_out());
+            assert_eq!(s.triangle_count(), 2);
+            warned(s, "KHR_materials_transmission", 2);
+        },
+    ),
+    (
+        "SpecGlossVsMetalRough",
+        |m| {
+            let material = m.material(json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": {
+                "diffuseFactor": [0.8, 0.4, 0.2, 1], "specularFactor": [0.25, 0.125, 0.25], "glossinessFactor": 0.75 } } }));
+            placed_square(m, Some(material), json!({}));
+        },
+        |s| {
+            let material = &s.materials[0];
+            near(material.base_color.truncate(), 0.75 * Vec3::new(0.8, 0.4, 0.2), 1e-5);
+            near(material.dielectric().truncate(), Vec3::new(0.25, 0.125, 0.25), 1e-3);
+            assert_eq!((material.metallic, material.roughness), (0.0, 0.25));
+        },
+    ),
+    (
+        "ClearCoatTest",
+        |m| {
+            for factor in [0.0, 0.5, 1.0] {
+                let material = m.material(json!({ "name": format!("coat {factor}"), "extensions": {
+                    "KHR_materials_clearcoat": { "clearcoatFactor": factor } } }));
+                placed_square(m, Some(material), json!({}));
+            }
+        },
+        |s| {
+            warned(s, "KHR_materials_clearcoat", 1);
+            warned(s, "'coat 0.5', 'coat 1'", 1);
+        },
+    ),
+    (
+        "MetalRoughSpheres",
+        |m| {
+            let texture = m.texture(1, 1, &[[0, 102, 51, 255]], json!({}));
+            let material = m
+                .material(json!({ "pbrMetallicRoughness": { "metallicFactor": 0.5, "roughnessFactor": 0.25,
+                "metallicRoughnessTexture": { "index": texture } } }));
+            placed_square(m, Some(material), json!({}));
+        },
+        |s| {
+            let material = &s.materials[0];
+            assert_eq!((material.metallic, material.roughness), (0.5, 0.25));
+            let texture = &s.textures[material.metallic_roughness_texture.unwrap() as usize];
+            assert_eq!((&texture.mips[0][1..3], texture.format.is_srgb()), (&[102, 51][..], false));
+        },
+    ),
+    (
+        "NormalTangentTest",
+        |m| {
+            let texture = m.texture(1, 1, &[[128, 218, 218, 255]], json!({}));
+            let material = m.material(json!({ "normalTexture": { "index": texture } }));
+            placed_square(m, Some(material), json!({}));
+        },
+        |s| {
+            // u goes to +x and the picture's top to +y: cross(normal, tangent) * w is +y.
+            for vertex in &s.meshes[0].vertices {
+                near(Vec4::from(vertex.tangent).truncate(), Vec3::X, 1e-5);
+                assert_eq!(vertex.tangent[3], 1.0);
+            }
+        },
+    ),
+    (
+        "BoxAnimated",
+        |m| {
+            let (times, values) = (m.floats(&[[1.0], [3.0]]), m.floats(&[[0., 0., 0.], [2., 0., 4.]]));
+            moving(m, json!({ "input": times, "output": values }));
+        },
+        |s| {
+            for (time, place) in [(0.0, [0., 0., 0.]), (1.0, [0., 0., 0.]), (2.0, [1., 0., 2.]), (2.5, [1.5, 0., 3.])] {
+                near(s.instance_transform(0, time).transform_point3(Vec3::ZERO), place.into(), 1e-4);
+            }
+        },
+    ),
+    (
+        "InterpolationTest",
+        |m| {
+            let (times, values) =
+                (m.floats(&[[0.0], [2.0], [4.0]]), m.floats(&[[0., 0., 0.], [2., 0., 4.], [0., 6., 0.]]));
+            moving(m, json!({ "input": times, "output": values, "interpolation": "STEP" }));
+        },
+        |s| {
+            for (time, place) in [(0.5, [0., 0., 0.]), (1.9, [0., 0., 0.]), (2.1, [2., 0., 4.]), (3.9, [2., 0., 4.])] {
+                near(s.instance_transform(0, time).transform_point3(Vec3::ZERO), place.into(), 1e-4);
+            }
+        },
+    ),
+    (
+        "DirectionalLight",
+        |m| {
+            let light = lamp(m, json!({ "type": "directional", "intensity": 3, "color": [1, 0.5, 0.25] }));
+            // A quarter about x turns -z to -y.
+            let half = (FRAC_PI_2 / 2.0).sin();
+            m.node(
+                json!({ "extensions": { "KHR_lights_punctual": { "light": light } }, "rotation": [-half, 0, 0, half] }),
+            );
+            placed_square(m, None, json!({}));
+        },
+        |s| {
+            let light = &s.lights[0];
+            assert_eq!((light.kind, light.color), (LightKind::Directional, Vec3::new(3.0, 1.5, 0.75)));
+            near(light.direction, Vec3::NEG_Y, 1e-5);
+        },
+    ),
+    (
+        "AnimatedMorphCubeQuantized",
+        |m| {
+            m.root["extensionsUsed"] = json!(["KHR_mesh_quantization"]);
+            m.root["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+            let corner = |p: &[f32; 3]| [p[0] as i16 * 32767, p[1] as i16 * 32767, 0, 0];
+            let bytes: Vec<u8> = SQUARE.iter().flat_map(corner).flat_map(i16::to_le_bytes).collect();
+            let bounds = json!({ "normalized": true, "min": [-1, -1, 0], "max": [1, 1, 0] });
+            let positions = m.raw(I16, "VEC3", 6, &bytes, bounds);
+            let view = m.root["accessors"][positions]["bufferView"].as_u64().unwrap() as usize;
+            m.root["bufferViews"][view]["byteStride"] = json!(8);
+            let mesh = m.mesh(json!({ "POSITION": positions }), None);
+            m.node(json!({ "mesh": mesh, "scale": [2, 2, 2] }));
+        },
+        |s| assert_eq!(s.bounds(), (Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, 2.0, 0.0))),
+    ),
+    (
+        "MultipleScenes",
+        |m| {
+            placed_square(m, None, json!({}));
+            let mesh = m.square(json!({}), None);
+            let other = m.push("nodes", json!({ "mesh": mesh, "translation": [5, 0, 0] }));
+            m.push("scenes", json!({ "nodes": [other] }));
+            m.root["scene"] = json!(1);
+        },
+        |s| assert_eq!(s.bounds(), (Vec3::new(4.0, -1.0, 0.0), Vec3::new(6.0, 1.0, 0.0))),
+    ),
 ];
 
 #[test]
@@ -616,6 +773,13 @@ fn area(scene: &Scene) -> f32 {
 fn placed_square(m: &mut Model, material: Option<usize>, mut node: Value) {
     node["mesh"] = json!(m.square(json!({}), material));
     m.node(node);
+}
+
+/// The square on a node whose translation follows a sampler.
+fn moving(m: &mut Model, sampler: Value) {
+    placed_square(m, None, json!({}));
+    let channel = json!({ "sampler": 0, "target": { "node": 0, "path": "translation" } });
+    m.push("animations", json!({ "samplers": [sampler], "channels": [channel] }));
 }
 
 fn paint(m: &mut Model, color: [f32; 4]) -> usize {
