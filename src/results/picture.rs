@@ -1,5 +1,6 @@
 //! Results as files: PNG for what is display-encoded, EXR for what is linear.
 
+use crate::diagnostics::excerpt::excerpt;
 use crate::diagnostics::panics::caught;
 use crate::experiment::MAX_SIZE;
 use crate::files::{FileError, check_input, ending};
@@ -119,11 +120,32 @@ fn decode_of(path: &Path, size: (u32, u32)) -> Result<Vec<f32>, String> {
 fn exr_size(path: &Path) -> Result<(usize, usize), String> {
     let meta = exr::meta::MetaData::read_from_file(path, false).map_err(|e| e.to_string())?;
     let size = meta.headers.first().map_or(exr::math::Vec2(0, 0), |h| h.layer_size);
+    let names = |h: &exr::meta::header::Header| h.channels.list.iter().map(|c| c.name.to_string()).collect::<Vec<_>>();
+    if !meta.headers.iter().any(|h| ["R", "G", "B"].iter().all(|c| names(h).iter().any(|n| n == c))) {
+        return Err(other_channels(&meta.headers.iter().flat_map(names).collect::<Vec<_>>()));
+    }
     // Which layer has the colours is known only after reading.
     match meta.headers.iter().all(|h| h.layer_size == size) {
         true => Ok((size.width(), size.height())),
         false => Err("its layers have different sizes".into()),
     }
+}
+
+/// Channels in a message.
+const SHOWN: usize = 8;
+
+/// Blender's multilayer files call the colours "ViewLayer.Combined.R" and so on; grey pictures have "Y".
+fn other_channels(names: &[String]) -> String {
+    let more = if names.len() > SHOWN { format!(" and {} more", names.len() - SHOWN) } else { String::new() };
+    let list = names.iter().take(SHOWN).map(|n| excerpt(n, 60)).collect::<Vec<_>>().join(", ");
+    let red = names.iter().find(|n| n.ends_with(".Combined.R")).or(names.iter().find(|n| n.ends_with(".R")));
+    let prefix = red.and_then(|n| n.strip_suffix('R')).map(|prefix| excerpt(prefix, 60));
+    let way = match (prefix, names.iter().any(|n| n == "Y")) {
+        (Some(p), _) => format!("oiiotool IN.exr --ch R={p}R,G={p}G,B={p}B -o OUT.exr"),
+        (None, true) => "oiiotool IN.exr --ch R=Y,G=Y,B=Y -o OUT.exr".into(),
+        _ => "write it as OpenEXR with one layer".into(),
+    };
+    format!("it has no channels R, G and B, but {list}{more}. Convert it: {way}")
 }
 
 fn read_exr(path: &Path) -> Result<Vec<[f32; 4]>, String> {
@@ -177,4 +199,32 @@ fn decode_linear(path: &Path) -> Result<Linear, LabError> {
     }
     rgb.iter_mut().for_each(|c| *c = c.map(srgb_to_linear));
     Ok(Linear { size, rgb, kind: Kind::Displayed })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(names: &[&str]) -> Result<Linear, LabError> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let channel = |name: &&str| AnyChannel::new(*name, FlatSamples::F32(vec![0.5; 4]));
+        let channels = AnyChannels::sort(names.iter().map(channel).collect());
+        let layer = Layer::new((2, 2), LayerAttributes::default(), exr::prelude::Encoding::SMALL_LOSSLESS, channels);
+        ExrImage::from_layer(layer).write().to_file(&path).unwrap();
+        read_linear(&path)
+    }
+
+    #[test]
+    fn pictures_of_other_channels_name_them_and_a_way_on() {
+        assert_eq!(written(&["R", "G", "B", "sampleCount.R"]).unwrap().rgb[0], [0.5; 3]);
+        let blender = ["ViewLayer.Combined.A", "ViewLayer.Combined.B", "ViewLayer.Combined.G", "ViewLayer.Combined.R"];
+        let way = "R=ViewLayer.Combined.R,G=ViewLayer.Combined.G,B=ViewLayer.Combined.B";
+        for (names, pieces) in
+            [(&blender[..], ["but ViewLayer.Combined.A, ", way]), (&["Y"], ["but Y. ", "R=Y,G=Y,B=Y"])]
+        {
+            let message = written(names).unwrap_err().to_string();
+            assert!(pieces.iter().all(|p| message.contains(p)), "{message}");
+        }
+    }
 }
