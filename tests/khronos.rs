@@ -775,7 +775,7 @@ fn placed_square(m: &mut Model, material: Option<usize>, mut node: Value) {
     m.node(node);
 }
 
-/// The square on a node whose translation follows a sampler.
+/// The square on a node; a sampler moves the node.
 fn moving(m: &mut Model, sampler: Value) {
     placed_square(m, None, json!({}));
     let channel = json!({ "sampler": 0, "target": { "node": 0, "path": "translation" } });

@@ -181,8 +181,8 @@ const QUICK: (&str, &str) = ("shadow_dim", "1024");
 /// What the references have.
 const ONE_BOUNCE: (&str, &str) = ("bounces", "one");
 
-/// T1. A closed box with albedo 0.5 and emission 1, at every voxel size. The lobe returns E of a radiance of 1 and the base
-/// a half of what the lobe leaves, 0.5 (1 - E): diffuse light and half of the specular light are 0.5, whatever E is.
+/// T1. A closed box with albedo 0.5 and emission 1, at every voxel size. The lobe returns E of a radiance of 1, and
+/// the base half of the rest, 0.5 (1 - E): diffuse light plus half of the specular light is 0.5 for every E.
 #[test]
 fn furnace() {
     let lab = lab(root());

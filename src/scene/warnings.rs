@@ -5,7 +5,7 @@ use std::fmt::Display;
 /// Names that a line shows; the rest is counted.
 const SHOWN: usize = 3;
 
-/// What a file holds and the program leaves out or reads in another way, gathered by kind.
+/// Warnings about one file, gathered by kind: content that is left out or read in another way.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Warnings {
     kinds: Vec<Kind>,
@@ -14,14 +14,14 @@ pub(crate) struct Warnings {
 #[derive(Clone, Debug)]
 struct Kind {
     what: String,
-    /// The first of those that it happened to.
+    /// The first objects concerned.
     names: Vec<String>,
     count: usize,
 }
 
 impl Warnings {
-    /// Adds one of a kind. `what` is the kind's sentence, the same for all of it: what the file holds, what is done with
-    /// it, and a way on where there is one. `name` is what it happened to; an empty one is counted and not shown.
+    /// Adds a warning. `what` is the sentence of its kind: the content, its treatment, and a way on if there is one.
+    /// `name` is the object concerned; an empty name is counted and not shown.
     pub fn add(&mut self, what: impl Into<String>, name: impl Display) {
         let (what, name) = (what.into(), name.to_string());
         let kind = match self.kinds.iter_mut().position(|k| k.what == what) {

@@ -144,12 +144,12 @@ impl Workbench {
 
     /// The number of the scene's warnings, which lead to the list.
     fn warning_count(&mut self, ui: &mut Ui) {
-        let warnings = self.scene_warnings();
-        if warnings.is_empty() {
+        let count = self.scene_warning_count();
+        if count == 0 {
             return;
         }
-        let text = egui::RichText::new(format!("warnings: {}", warnings.len())).color(AMBER);
-        if ui.small_button(text).on_hover_text(warnings.join("\n")).clicked() {
+        let text = egui::RichText::new(format!("warnings: {count}")).color(AMBER);
+        if ui.small_button(text).on_hover_text("Show them on the Scene tab").clicked() {
             self.tab = crate::workbench::tabs::surroundings::TAB;
         }
     }

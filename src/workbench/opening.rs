@@ -81,6 +81,11 @@ impl Workbench {
         }
     }
 
+    /// The length of [`Workbench::scene_warnings`], without their texts: every frame of the window shows it.
+    pub(super) fn scene_warning_count(&self) -> usize {
+        self.scene.as_ref().map_or(0, |s| s.warnings.len() + usize::from(s.triangle_count() == 0))
+    }
+
     /// What is to be known about the loaded scene.
     pub(super) fn scene_warnings(&self) -> Vec<String> {
         let Some(scene) = &self.scene else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! The table: a name, an OBJ, its library `a.mtl`, and what the scene must hold.
+//! The table: a name, an OBJ, its library `a.mtl`, and the expected scene.
 
 use Expect::*;
 
