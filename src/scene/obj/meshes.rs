@@ -10,9 +10,9 @@ use super::maps::Placement;
 use super::material::{Surface, surface_of};
 use super::smoothing::{self, Group};
 use super::triangulate::triangulate;
+use crate::metrics::colour::srgb_to_linear;
 use crate::scene::mesh::RawMesh;
 use crate::scene::progress::Progress;
-use crate::scene::texture::srgb_to_linear;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Mesh, Submesh, Vertex};
 

@@ -6,6 +6,7 @@ use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
 use super::{Texture, TextureFormat, first_level_rgba};
+use crate::metrics::colour::srgb_to_linear;
 
 /// What a mip level must keep of the level above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,11 +21,6 @@ pub(in crate::scene) enum Filter {
 
 static SRGB_TO_LINEAR: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|i| srgb_to_linear(i as f32 / 255.0)));
-
-/// IEC 61966-2-1, of 0 to 1.
-pub(in crate::scene) fn srgb_to_linear(c: f32) -> f32 {
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-}
 
 /// sRGB bytes by linear value in steps of 1/16384, fine enough that bytes survive a round trip.
 static LINEAR_TO_SRGB: LazyLock<Vec<u8>> = LazyLock::new(|| {

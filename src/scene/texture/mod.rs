@@ -21,7 +21,7 @@ use super::{SceneError, Texture, TextureFormat};
 pub(super) use content::Holes;
 pub use decode::SmallPicture;
 pub(super) use decode::{MAX_FILE_BYTES, decode_limited, first_level_rgba};
-pub(super) use mips::{Filter, srgb_to_linear, texture_from_rgba};
+pub(super) use mips::{Filter, texture_from_rgba};
 
 /// Where an image's bytes come from.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]

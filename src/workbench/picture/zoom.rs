@@ -1,5 +1,6 @@
 //! Zoom and pan of the picture on the screen, without the camera; and the pixel under the pointer.
 
+use crate::metrics::colour::srgb_to_linear;
 use crate::workbench::engine::report::PictureReport;
 use egui::{Align2, Color32, FontId, Pos2, Rect, Response, Ui, Vec2};
 
@@ -80,8 +81,7 @@ pub fn pixel_text(picture: &PictureReport, at: Vec2) -> Option<String> {
 
 /// The light that the screen gives for a value, 0 to 1 (sRGB, IEC 61966-2-1).
 fn linear(value: u8) -> f32 {
-    let v = f32::from(value) / 255.0;
-    if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    srgb_to_linear(f32::from(value) / 255.0)
 }
 
 /// A line of text on dark ground at the lower left of `area`.
