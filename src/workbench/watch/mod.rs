@@ -3,11 +3,13 @@
 mod events;
 mod mounts;
 mod places;
+mod poll;
 
 use crossbeam_channel::{Receiver, unbounded};
 use events::{Seen, handler};
-use notify::{Config, PollWatcher, RecommendedWatcher, RecursiveMode, Watcher};
+use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 use places::{absolute, links_below, places};
+use poll::Poll;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -34,7 +36,7 @@ impl Changed {
 /// Watches the folders of the method and of experiments, and the files of the open scene.
 pub struct Watch {
     notified: Option<RecommendedWatcher>,
-    polled: Option<PollWatcher>,
+    polled: Option<Poll>,
     /// Makes another handler of events, for the watcher that polls.
     send: crossbeam_channel::Sender<(Instant, Seen)>,
     wake: Arc<dyn Fn() + Send + Sync>,
@@ -57,8 +59,6 @@ pub struct Watch {
 
 /// An editor's save is several events: all within this time are one change.
 const QUIET: Duration = Duration::from_millis(8);
-/// Time between two looks at folders that send no events.
-const POLL: Duration = Duration::from_secs(1);
 
 impl Watch {
     /// Starts watching; `wake` is called when something changed. `CONELAB_WATCH=poll` polls everything.
@@ -127,10 +127,10 @@ impl Watch {
         let gone: Vec<PathBuf> = self.folders.keys().filter(old).cloned().collect();
         for folder in gone {
             // A folder that was deleted is not watched any more, which is no fault.
-            let _ = match self.folders.remove(&folder) {
-                Some(true) => self.polled.as_mut().map(|w| w.unwatch(&folder)),
-                _ => self.notified.as_mut().map(|w| w.unwatch(&folder)),
-            };
+            match self.folders.remove(&folder) {
+                Some(true) => drop(self.polled.as_ref().map(|w| w.unwatch(&folder))),
+                _ => drop(self.notified.as_mut().map(|w| w.unwatch(&folder))),
+            }
         }
         for folder in wanted {
             if !self.folders.contains_key(&folder) {
@@ -154,13 +154,14 @@ impl Watch {
             }
         }
         if self.polled.is_none() {
-            let config = Config::default().with_poll_interval(POLL);
-            self.polled = PollWatcher::new(handler(self.send.clone(), self.wake.clone()), config).ok();
+            match Poll::start(handler(self.send.clone(), self.wake.clone())) {
+                Ok(poll) => self.polled = Some(poll),
+                Err(e) => self.trouble = Some(format!("changes in {} are not seen: {e}; F5 reloads", folder.display())),
+            }
         }
-        let Some(watcher) = &mut self.polled else { return };
-        match watcher.watch(folder, mode) {
-            Ok(()) => drop(self.folders.insert(folder.into(), true)),
-            Err(e) => self.trouble = Some(format!("changes in {} are not seen: {e}; F5 reloads", folder.display())),
+        if let Some(poll) = &self.polled {
+            poll.watch(folder, mode);
+            self.folders.insert(folder.into(), true);
         }
     }
 
