@@ -5,7 +5,9 @@ mod common;
 use common::{assert_clean, experiment, floats, home, lab, mean, root, scene};
 use conelab::experiment::{CameraChoice, PlacedCamera};
 use conelab::measure::reference::{Goal, gather};
-use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Texture, TextureFormat, Vertex};
+use conelab::scene::{
+    Instance, Keyframe, Material, Mesh, Mover, Scene, Submesh, Texture, TextureFormat, Track, Vertex,
+};
 use glam::{Mat4, Quat, Vec3, Vec4};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -39,7 +41,7 @@ fn under_a_lamp(edge: f32) -> Scene {
         name: format!("square {mesh}"),
         mesh,
         transform: Mat4::from_translation(Vec3::Y * height),
-        animation: None,
+        mover: None,
     };
     Scene {
         name: "lamp".into(),
@@ -134,7 +136,9 @@ fn a_lamp_that_moves_takes_its_light_along() {
     let key =
         |time: f32, height: f32| Keyframe { time, translation: Vec3::Y * (height - 1.0), rotation: Quat::IDENTITY };
     let mut scene = under_a_lamp(0.5);
-    scene.instances[1].animation = Some(Animation { keyframes: vec![key(0.0, 1.0), key(1.0, 2.0)], repeat: false });
+    let track = Track::rigid(&[key(0.0, 1.0), key(1.0, 2.0)], false).into();
+    scene.movers = vec![Mover { parent: None, placed: Mat4::IDENTITY, track }];
+    scene.instances[1].mover = Some(0);
     for (time, height) in [(0.0, 1.0), (0.5, 1.5), (1.0, 2.0)] {
         let expected = ALBEDO * RADIANCE * form_factor(0.5 / height);
         let (found, _) = floor_light(scene.clone(), 64, time);

@@ -815,7 +815,7 @@ fn the_walk_through_the_atrium_meets_no_wall() {
     let points: Vec<Vec3> = (0..=230).map(|i| path.at(f64::from(i) / 230.0 * length).eye.into()).collect();
     let (low, high) = points.iter().fold((Vec3::MAX, Vec3::MIN), |(l, h), p| (l.min(*p), h.max(*p)));
     let mut near = Vec::new();
-    for instance in atrium.instances.iter().filter(|i| i.animation.is_none()) {
+    for instance in atrium.instances.iter().filter(|i| i.mover.is_none()) {
         let mesh = &atrium.meshes[instance.mesh as usize];
         let at = |i: u32| (instance.transform as Mat4).transform_point3(mesh.vertices[i as usize].position.into());
         for t in mesh.indices.chunks_exact(3) {

@@ -327,7 +327,7 @@ fn under_a_coloured_lamp(colors: [Vec4; 2], floor: f32) -> Scene {
         name: format!("square {mesh}"),
         mesh,
         transform: Mat4::from_translation(Vec3::Y * height),
-        animation: None,
+        mover: None,
     };
     Scene {
         name: "lamp".into(),

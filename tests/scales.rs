@@ -217,7 +217,7 @@ fn lamps(mesh: &Mesh, size: f32) -> Arc<Scene> {
         let turn = Quat::from_euler(EulerRot::XYZ, 7.0 * x, 7.0 * y, 7.0 * z);
         let place = Vec3::new(-2.0 + 4.0 * x, 0.5 + 1.8 * y, -2.0 + 3.0 * z);
         let transform = Mat4::from_scale_rotation_translation(Vec3::splat(size), turn, place);
-        Instance { name: format!("lamp {i}"), mesh, transform, animation: None }
+        Instance { name: format!("lamp {i}"), mesh, transform, mover: None }
     }));
     Arc::new(scene)
 }

@@ -725,7 +725,7 @@ fn atrium_is_rich_and_moves() {
     assert!(scene.materials.iter().any(|m| m.metallic > 0.5));
     assert!(scene.materials.iter().any(|m| m.emission != Vec3::ZERO));
     assert!(scene.materials.iter().any(|m| m.normal_texture.is_some()));
-    let actor = scene.instances.iter().position(|i| i.animation.is_some()).unwrap();
+    let actor = scene.instances.iter().position(|i| i.mover.is_some()).unwrap();
     let (start, later) = (scene.instance_transform(actor, 0.0), scene.instance_transform(actor, 3.0));
     assert!(!start.abs_diff_eq(later, 1e-3));
     assert!(start.abs_diff_eq(scene.instance_transform(actor, 12.0), 1e-4), "it repeats");
@@ -810,7 +810,7 @@ fn scene_folders_are_searched() {
 fn shipped_scene_files_are_valid() {
     let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/scenes");
     let workshop = open(configs.join("workshop.ron")).unwrap();
-    assert!(workshop.instances.iter().any(|i| i.animation.is_some()));
+    assert!(workshop.instances.iter().any(|i| i.mover.is_some()));
     assert!(workshop.lights.iter().any(|l| matches!(l.kind, LightKind::Spot { .. })));
     assert!(workshop.lights.iter().any(|l| l.kind == LightKind::Point));
     for name in ["sponza", "living-room"] {
@@ -874,7 +874,7 @@ fn glb_and_gltf_keep_lights_cameras_and_motion() {
             assert_near((a.target - a.eye).normalize(), (b.target - b.eye).normalize(), 1e-4);
             assert!((a.fov_y - b.fov_y).abs() < 1e-3 && a.near == b.near && a.far == b.far);
         }
-        let moving = |s: &Scene| s.instances.iter().position(|i| i.animation.is_some()).unwrap();
+        let moving = |s: &Scene| s.instances.iter().position(|i| i.mover.is_some()).unwrap();
         for time in [0.0, 0.7, 1.9, 3.3] {
             let a: Mat4 = scene.instance_transform(moving(&scene), time);
             assert!(a.abs_diff_eq(again.instance_transform(moving(&again), time), 1e-4), "at {time} s");

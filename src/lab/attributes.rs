@@ -1,12 +1,19 @@
 //! The buffer `attributes` (`shaders/common/scene.glsl`): for each vertex its normal and u, tangent and sign, v, packed
 //! colour, and second set of texture coordinates.
 
-use crate::scene::{Lookups, Scene};
+use crate::scene::{Lookups, Scene, Vertex};
 use glam::{Vec3, Vec4};
 use std::collections::HashSet;
 
 /// Floats of a vertex.
 pub(super) type Attributes = [f32; 12];
+
+/// What a vertex has beside its position.
+pub(super) fn of(v: &Vertex) -> Attributes {
+    let ([nx, ny, nz], [tx, ty, tz, tw], [u, w]) = (v.normal, v.tangent, v.uv);
+    let ([u2, w2], color) = (v.uv_second, f32::from_bits(pack_color(v.color)));
+    [nx, ny, nz, u, tx, ty, tz, tw, w, color, u2, w2]
+}
 
 /// Both sets of texture coordinates.
 pub(super) fn uv_of(a: &Attributes) -> Vec4 {

@@ -129,19 +129,21 @@ impl Emitters {
         self.numbers.get(&(draw, first_index)).map_or(0, |(number, parts)| (number + 1) | (parts << 24))
     }
 
-    /// Whether any of them moves.
+    /// Whether any of them moves or changes its shape.
     pub(super) fn move_in(&self, scene: &Scene) -> bool {
-        let moves = |e: &Emitter| scene.instances.get(e.instance as usize).is_some_and(|i| i.animation.is_some());
+        let moves = |e: &Emitter| scene.instances.get(e.instance as usize).is_some_and(|i| scene.is_animated(i));
         self.list.iter().any(moves)
     }
 
-    /// Content of the buffer `emitters` in the pose of these instances.
-    pub(super) fn buffer(&self, instances: &[InstanceBlock]) -> Vec<u8> {
+    /// Content of the buffer `emitters` in the pose of these instances, with corners from positions and indices where vertices
+    /// have moved.
+    pub(super) fn buffer(&self, instances: &[InstanceBlock], posed: Option<(&[f32], &[u32])>) -> Vec<u8> {
         let mut blocks = Vec::new();
         for emitter in &self.list {
             let model = instances.get(emitter.instance as usize);
             let model = model.map_or(Mat4::IDENTITY, |b| Mat4::from_cols_array(&b.model));
-            let corners = emitter.corners.map(|c| model.transform_point3(c));
+            let moved = posed.and_then(|posed| corners_at(posed, emitter.key.1)).unwrap_or(emitter.corners);
+            let corners = moved.map(|c| model.transform_point3(c));
             let front = emitter.outside.map(|side| (side == Side::Front) == (model.determinant() > 0.0));
             for (part, radiance) in (0u32..).zip(&emitter.radiance) {
                 let [a, b, c] = part_corners(corners, emitter.parts, part);
@@ -170,6 +172,14 @@ impl Emitters {
         blocks.resize(blocks.len().max(1), bytemuck::Zeroable::zeroed());
         [bytemuck::cast_slice::<u32, u8>(&head), bytemuck::cast_slice(&blocks)].concat()
     }
+}
+
+/// The corners of the triangle with these indices.
+fn corners_at((positions, indices): (&[f32], &[u32]), first: u32) -> Option<[Vec3; 3]> {
+    let corners = indices.get(first as usize..)?.first_chunk::<3>()?;
+    let corner = |i: u32| positions.get(3 * i as usize..)?.first_chunk::<3>().copied().map(Vec3::from);
+    let [a, b, c] = corners.map(corner);
+    Some([a?, b?, c?])
 }
 
 /// Luminance times area.

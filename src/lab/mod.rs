@@ -29,11 +29,11 @@ use crate::graph::externals::{EXTERNALS, RAY_RESOURCES};
 use crate::graph::link::{Linked, Target, runs};
 use crate::graph::param::{Params, Value};
 use crate::graph::plan::{Plan, plan};
-use crate::graph::run::{Parts, Program};
+use crate::graph::run::{Parts, Program, Update};
 use crate::graph::{Evaluated, Graph};
 use crate::metrics::MetricError;
 use crate::scene::{Scene, SceneError};
-use crate::vulkan::{Buffer, DeviceInfo, Features, Gpu, GpuOptions, VulkanError};
+use crate::vulkan::{DeviceInfo, Features, Gpu, GpuOptions, VulkanError};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -143,7 +143,7 @@ pub struct Session {
     /// The scene.
     pub scene: Arc<Scene>,
     scene_gpu: SceneGpu,
-    light_updates: Vec<(Arc<Buffer>, Vec<u8>)>,
+    light_updates: Vec<Update>,
     viewpoint: Viewpoint,
     bounds: (Vec3, Vec3),
     size: (u32, u32),
@@ -206,12 +206,12 @@ impl Lab {
             Arc::ptr_eq(&s.scene, &scene) && s.max_edge == plan.max_edge && (s.scene_gpu.has_rays() || !rays)
         };
         let scene_gpu = match reuse.filter(fits) {
-            Some(reuse) if reuse.shared => reuse.scene_gpu.fork(&self.gpu, &scene)?,
+            Some(reuse) if reuse.shared => reuse.scene_gpu.fork(&self.gpu)?,
             Some(reuse) => reuse.scene_gpu.clone(),
             None => {
                 let limit = self.gpu.info.limits.max_storage_buffer_range;
                 let split = plan.max_edge.map(|edge| split(&scene, edge as f32, limit)).transpose()?;
-                SceneGpu::new(&self.gpu, split.as_ref().unwrap_or(&scene), scene.origin(), rays)?
+                SceneGpu::new(&self.gpu, split.map_or_else(|| scene.clone(), Arc::new), scene.origin(), rays)?
             }
         };
         // What textures and buffers hold is of their scene: of another one only the pipelines are taken.

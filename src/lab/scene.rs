@@ -10,11 +10,12 @@ use super::view::lights;
 use crate::graph::host::{
     CameraBlock, DrawBlock, InstanceBlock, LightBlock, MaterialBlock, SceneInfoBlock, ShadowBlock,
 };
-use crate::graph::run::{Geometry, SceneResources};
-use crate::scene::{Environment, Light, Lookup, Material, Scene};
+use crate::graph::run::{Geometry, SceneResources, Update};
+use crate::scene::{Environment, Instance, Light, Lookup, Material, Scene, Vertex, in_world};
 use crate::vulkan::{Buffer, Gpu, Result, Sampler, SamplerDesc, Upload, VulkanError, vk};
 use glam::{Mat4, Vec3};
-use std::collections::HashMap;
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 /// A scene's resources on the device.
@@ -33,6 +34,10 @@ pub struct SceneGpu {
     bounds: (Vec3, Vec3),
     instances: Arc<Buffer>,
     sent: Vec<InstanceBlock>,
+    /// When vertices are as they were sent last, s.
+    posed_at: f32,
+    /// What was uploaded, with its triangles split if they were.
+    scene: Arc<Scene>,
     emitters: Arc<Emitters>,
 }
 
@@ -75,12 +80,14 @@ impl SceneGpu {
     ///
     /// # Errors
     /// Out of memory; a hierarchy that is too deep.
-    pub fn new(gpu: &Arc<Gpu>, scene: &Scene, origin: Vec3, rays: bool) -> Result<SceneGpu> {
+    pub fn new(gpu: &Arc<Gpu>, scene: Arc<Scene>, origin: Vec3, rays: bool) -> Result<SceneGpu> {
+        let whole = scene;
+        let scene = &*whole;
         let mut upload = Upload::new(gpu);
         let textures = materials::upload(gpu, scene, &mut upload)?;
         let sky = sky::texture(gpu, scene.environment.as_ref(), &mut upload)?;
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let (positions, attributes, indices, first_index) = vertices(scene);
+        let (positions, attributes, indices, first_index) = vertices(scene, &scene.posed_meshes(0.0));
         let draws = draws(scene, &first_index);
         let triangles = triangles(&draws, &indices, &positions, &attributes);
         let opaque = draws.iter().filter(|d| !is_masked(scene, d)).count();
@@ -115,7 +122,7 @@ impl SceneGpu {
         let index_buffer = upload.buffer("indices", bytemuck::cast_slice(&indices), index)?;
         let command_buffer =
             upload.buffer("draw commands", bytemuck::cast_slice(&commands), vk::BufferUsageFlags::INDIRECT_BUFFER)?;
-        let instance_blocks = instances(scene, origin, 0.0, None);
+        let instance_blocks = instances(scene, origin, 0.0, None, false);
         let instances = upload.buffer("instances", bytemuck::cast_slice(&instance_blocks), storage)?;
         let camera = upload.buffer("camera", &[0; CAMERA_BYTES], uniform)?;
         let masked = |d: &DrawBlock| is_masked(scene, d);
@@ -138,7 +145,7 @@ impl SceneGpu {
             ("instances", instances.clone()),
             ("draws", upload.buffer("draws", bytemuck::cast_slice(&draws), storage)?),
             ("triangles", upload.buffer("triangles", bytemuck::cast_slice(&triangles), storage)?),
-            ("emitters", upload.buffer("emitters", &emitters.buffer(&instance_blocks), storage)?),
+            ("emitters", upload.buffer("emitters", &emitters.buffer(&instance_blocks, None), storage)?),
             ("positions", upload.buffer("positions", bytemuck::cast_slice(&positions), storage)?),
             ("attributes", upload.buffer("attributes", bytemuck::cast_slice(&attributes), storage)?),
         ]);
@@ -193,6 +200,8 @@ impl SceneGpu {
             bounds: (low, high),
             instances,
             sent: instance_blocks,
+            posed_at: 0.0,
+            scene: whole,
             emitters,
         })
     }
@@ -202,11 +211,12 @@ impl SceneGpu {
     ///
     /// # Errors
     /// Out of memory.
-    pub fn fork(&self, gpu: &Arc<Gpu>, scene: &Scene) -> Result<SceneGpu> {
+    pub fn fork(&self, gpu: &Arc<Gpu>) -> Result<SceneGpu> {
+        let scene = &*self.scene;
         let (origin, bounds) = (self.origin, self.bounds);
         let mut upload = Upload::new(gpu);
         let mut resources = self.resources.clone();
-        let sent = instances(scene, origin, 0.0, None);
+        let sent = instances(scene, origin, 0.0, None, false);
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let instances = upload.buffer("instances", bytemuck::cast_slice(&sent), storage)?;
         let uniform = vk::BufferUsageFlags::UNIFORM_BUFFER;
@@ -214,13 +224,22 @@ impl SceneGpu {
         let lighting = Lighting::of(scene);
         let info = lighting.inform(self.info);
         let (light_blocks, shadow_blocks) = lighting.blocks(bounds, origin);
+        // Vertices that move are the other program's own too.
+        let posed = (!scene.deformers.is_empty()).then(|| vertices(scene, &scene.posed_meshes(0.0)));
+        if let Some((positions, attributes, ..)) = &posed {
+            let shape = [
+                ("positions", upload.buffer("positions", bytemuck::cast_slice(positions), storage)?),
+                ("attributes", upload.buffer("attributes", bytemuck::cast_slice(attributes), storage)?),
+            ];
+            resources.buffers.extend(shape);
+        }
         let own = [
             ("instances", instances.clone()),
             ("camera", camera.clone()),
             ("sceneInfo", upload.buffer("sceneInfo", bytemuck::bytes_of(&info), uniform)?),
             ("lights", upload.buffer("lights", bytemuck::cast_slice(&light_blocks), storage)?),
             ("shadowViews", upload.buffer("shadowViews", bytemuck::cast_slice(&shadow_blocks), storage)?),
-            ("emitters", upload.buffer("emitters", &self.emitters.buffer(&sent), storage)?),
+            ("emitters", upload.buffer("emitters", &self.emitters.buffer(&sent, None), storage)?),
         ];
         resources.buffers.extend(own);
         if self.has_rays() {
@@ -229,32 +248,92 @@ impl SceneGpu {
             resources.buffers.extend(ray_buffers(&mut upload, found, &info)?);
         }
         upload.finish()?;
-        let emitters = self.emitters.clone();
-        Ok(SceneGpu { resources, camera, bytes: self.bytes, origin, info, lighting, bounds, instances, sent, emitters })
+        let (emitters, scene) = (self.emitters.clone(), self.scene.clone());
+        let posed_at = 0.0;
+        Ok(SceneGpu {
+            resources,
+            camera,
+            bytes: self.bytes,
+            origin,
+            info,
+            lighting,
+            bounds,
+            instances,
+            sent,
+            posed_at,
+            scene,
+            emitters,
+        })
     }
 
-    /// Buffers that change with time: the poses of animated instances, when they moved.
+    /// Buffers that change with time: the poses of animated instances and of meshes that deform, when they moved. Vertices that
+    /// deform are posed by all threads of the CPU and sent whole; with rays, the hierarchy over all triangles is built anew.
     ///
     /// # Errors
     /// A pose whose hierarchy is too deep.
-    pub fn updates(&mut self, scene: &Scene, time: f64, first: bool) -> Result<Vec<(Arc<Buffer>, Vec<u8>)>> {
+    pub fn updates(&mut self, time: f64, first: bool) -> Result<Vec<Update>> {
+        let scene = self.scene.clone();
         let previous = (!first).then_some(self.sent.as_slice());
-        let now = instances(scene, self.origin, time as f32, previous);
-        if now == self.sent || now.is_empty() {
+        let deforms = !scene.deformers.is_empty() && time as f32 != self.posed_at;
+        let now = instances(&scene, self.origin, time as f32, previous, deforms);
+        if !deforms && now == self.sent || now.is_empty() {
             return Ok(Vec::new());
         }
         self.sent = now;
-        let mut list = vec![(self.instances.clone(), bytemuck::cast_slice(&self.sent).to_vec())];
-        if let Some(buffer) = self.resources.buffers.get("emitters").filter(|_| self.emitters.move_in(scene)) {
-            list.push((buffer.clone(), self.emitters.buffer(&self.sent)));
+        let mut list = vec![Update::all(&self.instances, bytemuck::cast_slice(&self.sent).to_vec())];
+        if deforms {
+            self.posed_at = time as f32;
+            list.extend(self.deformed(&scene, time as f32));
         }
         let rays = [self.resources.buffers.get("bvhNodes"), self.resources.buffers.get("bvhTriangles")];
+        let emitters = self.resources.buffers.get("emitters").filter(|_| self.emitters.move_in(&scene));
+        if rays[0].is_none() && emitters.is_none() {
+            return Ok(list);
+        }
+        let (positions, _, indices, first_index) = vertices(&scene, &scene.posed_meshes(self.posed_at));
+        if let Some(buffer) = emitters {
+            let posed = (!scene.deformers.is_empty()).then_some((positions.as_slice(), indices.as_slice()));
+            list.push(Update::all(buffer, self.emitters.buffer(&self.sent, posed)));
+        }
         if let [Some(nodes), Some(triangles)] = rays {
-            let found = scene_hierarchy(scene, &self.emitters, &self.sent);
-            list.push((nodes.clone(), found.nodes));
-            list.push((triangles.clone(), found.triangles));
+            let draws = draws(&scene, &first_index);
+            let soup = Soup {
+                positions: &positions,
+                indices: &indices,
+                draws: &draws,
+                first_index: &first_index,
+                masked: &|d: &DrawBlock| is_masked(&scene, d),
+            };
+            let found = hierarchy(&soup, &self.emitters, &self.sent);
+            list.push(Update::all(nodes, found.nodes));
+            list.push(Update::all(triangles, found.triangles));
         }
         Ok(list)
+    }
+
+    /// Positions and attributes of the meshes that deform.
+    fn deformed(&self, scene: &Scene, time: f32) -> Vec<Update> {
+        let frames = scene.mover_frames(time);
+        let mut starts = vec![0usize];
+        starts.extend(scene.meshes.iter().scan(0, |sum, mesh| {
+            *sum += mesh.vertices.len();
+            Some(*sum)
+        }));
+        let parts = scene.deformers.iter().flat_map(|deformer| {
+            let start = starts.get(deformer.mesh as usize).copied().unwrap_or(0);
+            let posed = scene.posed(deformer, &frames, time);
+            let positions: Vec<[f32; 3]> = posed.iter().map(|v| v.position).collect();
+            let attributes: Vec<Attributes> = posed.iter().map(attributes::of).collect();
+            [
+                ("positions", start * size_of::<[f32; 3]>(), bytemuck::cast_slice(&positions).to_vec()),
+                ("attributes", start * size_of::<Attributes>(), bytemuck::cast_slice(&attributes).to_vec()),
+            ]
+        });
+        let update = |(name, at, bytes): (&str, usize, Vec<u8>)| {
+            let buffer = self.resources.buffers.get(name)?.clone();
+            Some(Update { buffer, at: Some(at as u64), bytes })
+        };
+        parts.filter_map(update).collect()
     }
 
     /// Whether it has what rays need.
@@ -264,21 +343,21 @@ impl SceneGpu {
 
     /// Buffers that change with colours, directions, positions and cone angles of the lights, and with the sky. The
     /// scene has as many lights and shadow maps as the one that was uploaded, and its geometry.
-    pub fn set_lights(&mut self, list: &[Light], sky: Vec3) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+    pub fn set_lights(&mut self, list: &[Light], sky: Vec3) -> Vec<Update> {
         self.lighting.lights = list.to_vec();
         self.lighting.sky = sky;
         self.relit()
     }
 
     /// Buffers that change with the rotation of the sky's picture, degrees about y.
-    pub fn turn_sky(&mut self, rotation: f32) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+    pub fn turn_sky(&mut self, rotation: f32) -> Vec<Update> {
         if let Some(environment) = &mut self.lighting.environment {
             environment.rotation = rotation;
         }
         self.relit()
     }
 
-    fn relit(&mut self) -> Vec<(Arc<Buffer>, Vec<u8>)> {
+    fn relit(&mut self) -> Vec<Update> {
         let (light_blocks, shadow_blocks) = self.lighting.blocks(self.bounds, self.origin);
         self.info = self.lighting.inform(self.info);
         let contents: [(&str, &[u8]); 3] = [
@@ -287,13 +366,13 @@ impl SceneGpu {
             ("sceneInfo", bytemuck::bytes_of(&self.info)),
         ];
         let buffer = |name: &str| self.resources.buffers.get(name).cloned();
-        contents.iter().filter_map(|(name, bytes)| Some((buffer(name)?, bytes.to_vec()))).collect()
+        contents.iter().filter_map(|(name, bytes)| Some(Update::all(&buffer(name)?, bytes.to_vec()))).collect()
     }
 
     /// The block `sceneInfo` as it is.
-    pub fn info(&self) -> Option<(Arc<Buffer>, Vec<u8>)> {
+    pub fn info(&self) -> Option<Update> {
         let buffer = self.resources.buffers.get("sceneInfo")?;
-        Some((buffer.clone(), bytemuck::bytes_of(&self.info).to_vec()))
+        Some(Update::all(buffer, bytemuck::bytes_of(&self.info).to_vec()))
     }
 }
 
@@ -303,9 +382,9 @@ fn hierarchy(soup: &Soup<'_>, emitters: &Emitters, instances: &[InstanceBlock]) 
     bvh::build(soup, emitters, &model)
 }
 
-/// [`hierarchy`] over all triangles of a scene that was uploaded before.
+/// [`hierarchy`] over all triangles of a scene that was uploaded before, at 0 s.
 fn scene_hierarchy(scene: &Scene, emitters: &Emitters, instances: &[InstanceBlock]) -> bvh::Hierarchy {
-    let (positions, _, indices, first_index) = vertices(scene);
+    let (positions, _, indices, first_index) = vertices(scene, &scene.posed_meshes(0.0));
     let draws = draws(scene, &first_index);
     let masked = |d: &DrawBlock| is_masked(scene, d);
     let soup =
@@ -334,18 +413,15 @@ fn is_masked(scene: &Scene, draw: &DrawBlock) -> bool {
     scene.materials.get(draw.material as usize).is_some_and(|m| m.alpha_cutoff > 0.0)
 }
 
-/// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another, and each mesh's first index.
-fn vertices(scene: &Scene) -> (Vec<f32>, Vec<Attributes>, Vec<u32>, Vec<u32>) {
+/// Positions (3 floats), attributes (3 vec4), indices of all meshes one after another with these vertices, and each mesh's
+/// first index.
+fn vertices(scene: &Scene, posed: &[Cow<'_, [Vertex]>]) -> (Vec<f32>, Vec<Attributes>, Vec<u32>, Vec<u32>) {
     let (mut positions, mut attributes, mut indices, mut first) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for mesh in &scene.meshes {
+    for (mesh, vertices) in scene.meshes.iter().zip(posed) {
         let base = u32::try_from(positions.len() / 3).unwrap_or(u32::MAX);
         first.push(u32::try_from(indices.len()).unwrap_or(u32::MAX));
-        for v in &mesh.vertices {
-            positions.extend(v.position);
-            let ([nx, ny, nz], [tx, ty, tz, tw], [u, w]) = (v.normal, v.tangent, v.uv);
-            let ([u2, w2], color) = (v.uv_second, f32::from_bits(attributes::pack_color(v.color)));
-            attributes.push([nx, ny, nz, u, tx, ty, tz, tw, w, color, u2, w2]);
-        }
+        positions.extend(vertices.iter().flat_map(|v| v.position));
+        attributes.extend(vertices.iter().map(attributes::of));
         indices.extend(mesh.indices.iter().map(|i| base + i));
     }
     (positions, attributes, indices, first)
@@ -434,18 +510,26 @@ fn material(
     }
 }
 
-fn instances(scene: &Scene, origin: Vec3, time: f32, previous: Option<&[InstanceBlock]>) -> Vec<InstanceBlock> {
-    (0..scene.instances.len())
-        .map(|i| {
-            let mut model = scene.instance_transform(i, time);
-            model.w_axis -= origin.extend(0.0);
-            let before = previous.and_then(|p| p.get(i)).map_or(model.to_cols_array(), |p| p.model);
-            let normal = Mat4::from_mat3(glam::Mat3::from_mat4(model).inverse().transpose());
-            InstanceBlock {
-                model: model.to_cols_array(),
-                previous_model: before,
-                normal_matrix: normal.to_cols_array(),
-            }
-        })
-        .collect()
+/// `deforms`: vertices move too. No matrix tells of that, so those before are none, which counts as a move.
+fn instances(
+    scene: &Scene,
+    origin: Vec3,
+    time: f32,
+    previous: Option<&[InstanceBlock]>,
+    deforms: bool,
+) -> Vec<InstanceBlock> {
+    let frames = scene.mover_frames(time);
+    let deforming: HashSet<u32> = scene.deformers.iter().filter(|_| deforms).map(|d| d.mesh).collect();
+    let block = |(i, instance): (usize, &Instance)| {
+        let mut model = in_world(&frames, instance.mover, instance.transform);
+        model.w_axis -= origin.extend(0.0);
+        let before = previous.and_then(|p| p.get(i)).map_or(model.to_cols_array(), |p| p.model);
+        let normal = Mat4::from_mat3(glam::Mat3::from_mat4(model).inverse().transpose());
+        InstanceBlock {
+            model: model.to_cols_array(),
+            previous_model: if deforming.contains(&instance.mesh) { [0.0; 16] } else { before },
+            normal_matrix: normal.to_cols_array(),
+        }
+    };
+    scene.instances.iter().enumerate().map(block).collect()
 }

@@ -6,7 +6,7 @@ use crate::graph::Evaluated;
 use crate::graph::link::{Layouts, runs, table};
 use crate::graph::param::Params;
 use crate::graph::plan::plan;
-use crate::graph::run::{FrameTimes, Redo};
+use crate::graph::run::{FrameTimes, Redo, Update};
 use crate::graph::table::Table;
 use crate::scene::{Camera, Light};
 use glam::Vec3;
@@ -134,18 +134,18 @@ impl Session {
     /// # Errors
     /// The device was lost.
     pub fn frame(&mut self, delta: f64) -> Result<Option<FrameTimes>, LabError> {
-        let mut updates = self.scene_gpu.updates(&self.scene, self.time, self.frame == 0)?;
+        let mut updates = self.scene_gpu.updates(self.time, self.frame == 0)?;
         updates.append(&mut self.light_updates);
         self.still_frames =
             if updates.is_empty() && self.sent_params { self.still_frames.saturating_add(1) } else { 0 };
         let frames = (self.frame, self.still_frames);
         let camera = self.viewpoint.uniform(self.scene_gpu.origin, self.size, self.time, frames, delta);
-        updates.push((self.scene_gpu.camera.clone(), camera));
+        updates.push(Update::all(&self.scene_gpu.camera, camera));
         if !self.sent_params {
-            updates.push((self.program.params_buffer(), self.params.uniform_bytes(&self.values)));
+            updates.push(Update::all(&self.program.params_buffer(), self.params.uniform_bytes(&self.values)));
             // So that it is known which part of it lights change; they may have sent it already.
             if let Some(info) = self.scene_gpu.info() {
-                updates.retain(|(buffer, _)| !Arc::ptr_eq(buffer, &info.0));
+                updates.retain(|u| !Arc::ptr_eq(&u.buffer, &info.buffer));
                 updates.push(info);
             }
             self.sent_params = true;

@@ -13,6 +13,7 @@ mod gltf;
 mod limits;
 mod lookup;
 mod mesh;
+mod motion;
 mod obj;
 mod open;
 mod progress;
@@ -27,7 +28,7 @@ mod transform;
 mod warnings;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, Quat, Vec3, Vec4};
+use glam::{Mat4, Vec3, Vec4};
 use indexmap::IndexMap;
 use serde::Deserialize;
 
@@ -36,6 +37,8 @@ pub use error::SceneError;
 pub use limits::MAX_COORDINATE;
 pub use lookup::{Lookup, Lookups, Wrap};
 pub use mesh::Side;
+pub(crate) use motion::in_world;
+pub use motion::{Curve, Deformer, Influence, Interpolation, Joint, Keyframe, Morph, Mover, Rest, Track, Value};
 pub(crate) use shuffle::splitmix;
 pub use split::MAX_TRIANGLES;
 pub use texture::SmallPicture;
@@ -54,6 +57,10 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Where meshes stand.
     pub instances: Vec<Instance>,
+    /// Frames that move, those that others are in first.
+    pub movers: Vec<Mover>,
+    /// Meshes whose vertices move; at most one a mesh.
+    pub deformers: Vec<Deformer>,
     /// Lights without extent.
     pub lights: Vec<Light>,
     /// Views by name; `default` is the one of a picture that names none.
@@ -281,30 +288,10 @@ pub struct Instance {
     pub name: String,
     /// A number in [`Scene::meshes`].
     pub mesh: u32,
-    /// From model to world, in the pose at rest.
+    /// From the model into the frame that it moves with, or into the world.
     pub transform: Mat4,
-    /// How it moves, if it does.
-    pub animation: Option<Animation>,
-}
-
-/// Motion of a rigid body, applied after (to the left of) the instance's transform.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Animation {
-    /// In order of time; translation is interpolated linearly, rotation spherically.
-    pub keyframes: Vec<Keyframe>,
-    /// Start over after the last keyframe; otherwise stay there.
-    pub repeat: bool,
-}
-
-/// A pose at a time.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Keyframe {
-    /// Seconds.
-    pub time: f32,
-    /// m.
-    pub translation: Vec3,
-    /// Around the origin of the world, before the translation.
-    pub rotation: Quat,
+    /// A number in [`Scene::movers`]: what it moves with, if it moves.
+    pub mover: Option<u32>,
 }
 
 /// Where a light's energy comes from.

@@ -78,7 +78,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         name: mesh.name.clone(),
         mesh: i as u32,
         transform: Mat4::IDENTITY,
-        animation: None,
+        mover: None,
     });
     Ok(Scene { instances: instances.collect(), meshes, materials, textures, warnings: told, ..Scene::default() })
 }

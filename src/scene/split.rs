@@ -15,7 +15,7 @@ impl Scene {
     ///
     /// Whether an edge is split depends on its ends alone, and its midpoint is the same from both sides: triangles
     /// that share an edge stay without cracks, also across seams of normals and texture coordinates. A mesh placed
-    /// more than once is split for its largest placement. Meshes that would take the scene past [`MAX_TRIANGLES`],
+    /// more than once is split for its largest placement, in its pose at 0 s. Meshes that would take the scene past [`MAX_TRIANGLES`],
     /// and everything when `max_edge` is not above 0, stay as they are; a warning says so.
     pub fn split_triangles(&self, max_edge: f32) -> Scene {
         let mut scene = self.clone();
@@ -23,10 +23,7 @@ impl Scene {
             scene.warnings.push(format!("{}: triangles not split, {max_edge} m is no edge length", self.name));
             return scene;
         }
-        let placements = |mesh: usize| -> Vec<Mat3> {
-            let of_mesh = self.instances.iter().filter(|instance| instance.mesh as usize == mesh);
-            of_mesh.map(|instance| Mat3::from_mat4(instance.transform)).collect()
-        };
+        let placements = |mesh: usize| -> Vec<Mat3> { self.placed_at_rest(mesh).collect() };
         let mut budget = MAX_TRIANGLES.saturating_sub(self.triangle_count());
         for i in 0..scene.meshes.len() {
             let axes = placements(i);
@@ -38,9 +35,10 @@ impl Scene {
             let before = scene.meshes[i].triangle_count();
             let limit = before + budget / axes.len().max(1);
             match split_mesh(&scene.meshes[i], &too_long, limit) {
-                Some(split) => {
+                Some((split, halves)) => {
                     budget -= (split.triangle_count() - before) * axes.len();
                     scene.meshes[i] = split;
+                    scene.deformers.iter_mut().filter(|d| d.mesh as usize == i).for_each(|d| d.halves = halves.clone());
                 }
                 None => scene.warnings.push(format!(
                     "mesh '{}' not split to {max_edge} m: the scene would pass {MAX_TRIANGLES} triangles. \
@@ -56,12 +54,17 @@ impl Scene {
     /// edges of `max_edge` has more than the area of the equilateral one, and there are half as many vertices as triangles.
     pub fn least_split_bytes(&self, max_edge: f32) -> f64 {
         let largest = 0.25 * 3f64.sqrt() * f64::from(max_edge).powi(2);
-        let triangles = |i: usize| {
-            let placements = self.instances.iter().filter(|instance| instance.mesh as usize == i);
-            let areas = placements.map(|instance| area(&self.meshes[i], &Mat3::from_mat4(instance.transform)));
-            areas.fold(0.0, f64::max) / largest
-        };
+        let triangles =
+            |i: usize| self.placed_at_rest(i).map(|axes| area(&self.meshes[i], &axes)).fold(0.0, f64::max) / largest;
         (0..self.meshes.len()).map(triangles).sum::<f64>() * 0.5 * size_of::<Vertex>() as f64
+    }
+}
+
+impl Scene {
+    /// The axes of each instance of a mesh, at 0 s.
+    fn placed_at_rest(&self, mesh: usize) -> impl Iterator<Item = Mat3> + '_ {
+        let of_mesh = self.instances.iter().enumerate().filter(move |(_, instance)| instance.mesh as usize == mesh);
+        of_mesh.map(|(i, _)| Mat3::from_mat4(self.instance_transform(i, 0.0)))
     }
 }
 
@@ -74,20 +77,25 @@ fn area(mesh: &Mesh, axes: &Mat3) -> f64 {
     mesh.indices.as_chunks::<3>().0.par_iter().map(triangle).sum()
 }
 
-/// The mesh split round by round, or none when it would have more triangles than the limit.
-fn split_mesh(mesh: &Mesh, too_long: &(impl Fn(Vec3, Vec3) -> bool + Sync), limit: usize) -> Option<Mesh> {
-    let mut mesh = mesh.clone();
+/// The mesh split round by round, and what its new vertices are in the middle of; none when it would have more triangles
+/// than the limit.
+fn split_mesh(
+    mesh: &Mesh,
+    too_long: &(impl Fn(Vec3, Vec3) -> bool + Sync),
+    limit: usize,
+) -> Option<(Mesh, Vec<[u32; 2]>)> {
+    let (mut mesh, mut halves) = (mesh.clone(), Vec::new());
     loop {
         let marks: Vec<[bool; 3]> =
             mesh.indices.as_chunks::<3>().0.par_iter().map(|t| long_edges(&mesh, t, too_long)).collect();
         let added: usize = marks.iter().flatten().filter(|&&m| m).count();
         if added == 0 {
-            return Some(mesh);
+            return Some((mesh, halves));
         }
         if marks.len() + added > limit {
             return None;
         }
-        mesh = split_once(&mesh, &marks);
+        mesh = split_once(&mesh, &marks, &mut halves);
     }
 }
 
@@ -97,7 +105,7 @@ fn long_edges(mesh: &Mesh, triangle: &[u32; 3], too_long: impl Fn(Vec3, Vec3) ->
     [too_long(p[0], p[1]), too_long(p[1], p[2]), too_long(p[2], p[0])]
 }
 
-fn split_once(mesh: &Mesh, marks: &[[bool; 3]]) -> Mesh {
+fn split_once(mesh: &Mesh, marks: &[[bool; 3]], halves: &mut Vec<[u32; 2]>) -> Mesh {
     let mut split = Mesh { name: mesh.name.clone(), vertices: mesh.vertices.clone(), ..Mesh::default() };
     let mut midpoints: HashMap<(u32, u32), u32> = HashMap::new();
     for submesh in &mesh.submeshes {
@@ -113,6 +121,9 @@ fn split_once(mesh: &Mesh, marks: &[[bool; 3]]) -> Mesh {
             ..*submesh
         });
     }
+    let mut ends: Vec<(u32, [u32; 2])> = midpoints.into_iter().map(|((a, b), middle)| (middle, [a, b])).collect();
+    ends.sort_unstable();
+    halves.extend(ends.into_iter().map(|(_, ends)| ends));
     split
 }
 
@@ -161,7 +172,7 @@ fn length(mesh: &Mesh, a: u32, b: u32) -> f32 {
     position(a).distance(position(b))
 }
 
-fn halfway(a: &Vertex, b: &Vertex) -> Vertex {
+pub(super) fn halfway(a: &Vertex, b: &Vertex) -> Vertex {
     let middle = |a: [f32; 3], b: [f32; 3]| (Vec3::from_array(a) + Vec3::from_array(b)) * 0.5;
     let normal = middle(a.normal, b.normal).normalize_or(Vec3::from_array(a.normal));
     let tangent = middle(xyz(a.tangent), xyz(b.tangent)).normalize_or(Vec3::from_array(xyz(a.tangent)));

@@ -465,9 +465,9 @@ impl Commands<'_> {
         unsafe { self.gpu.device.cmd_draw_indexed_indirect(self.handle, buffer.handle, offset, count, 20) };
     }
 
-    /// Writes bytes (a multiple of 4) into a buffer; large data goes in pieces of 64 KiB.
-    pub fn update(&mut self, buffer: &Buffer, bytes: &[u8]) {
-        for (offset, part) in (0u64..).step_by(65536).zip(bytes.chunks(65536)) {
+    /// Writes bytes (a multiple of 4) into a buffer from an offset on; large data goes in pieces of 64 KiB.
+    pub fn update(&mut self, buffer: &Buffer, at: u64, bytes: &[u8]) {
+        for (offset, part) in (at..).step_by(65536).zip(bytes.chunks(65536)) {
             unsafe { self.gpu.device.cmd_update_buffer(self.handle, buffer.handle, offset, part) };
         }
     }

@@ -1,13 +1,15 @@
 //! Closed meshes and their poses.
 
-use conelab::scene::{Animation, Instance, Keyframe, Material, Mesh, Scene, Submesh, Vertex};
+use conelab::scene::{Instance, Keyframe, Material, Mesh, Mover, Scene, Submesh, Track, Vertex};
 use glam::{Mat4, Quat, Vec3};
 
 /// A scene of one mesh.
 pub fn placed(mesh: Mesh, materials: Vec<Material>, keyframes: Vec<Keyframe>) -> Scene {
-    let animation = (!keyframes.is_empty()).then_some(Animation { keyframes, repeat: false });
-    let instance = Instance { name: "mesh".into(), mesh: 0, transform: Mat4::IDENTITY, animation };
-    Scene { name: "mesh".into(), meshes: vec![mesh], materials, instances: vec![instance], ..Scene::default() }
+    let track = Track::rigid(&keyframes, false).into();
+    let movers = vec![Mover { parent: None, placed: Mat4::IDENTITY, track }];
+    let mover = (!keyframes.is_empty()).then_some(0);
+    let instances = vec![Instance { name: "mesh".into(), mesh: 0, transform: Mat4::IDENTITY, mover }];
+    Scene { name: "mesh".into(), meshes: vec![mesh], materials, instances, movers, ..Scene::default() }
 }
 
 /// A closed surface over a torus of u and v: `point` has the period 1 in both.

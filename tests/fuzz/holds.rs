@@ -34,22 +34,37 @@ pub fn mistake(scene: &Scene, bytes: usize, model: bool) -> Option<String> {
         of("texture", &t.name, (!whole || t.mips.is_empty()).then_some("its levels have other sizes"))
     });
     let instances = scene.instances.iter().find_map(|i| {
-        let keys = i.animation.as_ref().map_or(&[][..], |a| &a.keyframes);
-        let finite = keys.iter().all(|k| k.time.is_finite() && k.translation.is_finite() && k.rotation.is_normalized());
         let wrong = match () {
             () if i.mesh as usize >= scene.meshes.len() => Some("it has no mesh"),
             () if !i.transform.is_finite() => Some("its transform is not finite"),
-            () if !finite || !keys.is_sorted_by_key(|k| k.time) => Some("its motion is none"),
+            () if i.mover.is_some_and(|m| m as usize >= scene.movers.len()) => Some("it moves with nothing"),
             () => None,
         };
         of("instance", &i.name, wrong)
+    });
+    let frames = [0.0, 0.4, 7.0].iter().find_map(|time| {
+        let frames = scene.mover_frames(*time);
+        frames.iter().any(|f| f.is_nan()).then(|| format!("frames at {time} s are no numbers"))
+    });
+    let movers = (0u32..).zip(&scene.movers).find_map(|(i, m)| {
+        (m.parent.is_some_and(|p| p >= i)).then(|| format!("mover {i} moves with one that comes after it"))
+    });
+    let deformers = scene.deformers.iter().find_map(|d| {
+        let wrong = match scene.meshes.get(d.mesh as usize) {
+            None => Some("there is no such mesh"),
+            Some(mesh) if d.rest.len() > mesh.vertices.len() => Some("it has fewer vertices than are moved"),
+            Some(_) if !d.bounds.0.is_finite() || !d.bounds.1.is_finite() => Some("its bounds are not finite"),
+            Some(_) => None,
+        };
+        of("the shape of mesh", &d.mesh.to_string(), wrong)
     });
     let sky = (!scene.sky.is_finite() || scene.sky.min_element() < 0.0).then(|| format!("a sky of {}", scene.sky));
     let picture = scene.environment.as_ref().and_then(|e| {
         let light = e.picture.texels().iter().flatten().all(|v| v.is_finite() && *v >= 0.0);
         (!light || !e.rotation.is_finite()).then(|| "the picture of its sky is no light".into())
     });
-    cameras.or(lights).or(meshes).or(surfaces).or(textures).or(instances).or(sky).or(picture)
+    let motion = frames.or(movers).or(deformers);
+    cameras.or(lights).or(meshes).or(surfaces).or(textures).or(instances).or(motion).or(sky).or(picture)
 }
 
 fn camera(c: &Camera) -> Option<&'static str> {

@@ -161,9 +161,7 @@ impl Motion {
                 let known: Vec<&str> = scene.lights.iter().map(|l| l.name.as_str()).collect();
                 Err(format!("scene '{}' has no light '{name}'; it has {}", scene.name, known.join(", ")))
             }
-            Motion::Actors { .. } if !scene.instances.iter().any(|i| i.animation.is_some()) => {
-                Err(format!("nothing is animated in scene '{}'", scene.name))
-            }
+            Motion::Actors { .. } if !scene.moves() => Err(format!("nothing is animated in scene '{}'", scene.name)),
             _ => Ok(()),
         }
     }
@@ -175,7 +173,7 @@ impl Motion {
             return None;
         }
         let mut scene = scene.clone();
-        for instance in scene.instances.iter_mut().filter(|i| i.animation.is_some()) {
+        for instance in scene.instances.iter_mut().filter(|i| i.mover.is_some()) {
             instance.transform *= Mat4::from_scale((*scale).into());
         }
         Some(scene)

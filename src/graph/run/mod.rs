@@ -16,3 +16,4 @@ pub use parts::{Change, Parts};
 pub use program::{FrameTimes, Program};
 pub use scene::{Geometry, SceneResources};
 pub use sleep::Redo;
+pub use transfer::Update;

@@ -7,7 +7,7 @@ use super::record::Recorder;
 use super::resources::{self, Resources};
 use super::scene::SceneResources;
 use super::sleep::{Contents, Frame, Redo};
-use super::transfer::{relayout, send};
+use super::transfer::{Update, relayout, send};
 use crate::graph::definition::Res;
 use crate::graph::evaluated::Evaluated;
 use crate::graph::link::Linked;
@@ -220,7 +220,7 @@ impl Program {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn run(&mut self, updates: &[(Arc<Buffer>, Vec<u8>)]) -> Result<Option<FrameTimes>> {
+    pub fn run(&mut self, updates: &[Update]) -> Result<Option<FrameTimes>> {
         let slot = usize::try_from(self.frame % FRAMES_IN_FLIGHT as u64).unwrap_or(0);
         let finished = self.finish(slot)?;
         let parity = usize::try_from(self.frame % 2).unwrap_or(0);
@@ -246,7 +246,7 @@ impl Program {
 
     /// Sends what changed, and the commands of a frame behind it: those of the last one that did the same, if there is one.
     /// Recording takes most of the time of a CPU's frame.
-    fn submit(&self, slot: &mut Slot, frame: Frame, updates: &[(Arc<Buffer>, Vec<u8>)], parity: usize) -> Result<()> {
+    fn submit(&self, slot: &mut Slot, frame: Frame, updates: &[Update], parity: usize) -> Result<()> {
         slot.stamped = self.runs(&frame.awake);
         let Slot { commands, recorded, stamped, readback, handed, .. } = slot;
         let recorder = self.recorder();
@@ -330,16 +330,16 @@ impl Program {
     }
 
     /// What the next frame does.
-    fn work(&mut self, updates: &[(Arc<Buffer>, Vec<u8>)], odd: bool) -> Frame {
+    fn work(&mut self, updates: &[Update], odd: bool) -> Frame {
         let Some(contents) = &mut self.contents else {
             return Frame { awake: vec![true; self.plan.steps.len()], keeping: Vec::new() };
         };
-        for (buffer, bytes) in updates {
+        for Update { buffer, at, bytes } in updates {
             if Arc::ptr_eq(buffer, &self.params) {
-                contents.update("params", bytes);
+                contents.update("params", None, bytes);
             }
             for (name, _) in self.scene.buffers.iter().filter(|(_, b)| Arc::ptr_eq(b, buffer)) {
-                contents.update(name, bytes);
+                contents.update(name, *at, bytes);
             }
         }
         contents.frame(&self.plan, odd, self.redo)

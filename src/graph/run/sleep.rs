@@ -173,11 +173,16 @@ impl Contents {
         }
     }
 
-    /// New bytes of an external resource, from the next frame on.
-    pub(super) fn update(&mut self, name: &str, bytes: &[u8]) {
+    /// New bytes of an external resource or of its part at an offset, from the next frame on.
+    pub(super) fn update(&mut self, name: &str, at: Option<u64>, bytes: &[u8]) {
         let Some(external) = EXTERNALS.iter().position(|e| e.name == name) else { return };
-        self.externals[external] = match EXTERNALS[external].kind {
-            ExternalKind::Uniform => bytes.to_vec(),
+        self.externals[external] = match (at, EXTERNALS[external].kind) {
+            // What was sent before is still in the other parts. The same bytes again count as others.
+            (Some(at), _) => {
+                let all = [&self.externals[external], at.to_ne_bytes().as_slice(), bytes].concat();
+                hashed(&all).to_ne_bytes().to_vec()
+            }
+            (None, ExternalKind::Uniform) => bytes.to_vec(),
             _ => hashed(bytes).to_ne_bytes().to_vec(),
         };
         let known = &self.externals[external];

@@ -4,8 +4,26 @@ use crate::vulkan::{Buffer, Commands, Image, vk};
 use std::sync::Arc;
 use vk::{AccessFlags2 as Access, PipelineStageFlags2 as Stages};
 
+/// New content of a buffer or of a part of it.
+#[derive(Clone, Debug)]
+pub struct Update {
+    /// Which.
+    pub buffer: Arc<Buffer>,
+    /// The part that begins at this byte, a multiple of 4; where absent, all that counts of it.
+    pub at: Option<u64>,
+    /// A multiple of 4 of them.
+    pub bytes: Vec<u8>,
+}
+
+impl Update {
+    /// All that counts, from the first byte on.
+    pub fn all(buffer: &Arc<Buffer>, bytes: Vec<u8>) -> Update {
+        Update { buffer: buffer.clone(), at: None, bytes }
+    }
+}
+
 /// Writes new content into buffers, after all that reads the old one and before all that reads the new one.
-pub(super) fn send(commands: &mut Commands<'_>, updates: &[(Arc<Buffer>, Vec<u8>)]) {
+pub(super) fn send(commands: &mut Commands<'_>, updates: &[Update]) {
     if !updates.is_empty() {
         let barrier = |src, src_access, dst, dst_access| {
             vk::MemoryBarrier2::default()
@@ -16,8 +34,8 @@ pub(super) fn send(commands: &mut Commands<'_>, updates: &[(Arc<Buffer>, Vec<u8>
         };
         let (all, copy) = (Stages::ALL_COMMANDS, Stages::ALL_TRANSFER);
         commands.barrier(Some(barrier(all, Access::empty(), copy, Access::TRANSFER_WRITE)), &[]);
-        for (buffer, bytes) in updates {
-            commands.update(buffer, bytes);
+        for Update { buffer, at, bytes } in updates {
+            commands.update(buffer, at.unwrap_or(0), bytes);
         }
         commands.barrier(Some(barrier(copy, Access::TRANSFER_WRITE, all, Access::MEMORY_READ)), &[]);
     }

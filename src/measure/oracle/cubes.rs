@@ -40,7 +40,7 @@ pub fn cubes(grid: &Grid, found: &Comparison, like: &Scene) -> Result<Scene, Str
             materials.push(Material { name: name.into(), base_color: Vec4::from((color, 1.0)), ..Material::default() });
         }
     }
-    let instance = Instance { name: "cells".into(), mesh: 0, transform: Mat4::IDENTITY, animation: None };
+    let instance = Instance { name: "cells".into(), mesh: 0, transform: Mat4::IDENTITY, mover: None };
     Ok(Scene {
         name: format!("{}-voxels", like.name),
         meshes: vec![mesh],

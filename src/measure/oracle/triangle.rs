@@ -23,8 +23,10 @@ pub struct Triangle {
 pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
     let origin = scene.origin().extend(0.0);
     let mut list = Vec::with_capacity(scene.triangle_count());
+    let meshes = scene.posed_meshes(time as f32);
     for (i, instance) in scene.instances.iter().enumerate() {
-        let Some(mesh) = scene.meshes.get(instance.mesh as usize) else { continue };
+        let number = instance.mesh as usize;
+        let (Some(mesh), Some(vertices)) = (scene.meshes.get(number), meshes.get(number)) else { continue };
         let mut model = scene.instance_transform(i, time as f32);
         model.w_axis -= origin;
         let turn = Mat3::from_mat4(model).inverse().transpose();
@@ -32,7 +34,7 @@ pub fn triangles_of(scene: &Scene, time: f64) -> Vec<Triangle> {
             let indices =
                 &mesh.indices[submesh.first_index as usize..(submesh.first_index + submesh.index_count) as usize];
             list.extend(indices.as_chunks::<3>().0.iter().map(|t| {
-                let v = t.map(|i| mesh.vertices[i as usize]);
+                let v = t.map(|i| vertices[i as usize]);
                 Triangle {
                     corners: v.map(|v| model.transform_point3(v.position.into()).as_dvec3()),
                     normals: v.map(|v| (turn * Vec3::from_array(v.normal)).normalize_or_zero()),

@@ -38,14 +38,9 @@ pub fn scene_hash(scene: &Scene) -> String {
     for instance in &scene.instances {
         hash.words(&[instance.mesh]);
         hash.floats(&instance.transform.to_cols_array());
-        let keys = instance.animation.as_ref().map_or(&[][..], |a| &a.keyframes);
-        hash.words(&[u32::from(instance.animation.as_ref().is_some_and(|a| a.repeat))]);
-        hash.count(keys.len());
-        for key in keys {
-            hash.floats(&[key.time]);
-            hash.floats(&key.translation.to_array());
-            hash.floats(&key.rotation.to_array());
-        }
+        // The place of what motion was, so that scenes without any keep the number that they had.
+        hash.words(&[0]);
+        hash.count(0);
     }
     hash.count(scene.lights.len());
     for light in &scene.lights {
@@ -78,6 +73,7 @@ pub fn scene_hash(scene: &Scene) -> String {
             hash.bytes(format!("{:?}", m.lookups).as_bytes());
         }
     }
+    hash_motion(scene, &mut hash);
     hash.floats(&scene.sky.to_array());
     // Scenes without a picture keep the number that they had before there were any.
     if let Some(environment) = &scene.environment {
@@ -87,6 +83,32 @@ pub fn scene_hash(scene: &Scene) -> String {
         hash.floats(&[environment.rotation]);
     }
     hex(&hash.0.finalize())
+}
+
+/// Nothing of scenes that stand still.
+fn hash_motion(scene: &Scene, hash: &mut Hash) {
+    for (i, instance) in (0u32..).zip(&scene.instances) {
+        if let Some(mover) = instance.mover {
+            hash.words(&[i, mover]);
+        }
+    }
+    for mover in &scene.movers {
+        hash.words(&[mover.parent.unwrap_or(u32::MAX)]);
+        hash.floats(&mover.placed.to_cols_array());
+        hash.bytes(format!("{:?}", mover.track).as_bytes());
+    }
+    for d in &scene.deformers {
+        hash.words(&[d.mesh]);
+        hash.bytes(&d.flat.iter().map(|f| u8::from(*f)).collect::<Vec<u8>>());
+        for v in &d.rest {
+            hash.floats(&[v.position.as_slice(), &v.normal, &v.tangent].concat());
+        }
+        let vectors = d.morphs.iter().flat_map(|m| [&m.positions, &m.normals, &m.tangents]).flatten();
+        hash.floats(&vectors.flat_map(|v| v.to_array()).collect::<Vec<f32>>());
+        hash.bytes(format!("{:?} {:?} {:?}", d.weights, d.period, d.joints).as_bytes());
+        hash.words(&d.influences.iter().flat_map(|i| [i.joint, i.weight.to_bits()]).collect::<Vec<u32>>());
+        hash.words(&d.influenced.iter().flat_map(|r| [r.start, r.end]).collect::<Vec<u32>>());
+    }
 }
 
 /// Bytes of a vertex before the second set and the colour, which most scenes do not have.

@@ -6,22 +6,22 @@ use std::path::Path;
 use glam::{Mat3, Quat, Vec3};
 use serde_json::{Value, json};
 
+use super::motion::{self, Clip};
 use super::textures::Textures;
-use super::{images, start, write_file};
-use crate::scene::{Animation, Camera, Light, LightKind, Material, Mesh, Scene, SceneError, Vertex};
+use super::{images, write_file};
+use crate::scene::{Camera, Light, LightKind, Material, Mesh, Scene, SceneError, Vertex};
 
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
 
 #[derive(Default)]
-struct Writer {
+pub(super) struct Writer {
     bytes: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
     nodes: Vec<Value>,
     roots: Vec<usize>,
-    samplers: Vec<Value>,
-    channels: Vec<Value>,
+    pub(super) clips: Vec<Clip>,
 }
 
 /// Writes a .glb, or a .gltf and a .bin beside it.
@@ -39,27 +39,28 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         written[i] = Some(meshes.len());
         meshes.push(writer.mesh(mesh));
     }
+    let movers = motion::movers(&mut writer, scene);
     for instance in &scene.instances {
         let Some(mesh) = written[instance.mesh as usize] else {
             continue;
         };
         let matrix = instance.transform.to_cols_array();
         let node = json!({ "name": instance.name, "mesh": mesh, "matrix": matrix });
-        match &instance.animation {
-            None => writer.root(node),
-            Some(animation) => writer.moving(node, &instance.name, animation),
-        }
+        writer.below(instance.mover.and_then(|m| movers.get(m as usize).copied().flatten()), node);
     }
     for (i, light) in scene.lights.iter().enumerate() {
-        writer.root(json!({
-            "name": light.name,
-            "translation": light.position.to_array(),
-            "rotation": Quat::from_rotation_arc(Vec3::NEG_Z, light.direction).to_array(),
-            "extensions": { "KHR_lights_punctual": { "light": i } },
-        }));
+        writer.below(
+            None,
+            json!({
+                "name": light.name,
+                "translation": light.position.to_array(),
+                "rotation": Quat::from_rotation_arc(Vec3::NEG_Z, light.direction).to_array(),
+                "extensions": { "KHR_lights_punctual": { "light": i } },
+            }),
+        );
     }
     for (i, (name, camera)) in scene.cameras.iter().enumerate() {
-        writer.root(camera_node(name, i, camera));
+        writer.below(None, camera_node(name, i, camera));
     }
     let mut textures = Textures::default();
     let colored = scene.meshes.iter().any(Mesh::has_colors);
@@ -79,9 +80,7 @@ pub(super) fn write(scene: &Scene, path: &Path, binary: bool) -> Result<(), Scen
         "extensionsUsed": extensions_used(scene),
         "extensions": { "KHR_lights_punctual": { "lights": scene.lights.iter().map(light).collect::<Vec<_>>() } },
     });
-    if !writer.channels.is_empty() {
-        root["animations"] = json!([{ "channels": writer.channels, "samplers": writer.samplers }]);
-    }
+    root["animations"] = json!(writer.clips.iter().map(Clip::json).collect::<Vec<_>>());
     // Arrays may be absent but not empty.
     if let Some(root) = root.as_object_mut() {
         root.retain(|_, value| value.as_array().is_none_or(|array| !array.is_empty()));
@@ -181,43 +180,27 @@ impl Writer {
         json!({ "name": mesh.name, "primitives": primitives })
     }
 
-    fn root(&mut self, node: Value) {
-        self.roots.push(self.nodes.len());
+    /// Adds a node below another one, or to the scene.
+    pub(super) fn below(&mut self, parent: Option<usize>, node: Value) -> usize {
+        let number = self.nodes.len();
         self.nodes.push(node);
+        match parent.and_then(|p| self.nodes.get_mut(p)) {
+            None => self.roots.push(number),
+            Some(parent) => match parent.get_mut("children").and_then(Value::as_array_mut) {
+                Some(children) => children.push(json!(number)),
+                None => parent["children"] = json!([number]),
+            },
+        }
+        number
     }
 
-    /// A node that moves, with the placed mesh below it.
-    fn moving(&mut self, child: Value, name: &str, animation: &Animation) {
-        let pose = start(Some(animation));
-        let (_, rotation, translation) = pose.to_scale_rotation_translation();
-        let parent = self.nodes.len() + 1;
-        self.nodes.push(child);
-        self.root(json!({
-            "name": format!("{name} motion"), "children": [parent - 1],
-            "translation": translation.to_array(), "rotation": rotation.to_array(),
-        }));
-        let keys = &animation.keyframes;
-        if keys.is_empty() {
-            return;
-        }
-        let times: Vec<f32> = keys.iter().map(|key| key.time).collect();
-        let translations: Vec<[f32; 3]> = keys.iter().map(|key| key.translation.to_array()).collect();
-        let rotations: Vec<[f32; 4]> = keys.iter().map(|key| key.rotation.to_array()).collect();
-        let (first, last) = (times[0], times[times.len() - 1]);
-        let input = self.floats(bytemuck::cast_slice(&times), "SCALAR", keys.len());
-        self.accessors[input]["min"] = json!([first]);
-        self.accessors[input]["max"] = json!([last]);
-        for (path, values, kind) in [
-            ("translation", bytemuck::cast_slice(&translations), "VEC3"),
-            ("rotation", bytemuck::cast_slice(&rotations), "VEC4"),
-        ] {
-            let output = self.floats(values, kind, keys.len());
-            self.channels.push(json!({ "sampler": self.samplers.len(), "target": { "node": parent, "path": path } }));
-            self.samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
-        }
+    /// Writes the smallest and the largest number of an accessor.
+    pub(super) fn limits(&mut self, accessor: usize, low: f32, high: f32) {
+        self.accessors[accessor]["min"] = json!([low]);
+        self.accessors[accessor]["max"] = json!([high]);
     }
 
-    fn floats(&mut self, values: &[u8], kind: &str, count: usize) -> usize {
+    pub(super) fn floats(&mut self, values: &[u8], kind: &str, count: usize) -> usize {
         let view = self.view(values, json!({}));
         self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "type": kind, "count": count }))
     }

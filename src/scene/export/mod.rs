@@ -2,22 +2,21 @@
 
 mod gltf;
 mod images;
+mod motion;
 mod obj;
 mod textures;
 
 use std::path::Path;
 
-use glam::Mat4;
-
 use super::warnings::Warnings;
-use super::{Animation, Lookups, Scene, SceneError};
+use super::{Lookups, Scene, SceneError};
 use crate::files;
 
 impl Scene {
     /// Writes an .obj (with .mtl and PNG textures beside it), .glb, or .gltf (with .bin).
     ///
-    /// OBJ holds the pose at time 0 and no lights or cameras. glTF holds everything but the sky and whether a
-    /// light casts shadows; a picture of the sky is written beside it, .sky.exr, as bright as it is here and not turned.
+    /// OBJ holds the pose at time 0 and no lights or cameras. glTF holds everything but the sky, whether a light casts
+    /// shadows, and skins and morph targets, which stand as at time 0; a picture of the sky is written beside it, .sky.exr, as bright as it is here and not turned.
     /// Each file appears whole or not at all. Returns warnings for content that the format cannot hold.
     pub fn export(&self, path: &Path) -> Result<Vec<String>, SceneError> {
         let extension = crate::files::ending(path);
@@ -32,7 +31,7 @@ impl Scene {
                     let sky = path.with_extension("sky.exr");
                     write_file(&sky, &images::sky_exr(environment, self.sky, &sky)?)?;
                 }
-                Ok(Vec::new())
+                Ok(self.left_out_of_gltf().lines(path.display()))
             }
             _ => Err(SceneError::ExportFormat { path: path.into() }),
         }
@@ -50,17 +49,22 @@ impl Scene {
                         .glb to keep them";
             warnings.add(what, &material.name);
         }
+        let moving = self.instances.iter().filter(|i| self.is_animated(i));
+        moving.for_each(|i| warnings.add("motion is left out of .obj files, which hold the pose at 0 s", &i.name));
+        warnings
+    }
+
+    fn left_out_of_gltf(&self) -> Warnings {
+        let mut warnings = Warnings::default();
+        for mesh in self.deformers.iter().filter_map(|d| self.meshes.get(d.mesh as usize)) {
+            warnings.add("skins and morph targets are written in their pose at 0 s", &mesh.name);
+        }
         warnings
     }
 }
 
 fn write_file(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
     Ok(files::write_whole(path, bytes)?)
-}
-
-/// The pose that a motion starts with.
-fn start(animation: Option<&Animation>) -> Mat4 {
-    animation.map_or(Mat4::IDENTITY, |animation| animation.at(0.0))
 }
 
 /// Names made unique by numbering the later ones.

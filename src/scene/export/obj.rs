@@ -5,8 +5,8 @@ use std::path::Path;
 
 use glam::{Mat3, Mat4, Vec3};
 
-use super::{images, start, unique_names, write_file};
-use crate::scene::{Instance, Material, Mesh, Scene, SceneError};
+use super::{images, unique_names, write_file};
+use crate::scene::{Material, Mesh, Scene, SceneError};
 
 /// Writes `path`, the .mtl beside it and PNG files into a folder `<stem>_textures`.
 pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
@@ -21,10 +21,10 @@ pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
     let mut obj = format!("mtllib {stem}.mtl\n");
     let names = unique_names(scene.instances.iter().map(|instance| instance.name.as_str()));
     let mut first_vertex = 1;
-    for (instance, name) in scene.instances.iter().zip(&names) {
+    for (i, (instance, name)) in scene.instances.iter().zip(&names).enumerate() {
         let mesh = &scene.meshes[instance.mesh as usize];
         // Writing into a string cannot fail.
-        let _ = write_instance(&mut obj, instance, mesh, name, &materials, first_vertex);
+        let _ = write_instance(&mut obj, &scene.instance_transform(i, 0.0), mesh, name, &materials, first_vertex);
         first_vertex += mesh.vertices.len();
     }
     write_file(path, obj.as_bytes())
@@ -32,14 +32,13 @@ pub(super) fn write(scene: &Scene, path: &Path) -> Result<(), SceneError> {
 
 fn write_instance(
     out: &mut String,
-    instance: &Instance,
+    world: &Mat4,
     mesh: &Mesh,
     name: &str,
     materials: &[String],
     first_vertex: usize,
 ) -> std::fmt::Result {
-    let world: Mat4 = start(instance.animation.as_ref()) * instance.transform;
-    let axes = Mat3::from_mat4(world);
+    let axes = Mat3::from_mat4(*world);
     let normals = axes.inverse().transpose();
     writeln!(out, "o {name}")?;
     for vertex in &mesh.vertices {

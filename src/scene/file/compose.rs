@@ -3,7 +3,10 @@
 use glam::{Mat4, Vec3};
 
 use super::ModelEntry;
-use crate::scene::{Environment, Instance, Scene};
+use crate::scene::{Environment, Instance, Mover, Scene};
+
+/// Moving frames of a scene: each placement of a model has its own.
+const MAX_MOVERS: usize = 1 << 20;
 
 /// A model whose meshes, materials and textures a scene has: it can be placed many times.
 pub(super) struct Added {
@@ -44,16 +47,42 @@ pub(super) fn add(scene: &mut Scene, mut model: Scene) -> Added {
         scene.meshes.push(mesh);
     }
     model.instances.iter_mut().for_each(|instance| instance.mesh += first_mesh);
+    let mut deformers = std::mem::take(&mut model.deformers);
+    if !deformers.is_empty() {
+        // Skins follow frames in the model's own space, whatever it is placed by.
+        let first = add_movers(scene, &model.movers, None, Mat4::IDENTITY);
+        for deformer in &mut deformers {
+            deformer.mesh += first_mesh;
+            deformer.joints.iter_mut().for_each(|joint| joint.mover = joint.mover.map(|m| m + first));
+        }
+        scene.deformers.append(&mut deformers);
+    }
     Added { model, bounds }
 }
 
 /// Adds instances, lights and cameras of a model, placed and moved as its entry says.
 pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
     let frame = entry.transform;
-    for mut instance in model.instances.iter().cloned() {
-        place(&mut instance, entry, &model.name, &mut scene.warnings);
-        scene.instances.push(instance);
+    let own = entry.motion.clone().map(|track| {
+        scene.movers.push(Mover { parent: None, placed: Mat4::IDENTITY, track });
+        scene.movers.len() as u32 - 1
+    });
+    let moves = model.instances.iter().any(|i| i.mover.is_some());
+    let fits = scene.movers.len() + model.movers.len() <= MAX_MOVERS;
+    if moves && !fits {
+        scene
+            .warnings
+            .push(format!("{}: it stands still, because there are more than {MAX_MOVERS} moving nodes", model.name));
     }
+    let first = (moves && fits).then(|| add_movers(scene, &model.movers, own, frame));
+    scene.instances.extend(model.instances.iter().enumerate().map(|(i, instance)| {
+        let placed = |transform| Instance { transform, mover: own, ..instance.clone() };
+        match (instance.mover, first) {
+            (Some(mover), Some(first)) => Instance { mover: Some(mover + first), ..instance.clone() },
+            (Some(_), None) => placed(frame * model.instance_transform(i, 0.0)),
+            (None, _) => placed(frame * instance.transform),
+        }
+    }));
     for mut light in model.lights.iter().filter(|_| entry.lights).cloned() {
         light.position = frame.transform_point3(light.position);
         light.direction = frame.transform_vector3(light.direction).normalize_or(light.direction);
@@ -70,24 +99,12 @@ pub(super) fn add_placed(scene: &mut Scene, model: &Scene, entry: &ModelEntry) {
     }
 }
 
-fn place(instance: &mut Instance, entry: &ModelEntry, model: &str, warnings: &mut Vec<String>) {
-    let frame = entry.transform;
-    let Some(own) = instance.animation.take() else {
-        instance.transform = frame * instance.transform;
-        instance.animation = entry.animation.clone();
-        return;
-    };
-    let placed = if entry.animation.is_none() { own.seen_from(frame) } else { None };
-    match placed {
-        Some((animation, size)) => {
-            instance.animation = Some(animation);
-            instance.transform = Mat4::from_scale(glam::Vec3::splat(size)) * instance.transform;
-        }
-        None => {
-            let why = "inside a moving or unevenly scaled model cannot be kept";
-            warnings.push(format!("{model}: the motion of '{}' {why}; it stays at its first pose", instance.name));
-            instance.transform = frame * own.at(0.0) * instance.transform;
-            instance.animation = entry.animation.clone();
-        }
-    }
+/// Adds a model's movers, those in its world moved with `parent` and placed by `frame`; the number of the first.
+fn add_movers(scene: &mut Scene, movers: &[Mover], parent: Option<u32>, frame: Mat4) -> u32 {
+    let first = scene.movers.len() as u32;
+    scene.movers.extend(movers.iter().map(|mover| match mover.parent {
+        Some(above) => Mover { parent: Some(above + first), ..mover.clone() },
+        None => Mover { parent, placed: frame * mover.placed, track: mover.track.clone() },
+    }));
+    first
 }

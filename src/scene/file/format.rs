@@ -1,5 +1,7 @@
 //! The shape of a scene file. Values are checked while they are read, so that errors have a line and a column.
 
+use std::sync::Arc;
+
 use glam::{Mat4, Quat, Vec3};
 use indexmap::IndexMap;
 use serde::Deserialize;
@@ -7,7 +9,7 @@ use serde::Deserialize;
 use super::parts::{InstanceEntry, Part};
 use crate::scene::environment::{ClearSky, check as check_environment};
 use crate::scene::shapes::patterns::Picture;
-use crate::scene::{Animation, Camera, Keyframe, Light, LightKind, MAX_COORDINATE, Material, builtin};
+use crate::scene::{Camera, Keyframe, Light, LightKind, MAX_COORDINATE, Material, Track, builtin};
 
 /// A whole scene file.
 #[derive(Debug, Default, Deserialize)]
@@ -103,7 +105,7 @@ pub(super) struct ModelEntry {
     pub file: Option<String>,
     pub builtin: Option<String>,
     pub transform: Mat4,
-    pub animation: Option<Animation>,
+    pub motion: Option<Arc<Track>>,
     pub lights: bool,
     pub lights_scale: Option<f32>,
     pub cameras: bool,
@@ -193,7 +195,7 @@ impl TryFrom<TransformFields> for Placed {
 /// The motion of keyframes.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "AnimationFields")]
-pub(super) struct Moves(pub Animation);
+pub(super) struct Moves(pub Arc<Track>);
 
 impl TryFrom<AnimationFields> for Moves {
     type Error = String;
@@ -227,7 +229,7 @@ impl TryFrom<AnimationFields> for Moves {
                 });
             }
         }
-        Ok(Moves(Animation { keyframes, repeat: fields.repeat }))
+        Ok(Moves(Arc::new(Track::rigid(&keyframes, fields.repeat))))
     }
 }
 
@@ -238,7 +240,7 @@ impl Default for ModelEntry {
             file: None,
             builtin: None,
             transform: Mat4::IDENTITY,
-            animation: None,
+            motion: None,
             lights: true,
             lights_scale: None,
             cameras: true,
@@ -263,7 +265,7 @@ impl TryFrom<ModelFields> for ModelEntry {
         }
         Ok(ModelEntry {
             transform: fields.transform.0,
-            animation: fields.animation.map(|moves| moves.0),
+            motion: fields.animation.map(|moves| moves.0),
             file: fields.file,
             builtin: fields.builtin,
             lights: fields.lights,

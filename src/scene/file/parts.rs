@@ -10,7 +10,7 @@ use super::format::{Moves, Placed, SceneFile};
 use crate::scene::mesh::{Dropped, RawMesh, prepare_all};
 use crate::scene::progress::Progress;
 use crate::scene::shapes::*;
-use crate::scene::{Instance, MAX_COORDINATE, Material, Scene};
+use crate::scene::{Instance, MAX_COORDINATE, Material, Mover, Scene};
 
 /// Parts and places that are walked through, for all meshes.
 const MAX_PARTS: u32 = 1 << 18;
@@ -189,7 +189,7 @@ pub(super) fn build(file: &SceneFile, progress: Progress) -> Result<Scene, Probl
             false => p,
         })?;
         room -= mesh.vertices.len() as u64;
-        raw.push(RawMesh { mesh, has_normals: true, has_tangents: false });
+        raw.push(RawMesh { mesh, sources: Vec::new(), has_normals: true, has_tangents: false });
     }
     let dropped;
     (scene.meshes, dropped) = prepare_all(raw, &scene.materials, progress).map_err(|m| wrong("", m))?;
@@ -207,12 +207,16 @@ fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
         name: name.into(),
         mesh,
         transform: Mat4::IDENTITY,
-        animation: None,
+        mover: None,
     }));
     for entry in &file.instances {
         let near = entry.meshes.first().map_or("", String::as_str);
         let wrong = |message: String| Problem { near: near.into(), message };
-        let (transform, moves) = (entry.transform.0, entry.animation.clone().map(|moves| moves.0));
+        let transform = entry.transform.0;
+        let mover = entry.animation.clone().map(|moves| {
+            scene.movers.push(Mover { parent: None, placed: Mat4::IDENTITY, track: moves.0 });
+            scene.movers.len() as u32 - 1
+        });
         let places = entry.at.clone().unwrap_or_default().list().map_err(wrong)?;
         if scene.instances.len() + places.len() * entry.meshes.len() > MAX_PLACES as usize {
             return Err(wrong(format!("more than {MAX_PLACES} instances")));
@@ -225,7 +229,7 @@ fn place_all(file: &SceneFile, scene: &mut Scene) -> Result<(), Problem> {
                 let name = if entry.at.is_some() { format!("{shown} {}", i + 1) } else { shown.clone() };
                 let moved = if turn == 0.0 { transform } else { transform * Mat4::from_rotation_y(turn) };
                 let transform = Mat4 { w_axis: (transform.transform_point3(at)).extend(1.0), ..moved };
-                scene.instances.push(Instance { name, mesh, transform, animation: moves.clone() });
+                scene.instances.push(Instance { name, mesh, transform, mover });
             }
         }
     }

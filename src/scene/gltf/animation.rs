@@ -1,134 +1,148 @@
-//! Translation and rotation tracks of nodes. Scales, weights and skins stay at rest, with a warning.
+//! Tracks of nodes and of the weights of their morph targets.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
-use ::gltf::Document;
-use ::gltf::animation::{Interpolation, Property};
+use ::gltf::animation::{self, Animation, Channel, Property};
+use ::gltf::{Document, Node};
 use glam::{Quat, Vec3, Vec4};
 
 use super::accessors;
 use super::buffers::Buffers;
 use crate::scene::warnings::Warnings;
+use crate::scene::{Curve, Interpolation, Rest, Track, Value};
 
-/// A sampled curve: times in order, one value each.
-#[derive(Clone, Debug)]
-pub(super) struct Curve<T> {
-    times: Vec<f32>,
-    values: Vec<T>,
+/// What moves in a document, by node.
+#[derive(Default)]
+pub(super) struct Tracks {
+    nodes: HashMap<usize, Track>,
+    /// By target, and when they start over.
+    weights: HashMap<usize, (Vec<Curve<f32>>, Option<f32>)>,
 }
 
-/// The motion of one node, in its parent's frame; a missing curve is the node's rest pose.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Track {
-    pub translation: Option<Curve<Vec3>>,
-    pub rotation: Option<Curve<Quat>>,
-}
+impl Tracks {
+    /// How a node moves, if it does.
+    pub fn of(&self, node: &Node) -> Option<Arc<Track>> {
+        let track = self.nodes.get(&node.index())?.clone();
+        let (translation, rotation, scale) = node.transform().decomposed();
+        let rest = Rest { translation: translation.into(), rotation: Quat::from_array(rotation), scale: scale.into() };
+        Some(Arc::new(Track { rest, ..track }))
+    }
 
-impl<T: Copy> Curve<T> {
-    fn at(&self, time: f32, mix: impl Fn(T, T, f32) -> T) -> T {
-        let next = self.times.partition_point(|&t| t <= time);
-        let (a, b) = (next.saturating_sub(1), next.min(self.times.len() - 1));
-        let span = self.times[b] - self.times[a];
-        let s = if span > 0.0 { ((time - self.times[a]) / span).clamp(0.0, 1.0) } else { 0.0 };
-        mix(self.values[a], self.values[b], s)
+    /// The weights of a node's morph targets, if they move.
+    pub fn weights(&self, node: &Node) -> Option<&(Vec<Curve<f32>>, Option<f32>)> {
+        self.weights.get(&node.index())
     }
 }
 
-impl Track {
-    /// All times at which either curve has a key.
-    pub fn times(&self) -> Vec<f32> {
-        let mut times: Vec<f32> = self.translation.iter().flat_map(|c| c.times.iter().copied()).collect();
-        times.extend(self.rotation.iter().flat_map(|c| c.times.iter().copied()));
-        times.sort_by(f32::total_cmp);
-        times.dedup();
-        times
-    }
-
-    /// Translation and rotation at a time, with the rest pose where there is no curve.
-    pub fn at(&self, time: f32, rest: (Vec3, Quat)) -> (Vec3, Quat) {
-        let translation = self.translation.as_ref().map_or(rest.0, |c| c.at(time, |a, b, s| a.lerp(b, s)));
-        let rotation = self.rotation.as_ref().map_or(rest.1, |c| c.at(time, |a, b, s| a.slerp(b, s)));
-        (translation, rotation)
-    }
-}
-
-/// The tracks of all animated nodes, by node index. A node that two animations move follows the first.
-pub(super) fn tracks(
-    document: &Document,
-    buffers: &Buffers,
-    warnings: &mut Warnings,
-) -> Result<HashMap<usize, Track>, String> {
-    let mut tracks: HashMap<usize, Track> = HashMap::new();
+/// All animations that move nothing which an earlier one moves: others are clips to choose from, and the first is played.
+pub(super) fn tracks(document: &Document, buffers: &Buffers, warnings: &mut Warnings) -> Result<Tracks, String> {
+    let mut tracks = Tracks::default();
     for animation in document.animations() {
+        let called = animation.name().map_or_else(|| format!("animation {}", animation.index()), str::to_owned);
+        if animation.channels().any(|c| tracks.moves(&c)) {
+            warnings.add("of several animations of one node the first is played", &called);
+            continue;
+        }
+        let period = period(&animation, buffers)?;
         for channel in animation.channels() {
-            let node = channel.target().node();
-            let called = node.name().map_or_else(|| format!("node {}", node.index()), str::to_owned);
-            let sampler = channel.sampler();
-            let name = format!("the animation of '{called}'");
-            let times: Vec<f32> = accessors::floats::<1>(&sampler.input(), buffers)?.into_iter().map(|[t]| t).collect();
-            if times.is_empty() || !times.is_sorted() || times.iter().any(|t| !t.is_finite()) {
-                return Err(format!("{name} has no times or times out of order"));
-            }
-            let interpolation = sampler.interpolation();
-            if interpolation == Interpolation::CubicSpline {
-                warnings.add("cubic splines of animations are played as straight lines", &called);
-            }
-            let track = tracks.entry(node.index()).or_default();
-            match channel.target().property() {
-                Property::Translation if track.translation.is_none() => {
-                    let values = accessors::floats::<3>(&sampler.output(), buffers)?;
-                    track.translation = Some(curve(&name, times, values, interpolation, Vec3::from_array)?);
-                }
-                Property::Rotation if track.rotation.is_none() => {
-                    let values = accessors::floats::<4>(&sampler.output(), buffers)?;
-                    // Numbers near the largest have no finite length, and all of zero turn nothing.
-                    let unit = |q: [f32; 4]| {
-                        let q = Vec4::from_array(q);
-                        (q / q.abs().max_element()).try_normalize().map_or(Quat::IDENTITY, Quat::from_vec4)
-                    };
-                    track.rotation = Some(curve(&name, times, values, interpolation, unit)?);
-                }
-                Property::Translation | Property::Rotation => {
-                    warnings.add("of several animations of one node the first is played", &called);
-                }
-                Property::Scale => warnings.add("animations of scale are left out: motion is rigid", &called),
-                Property::MorphTargetWeights => warnings.add("animations of morph weights are left out", &called),
-            }
+            tracks.add(&channel, period, buffers)?;
         }
     }
-    tracks.retain(|_, track| track.translation.is_some() || track.rotation.is_some());
     Ok(tracks)
 }
 
-fn curve<const N: usize, T: Copy>(
-    name: &str,
-    times: Vec<f32>,
-    values: Vec<[f32; N]>,
-    interpolation: Interpolation,
-    convert: impl Fn([f32; N]) -> T,
-) -> Result<Curve<T>, String> {
-    let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-    if values.len() != times.len() * per_key || values.iter().flatten().any(|v| !v.is_finite()) {
-        return Err(format!("{name} has {} values for {} times, or some are not finite", values.len(), times.len()));
+/// The time of its last key: all of its channels start over together.
+fn period(animation: &Animation, buffers: &Buffers) -> Result<Option<f32>, String> {
+    let mut last = 0f32;
+    for sampler in animation.samplers() {
+        let times = accessors::floats::<1>(&sampler.input(), buffers)?;
+        last = times.iter().map(|[t]| *t).filter(|t| t.is_finite()).fold(last, f32::max);
     }
-    // A cubic key is an in-tangent, the value and an out-tangent.
-    let mut curve = Curve { values: values.chunks(per_key).map(|k| convert(k[per_key / 2])).collect(), times };
-    if interpolation == Interpolation::Step {
-        hold(&mut curve);
-    }
-    Ok(curve)
+    Ok((last > 0.0).then_some(last))
 }
 
-/// Steps as lines: each value is repeated just before the next key.
-fn hold<T: Copy>(curve: &mut Curve<T>) {
-    let (mut times, mut values) = (Vec::new(), Vec::new());
-    for (i, (&time, &value)) in curve.times.iter().zip(&curve.values).enumerate() {
-        times.push(time);
-        values.push(value);
-        if let Some(&next) = curve.times.get(i + 1) {
-            times.push(next.next_down().max(time));
-            values.push(value);
+impl Tracks {
+    fn moves(&self, channel: &Channel) -> bool {
+        let node = channel.target().node().index();
+        let track = self.nodes.get(&node);
+        match channel.target().property() {
+            Property::Translation => track.is_some_and(|t| t.translation.is_some()),
+            Property::Rotation => track.is_some_and(|t| t.rotation.is_some()),
+            Property::Scale => track.is_some_and(|t| t.scale.is_some()),
+            Property::MorphTargetWeights => self.weights.contains_key(&node),
         }
     }
-    *curve = Curve { times, values };
+
+    fn add(&mut self, channel: &Channel, period: Option<f32>, buffers: &Buffers) -> Result<(), String> {
+        let (node, sampler) = (channel.target().node(), channel.sampler());
+        let name = format!("the animation of node {}", node.index());
+        let times = accessors::floats::<1>(&sampler.input(), buffers)?.into_iter().map(|[t]| t).collect();
+        let keys = Keys { name, times, interpolation: sampler.interpolation() };
+        let output = sampler.output();
+        if channel.target().property() == Property::MorphTargetWeights {
+            let values = accessors::floats::<1>(&output, buffers)?.into_iter().map(|[w]| w).collect();
+            let targets = node.mesh().and_then(|m| m.primitives().map(|p| p.morph_targets().len()).max());
+            self.weights.insert(node.index(), (keys.weights(values, targets.unwrap_or(0))?, period));
+            return Ok(());
+        }
+        let track = self.nodes.entry(node.index()).or_default();
+        track.period = period;
+        match channel.target().property() {
+            Property::Translation => {
+                track.translation = Some(keys.curve(accessors::floats::<3>(&output, buffers)?, Vec3::from_array)?);
+            }
+            Property::Scale => {
+                track.scale = Some(keys.curve(accessors::floats::<3>(&output, buffers)?, Vec3::from_array)?);
+            }
+            _ => track.rotation = Some(keys.rotation(accessors::floats::<4>(&output, buffers)?)?),
+        }
+        Ok(())
+    }
+}
+
+struct Keys {
+    name: String,
+    times: Vec<f32>,
+    interpolation: animation::Interpolation,
+}
+
+impl Keys {
+    fn curve<T: Value, N>(self, values: Vec<N>, convert: impl Fn(N) -> T) -> Result<Curve<T>, String> {
+        let Keys { name, times, interpolation } = self;
+        let interpolation = match interpolation {
+            animation::Interpolation::Step => Interpolation::Step,
+            animation::Interpolation::Linear => Interpolation::Linear,
+            animation::Interpolation::CubicSpline => Interpolation::Cubic,
+        };
+        let counts = format!("{} values for {} times", values.len(), times.len());
+        let values = values.into_iter().map(convert).collect();
+        Curve::new(times, values, interpolation)
+            .ok_or_else(|| format!("{name} has {counts}, times out of order, or numbers that are not finite"))
+    }
+
+    fn rotation(self, values: Vec<[f32; 4]>) -> Result<Curve<Quat>, String> {
+        // Tangents of cubic curves are no rotations.
+        let cubic = self.interpolation == animation::Interpolation::CubicSpline;
+        self.curve(values, |q| if cubic { Quat::from_array(q) } else { unit(q) })
+    }
+
+    /// One curve a target, of values key by key.
+    fn weights(self, values: Vec<f32>, targets: usize) -> Result<Vec<Curve<f32>>, String> {
+        let of_target = |target: usize| {
+            let values: Vec<f32> = values.iter().skip(target).step_by(targets).copied().collect();
+            let Keys { name, times, interpolation } = &self;
+            Keys { name: name.clone(), times: times.clone(), interpolation: *interpolation }.curve(values, |w| w)
+        };
+        (0..targets).map(of_target).collect()
+    }
+}
+
+/// Numbers near the largest have no finite length, and all of zero turn nothing; what is not finite stays so.
+fn unit(q: [f32; 4]) -> Quat {
+    let q = Vec4::from_array(q);
+    if !q.is_finite() {
+        return Quat::from_vec4(q);
+    }
+    (q / q.abs().max_element()).try_normalize().map_or(Quat::IDENTITY, Quat::from_vec4)
 }

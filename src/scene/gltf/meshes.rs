@@ -1,5 +1,7 @@
 //! Meshes: each primitive is read and repaired by itself, then becomes a submesh.
 
+use std::collections::HashMap;
+
 use ::gltf::accessor::Dimensions;
 use ::gltf::mesh::{Mode, Primitive};
 use ::gltf::{Document, Semantic};
@@ -9,15 +11,16 @@ use rayon::prelude::*;
 use super::accessors;
 use super::buffers::Buffers;
 use super::placing::{UvSource, UvSources};
-use crate::scene::mesh::{Dropped, RawMesh, flat, prepare_all};
+use super::skins::Rig;
+use crate::scene::mesh::{Dropped, RawMesh, flat, flatten, prepare_rigged, unweld};
 use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Material, Mesh, Submesh, Vertex};
 
 /// Vertices and indices that any file may have.
-const MANY: usize = 1 << 24;
+pub(super) const MANY: usize = 1 << 24;
 
-/// One mesh per mesh of the file, in order.
+/// One mesh per mesh of the file, in order; and what moves the vertices of those that can deform.
 pub(super) fn read(
     document: &Document,
     buffers: &Buffers,
@@ -25,7 +28,8 @@ pub(super) fn read(
     uv_sources: &[UvSources],
     warnings: &mut Warnings,
     progress: Progress,
-) -> Result<(Vec<Mesh>, Dropped), String> {
+) -> Result<(Vec<Mesh>, HashMap<usize, Rig>, Dropped), String> {
+    let mut primitive_rigs = Vec::new();
     let mut owners = Vec::new();
     let mut primitives = Vec::new();
     let mut meshes = Vec::new();
@@ -49,31 +53,49 @@ pub(super) fn read(
                 continue;
             }
             let read = read_primitive(&primitive, buffers, &name, material, &uv_sources[material]);
-            let raw = read.map_err(|problem| format!("mesh '{name}': {problem}"))?;
+            let mut raw = read.map_err(|problem| format!("mesh '{name}': {problem}"))?;
             room = room.checked_sub(raw.mesh.vertices.len() + raw.mesh.indices.len()).ok_or_else(|| {
                 format!("mesh '{name}': with it there are many more vertices than the file holds bytes")
             })?;
+            let rig = Rig::read(&primitive, buffers, raw.mesh.vertices.len(), &mut room);
+            let rig = rig.map_err(|problem| format!("mesh '{name}': {problem}"))?;
+            if rig.is_some() {
+                raw.sources = (0..raw.mesh.vertices.len() as u32).collect();
+            }
+            let flat = !raw.has_normals;
+            primitive_rigs.push((rig, flat));
             primitives.push(raw);
             owners.push(mesh.index());
             if primitive.get(&Semantic::Colors(1)).is_some() {
                 warnings.add("COLOR_1 and further colours of vertices are left out", &name);
-            }
-            if primitive.morph_targets().next().is_some() {
-                warnings.add("morph targets stay at rest", &name);
             }
         }
         meshes.push(Mesh { name, ..Mesh::default() });
     }
     // glTF 2.0, 3.7.2.1: without normals they are flat.
     primitives.par_iter_mut().filter(|raw| !raw.has_normals).for_each(|raw| {
-        flat(&mut raw.mesh);
+        match raw.sources.is_empty() {
+            true => flat(&mut raw.mesh),
+            // Triangles that lie in one plane now may not in another pose.
+            false => {
+                unweld(raw);
+                flatten(&mut raw.mesh.vertices);
+            }
+        }
         raw.has_normals = true;
     });
-    let (prepared, dropped) = prepare_all(primitives, materials, progress)?;
-    for (owner, primitive) in owners.into_iter().zip(prepared) {
+    let (prepared, dropped) = prepare_rigged(primitives, materials, progress)?;
+    let mut rigs: HashMap<usize, Rig> = HashMap::new();
+    for ((owner, (primitive, sources)), (rig, flat)) in owners.into_iter().zip(prepared).zip(primitive_rigs) {
+        let before = meshes[owner].vertices.len();
+        let sources = if rig.is_some() { sources } else { vec![0; primitive.vertices.len()] };
+        if rig.is_some() || rigs.contains_key(&owner) {
+            let flat = flat && rig.is_some();
+            rigs.entry(owner).or_default().append(before, rig.as_ref(), &sources, flat);
+        }
         append(&mut meshes[owner], primitive)?;
     }
-    Ok((meshes, dropped))
+    Ok((meshes, rigs, dropped))
 }
 
 fn append(mesh: &mut Mesh, primitive: Mesh) -> Result<(), String> {
@@ -134,7 +156,12 @@ fn read_primitive(
     let submesh = Submesh { first_index: 0, index_count: indices.len() as u32, material: material as u32 };
     let mesh = Mesh { name: name.into(), vertices, indices, submeshes: vec![submesh] };
     // Tangents without normals are ignored.
-    Ok(RawMesh { mesh, has_normals: normals.is_some(), has_tangents: normals.is_some() && tangents.is_some() })
+    Ok(RawMesh {
+        mesh,
+        sources: Vec::new(),
+        has_normals: normals.is_some(),
+        has_tangents: normals.is_some() && tangents.is_some(),
+    })
 }
 
 /// Texture coordinates of a set, with its transform; none if the primitive has no such set.

@@ -1,4 +1,4 @@
-//! glTF 2.0, text or binary: the node hierarchy with its meshes, lights and cameras, and rigid animation.
+//! glTF 2.0, text or binary: the node hierarchy with its meshes, lights and cameras, animation, skins and morph targets.
 //!
 //! Numbers of KHR_lights_punctual are taken as they are, lux as irradiance and candela as radiant intensity:
 //! there is no division by 683 lm/W, because few exporters write photometric units. Intensities that look photometric
@@ -17,6 +17,7 @@ mod means;
 mod meshes;
 mod nodes;
 mod placing;
+mod skins;
 mod supported;
 
 use std::path::Path;
@@ -46,11 +47,15 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     progress.step("materials", 0.2)?;
     let (materials, uv_sources, requests) = materials::read(&document, &buffers, folder, &mut warnings, progress)?;
     progress.step("meshes", 0.3)?;
-    let (meshes, dropped) =
+    let (meshes, rigs, dropped) =
         meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings, progress).map_err(fail)?;
     progress.step("nodes", 0.6)?;
     let tracks = animation::tracks(&document, &buffers, &mut warnings).map_err(fail)?;
-    let mut scene = nodes::place(&document, &buffers, &tracks, &mut warnings).map_err(fail)?;
+    let placed = nodes::place(&document, &buffers, &tracks, &rigs, &mut warnings).map_err(fail)?;
+    let nodes::Placed { mut scene, frames, deforming } = placed;
+    scene.meshes = meshes;
+    let parts = (&rigs, &tracks, &frames);
+    skins::attach(&mut scene, &deforming, parts, (&document, &buffers), &mut warnings).map_err(fail)?;
     lights::warn_of_units(&document, &scene.lights, &mut warnings);
     // Warnings so far know only parts of the file; each must name the file itself.
     let name = path.display().to_string();
@@ -59,7 +64,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     progress.step("textures", 0.7)?;
     let (textures, texture_warnings) = requests.load(progress)?;
     scene.warnings.extend(texture_warnings);
-    (scene.meshes, scene.materials, scene.textures) = (meshes, materials, textures);
+    (scene.materials, scene.textures) = (materials, textures);
     scene.instances.retain(|instance| !scene.meshes[instance.mesh as usize].submeshes.is_empty());
     Ok(scene)
 }

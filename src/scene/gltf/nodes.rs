@@ -4,140 +4,136 @@ use std::collections::HashMap;
 
 use ::gltf::camera::Projection;
 use ::gltf::{Document, Node};
-use glam::{Mat4, Quat, Vec3};
+use glam::{Mat4, Vec3};
 
-use super::animation::Track;
+use super::animation::Tracks;
 use super::buffers::Buffers;
 use super::instancing::{self, MAX_INSTANCES};
 use super::lights;
+use super::skins::Rig;
 use crate::scene::defaults::least_reach;
 use crate::scene::warnings::Warnings;
-use crate::scene::{Animation, Camera, Instance, Keyframe, Scene};
+use crate::scene::{Camera, Instance, Mover, Scene};
 
 /// A node to visit: what is above it.
 struct Visit<'a> {
     node: Node<'a>,
-    parent: Mat4,
-    /// The nearest moving node above (or here) and what lies between it and this node's parent.
-    moving: Option<Moving>,
+    /// The frame that its parent moves with.
+    mover: Option<u32>,
+    /// Where its parent is in that.
+    above: Mat4,
     visible: bool,
 }
 
-#[derive(Clone)]
-struct Moving {
-    animation: Animation,
-    below: Mat4,
+/// Where nodes are, by number: in which moving frame, and where there.
+pub(super) type Frames = HashMap<usize, (Option<u32>, Mat4)>;
+
+/// What the hierarchy holds, without meshes.
+#[derive(Default)]
+pub(super) struct Placed<'a> {
+    pub scene: Scene,
+    pub frames: Frames,
+    /// Instances whose node has a skin or morph targets.
+    pub deforming: Vec<(usize, Node<'a>)>,
 }
 
-/// Keyframes of all instances: each below a moving node has a copy.
-const MAX_KEYFRAMES: usize = 1 << 22;
-
 /// Instances, lights and cameras of the default scene (of the first, where none is the default).
-pub(super) fn place(
-    document: &Document,
+pub(super) fn place<'a>(
+    document: &'a Document,
     buffers: &Buffers,
-    tracks: &HashMap<usize, Track>,
+    tracks: &Tracks,
+    rigs: &HashMap<usize, Rig>,
     warnings: &mut Warnings,
-) -> Result<Scene, String> {
-    let mut placed = Scene::default();
+) -> Result<Placed<'a>, String> {
+    let mut placed = Placed::default();
     let Some(root) = document.default_scene().or_else(|| document.scenes().next()) else {
         warnings.add("the file has no scene", "");
         return Ok(placed);
     };
     let mut seen = vec![false; document.nodes().count()];
-    let top = |node| Visit { node, parent: Mat4::IDENTITY, moving: None, visible: true };
+    let top = |node| Visit { node, mover: None, above: Mat4::IDENTITY, visible: true };
     let mut stack: Vec<Visit> = root.nodes().map(top).collect();
     stack.reverse();
-    let mut keyframes = 0;
     while let Some(visit) = stack.pop() {
-        let node = &visit.node;
+        let Visit { node, mut mover, above, visible } = visit;
         if std::mem::replace(&mut seen[node.index()], true) {
             return Err(format!("node {} is its own ancestor or has two parents. Export it again", node.index()));
         }
         let name = node.name().map_or_else(|| format!("node {}", node.index()), str::to_owned);
-        let local = Mat4::from_cols_array_2d(&node.transform().matrix());
+        let mut local = above * Mat4::from_cols_array_2d(&node.transform().matrix());
         if !local.is_finite() {
             return Err(format!("node '{name}' has a transform that is not finite. Export it again"));
         }
-        let world = visit.parent * local;
-        let moving = match (tracks.get(&node.index()), visit.moving) {
-            (Some(_), Some(above)) => {
-                warnings.add("motion inside of moving nodes is left out", &name);
-                Some(Moving { below: above.below * local, ..above })
-            }
-            (None, Some(above)) => Some(Moving { below: above.below * local, ..above }),
-            (Some(track), None) => start_moving(node, visit.parent, track).or_else(|| {
-                warnings.add("nodes that move inside of unevenly scaled ones stay at rest", &name);
-                None
-            }),
-            (None, None) => None,
-        };
-        if node.skin().is_some() {
-            warnings.add("skins stay in their bind pose", &name);
+        if let Some(track) = tracks.of(&node) {
+            placed.scene.movers.push(Mover { parent: mover, placed: above, track });
+            (mover, local) = (Some(placed.scene.movers.len() as u32 - 1), Mat4::IDENTITY);
         }
-        let visible = visit.visible && is_visible(node);
+        placed.frames.insert(node.index(), (mover, local));
+        let visible = visible && is_visible(&node);
         if !visible && (node.mesh().is_some() || node.light().is_some()) {
             warnings.add("invisible nodes (KHR_node_visibility) are left out", &name);
         }
-        if let Some(mesh) = node.mesh().filter(|_| visible) {
-            let (transform, animation) = match &moving {
-                Some(moving) => (moving.below, Some(moving.animation.clone())),
-                None => (world, None),
-            };
-            let keys = animation.as_ref().map_or(&[][..], |a: &Animation| &a.keyframes);
-            if !keys.iter().all(|k| k.translation.is_finite() && k.rotation.is_finite()) {
-                return Err(format!("node '{name}' has a motion that is not finite. Export it again"));
-            }
-            let places = instancing::places(node, document, buffers).map_err(|why| format!("node '{name}': {why}"))?;
-            let copies = places.as_ref().map_or(1, Vec::len);
-            keyframes += keys.len().saturating_mul(copies);
-            if keyframes > MAX_KEYFRAMES || placed.instances.len() + copies > MAX_INSTANCES {
-                let most = format!("{MAX_INSTANCES} instances, or its moving ones more than {MAX_KEYFRAMES} keyframes");
-                return Err(format!("it has more than {most}"));
-            }
-            let mesh = mesh.index() as u32;
-            match places {
-                None => placed.instances.push(Instance { name: name.clone(), mesh, transform, animation }),
-                Some(places) => placed.instances.extend((1..).zip(places).map(|(i, place)| Instance {
-                    name: format!("{name} {i}"),
-                    mesh,
-                    transform: transform * place,
-                    animation: animation.clone(),
-                })),
-            }
+        if visible {
+            add_instances(&mut placed, &node, (mover, local), &name, rigs, (document, buffers))?;
         }
+        // Lights and cameras stand where they are at the start.
+        let moves = mover.is_some() && (node.light().is_some() || node.camera().is_some());
+        if moves {
+            warnings.add("lights and cameras of moving nodes stay where they are at 0 s", &name);
+        }
+        let start = if moves { placed.scene.moved(mover, local, 0.0) } else { local };
         if let Some(light) = node.light().filter(|_| visible) {
-            match lights::read(&light, &name, world, warnings) {
-                Ok(light) => placed.lights.push(light),
+            match lights::read(&light, &name, start, warnings) {
+                Ok(light) => placed.scene.lights.push(light),
                 Err(why) => warnings.add(format!("lights that have {why} are left out"), &name),
             }
         }
         if let Some(camera) = node.camera() {
-            match read_camera(&camera.projection(), world) {
+            match read_camera(&camera.projection(), start) {
                 Some(view) => {
-                    placed.cameras.insert(camera.name().unwrap_or(&name).to_owned(), view);
+                    placed.scene.cameras.insert(camera.name().unwrap_or(&name).to_owned(), view);
                 }
                 None => warnings.add("cameras that are no usable perspective are left out", &name),
             }
         }
-        let children: Vec<Visit> =
-            node.children().map(|node| Visit { node, parent: world, moving: moving.clone(), visible }).collect();
+        let children: Vec<Visit> = node.children().map(|node| Visit { node, mover, above: local, visible }).collect();
         stack.extend(children.into_iter().rev());
     }
     Ok(placed)
 }
 
-/// The rigid motion of a node in the world; none below an uneven scale.
-fn start_moving(node: &Node, parent: Mat4, track: &Track) -> Option<Moving> {
-    let (translation, rotation, scale) = node.transform().decomposed();
-    let rest = (Vec3::from_array(translation), Quat::from_array(rotation));
-    let pose = |time: f32| {
-        let (translation, rotation) = track.at(time, rest);
-        Keyframe { time, translation, rotation }
-    };
-    let own = Animation { keyframes: track.times().into_iter().map(pose).collect(), repeat: true };
-    let (animation, size) = own.seen_from(parent)?;
-    Some(Moving { animation, below: Mat4::from_scale(Vec3::from_array(scale) * size) })
+/// The instances of a node's mesh in a moving frame or in the world.
+fn add_instances<'a>(
+    placed: &mut Placed<'a>,
+    node: &Node<'a>,
+    (mut mover, mut transform): (Option<u32>, Mat4),
+    name: &str,
+    rigs: &HashMap<usize, Rig>,
+    (document, buffers): (&Document, &Buffers),
+) -> Result<(), String> {
+    let Some(mesh) = node.mesh() else { return Ok(()) };
+    let places = instancing::places(node, document, buffers).map_err(|why| format!("node '{name}': {why}"))?;
+    let instances = &mut placed.scene.instances;
+    if instances.len() + places.as_ref().map_or(1, Vec::len) > MAX_INSTANCES {
+        return Err(format!("it has more than {MAX_INSTANCES} instances"));
+    }
+    let first = instances.len();
+    // glTF 2.0, 3.7.3.3: joints alone place what has a skin.
+    if node.skin().is_some() && rigs.contains_key(&mesh.index()) {
+        (mover, transform) = (None, Mat4::IDENTITY);
+    }
+    let mesh = mesh.index() as u32;
+    let instance = |name, transform| Instance { name, mesh, transform, mover };
+    match places {
+        None => instances.push(instance(name.into(), transform)),
+        Some(places) => {
+            instances.extend((1..).zip(places).map(|(i, place)| instance(format!("{name} {i}"), transform * place)))
+        }
+    }
+    if rigs.contains_key(&(mesh as usize)) {
+        placed.deforming.extend((first..placed.scene.instances.len()).map(|i| (i, node.clone())));
+    }
+    Ok(())
 }
 
 /// KHR_node_visibility.

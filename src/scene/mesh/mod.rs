@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 pub use closed::Side;
-pub(super) use normals::{corner_angles, flat, is_creased, point_key};
+pub(super) use normals::{corner_angles, flat, flatten, is_creased, point_key};
 
 use super::progress::Progress;
 use super::{Material, Mesh, Vertex};
@@ -19,6 +19,8 @@ use super::{Material, Mesh, Vertex};
 #[derive(Clone, Debug, Default)]
 pub(super) struct RawMesh {
     pub mesh: Mesh,
+    /// Of a mesh that deforms: what each vertex was read as. Vertices of different sources stay apart.
+    pub sources: Vec<u32>,
     pub has_normals: bool,
     pub has_tangents: bool,
 }
@@ -49,23 +51,35 @@ pub(super) fn prepare_all(
     materials: &[Material],
     progress: Progress,
 ) -> Result<(Vec<Mesh>, Dropped), String> {
+    let (prepared, dropped) = prepare_rigged(raw, materials, progress)?;
+    Ok((prepared.into_iter().map(|(mesh, _)| mesh).collect(), dropped))
+}
+
+/// [`prepare_all`], with the sources of vertices.
+pub(super) fn prepare_rigged(
+    raw: Vec<RawMesh>,
+    materials: &[Material],
+    progress: Progress,
+) -> Result<(Vec<(Mesh, Vec<u32>)>, Dropped), String> {
     let one = |raw| if progress.stopped() { Err(String::new()) } else { prepare(raw, materials) };
     let prepared: Result<Vec<_>, String> = raw.into_par_iter().map(one).collect();
     let mut total = Dropped::default();
     let mut meshes = Vec::new();
-    for (mesh, dropped) in prepared? {
+    for (mesh, sources, dropped) in prepared? {
         total.not_finite += dropped.not_finite;
         total.no_area += dropped.no_area;
-        meshes.push(mesh);
+        meshes.push((mesh, sources));
     }
     Ok((meshes, total))
 }
 
-fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Dropped), String> {
-    let RawMesh { mut mesh, has_normals, has_tangents } = raw;
+fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Vec<u32>, Dropped), String> {
+    let RawMesh { mut mesh, mut sources, has_normals, has_tangents } = raw;
     check_indices(&mesh, materials.len())?;
-    let dropped = drop_bad_triangles(&mut mesh);
-    drop_unused_vertices(&mut mesh);
+    // A triangle without area may have one in another pose.
+    let deforms = !sources.is_empty();
+    let dropped = drop_bad_triangles(&mut mesh, deforms);
+    drop_unused_vertices(&mut mesh, &mut sources);
     clear_bad_attributes(&mut mesh);
     if has_normals {
         normals::repair(&mut mesh);
@@ -77,11 +91,11 @@ fn prepare(raw: RawMesh, materials: &[Material]) -> Result<(Mesh, Dropped), Stri
     if has_tangents {
         tangents::repair(&mut mesh);
     } else if let Some(lookup) = normal_map {
-        tangents::generate(&mut mesh, lookup.second_set);
+        tangents::generate(&mut mesh, &mut sources, lookup.second_set);
     } else {
         tangents::any(&mut mesh);
     }
-    Ok((mesh, dropped))
+    Ok((mesh, sources, dropped))
 }
 
 fn check_indices(mesh: &Mesh, materials: usize) -> Result<(), String> {
@@ -104,7 +118,7 @@ fn check_indices(mesh: &Mesh, materials: usize) -> Result<(), String> {
 }
 
 /// Rewrites indices and submeshes without the triangles that have no place or no area.
-fn drop_bad_triangles(mesh: &mut Mesh) -> Dropped {
+fn drop_bad_triangles(mesh: &mut Mesh, keep_flat: bool) -> Dropped {
     let mut dropped = Dropped::default();
     let mut kept = Vec::with_capacity(mesh.indices.len());
     for submesh in &mut mesh.submeshes {
@@ -114,7 +128,7 @@ fn drop_bad_triangles(mesh: &mut Mesh) -> Dropped {
             let corner = triangle.map(|i| DVec3::from_array(mesh.vertices[i as usize].position.map(f64::from)));
             if corner.iter().any(|p| !p.is_finite()) {
                 dropped.not_finite += 1;
-            } else if !has_area(corner) {
+            } else if !keep_flat && !has_area(corner) {
                 dropped.no_area += 1;
             } else {
                 kept.extend_from_slice(triangle);
@@ -136,7 +150,7 @@ fn has_area(corner: [DVec3; 3]) -> bool {
 }
 
 /// Removes vertices that no triangle uses, so that bounds and uploads hold only what is seen.
-fn drop_unused_vertices(mesh: &mut Mesh) {
+fn drop_unused_vertices(mesh: &mut Mesh, sources: &mut Vec<u32>) {
     let mut used = vec![false; mesh.vertices.len()];
     for &i in &mesh.indices {
         used[i as usize] = true;
@@ -151,6 +165,8 @@ fn drop_unused_vertices(mesh: &mut Mesh) {
         kept.push(*vertex);
     }
     mesh.vertices = kept;
+    let mut kept = used.iter();
+    sources.retain(|_| kept.next().copied().unwrap_or(true));
     for i in &mut mesh.indices {
         *i = new_index[*i as usize];
     }
@@ -176,18 +192,36 @@ fn clear_bad_attributes(mesh: &mut Mesh) {
 
 /// Shared vertices from one vertex per corner; equal means equal bits.
 pub(super) fn weld(corners: &[Vertex]) -> (Vec<Vertex>, Vec<u32>) {
+    let (vertices, indices, _) = weld_sources(corners, &[]);
+    (vertices, indices)
+}
+
+/// [`weld`] of corners with sources, which must be equal too; an empty list is one source. With the sources of vertices.
+pub(super) fn weld_sources(corners: &[Vertex], sources: &[u32]) -> (Vec<Vertex>, Vec<u32>, Vec<u32>) {
     const BYTES: usize = size_of::<Vertex>();
-    let mut seen: HashMap<[u8; BYTES], u32> = HashMap::with_capacity(corners.len() / 3);
-    let mut vertices = Vec::new();
-    let indices = corners.iter().map(|corner| {
-        let bytes: [u8; BYTES] = bytemuck::cast(*corner);
-        *seen.entry(bytes).or_insert_with(|| {
+    let mut seen: HashMap<([u8; BYTES], Option<u32>), u32> = HashMap::with_capacity(corners.len() / 3);
+    let (mut vertices, mut kept) = (Vec::new(), Vec::new());
+    let indices = corners.iter().enumerate().map(|(i, corner)| {
+        let (bytes, source): ([u8; BYTES], _) = (bytemuck::cast(*corner), sources.get(i).copied());
+        *seen.entry((bytes, source)).or_insert_with(|| {
             vertices.push(*corner);
+            kept.extend(source);
             vertices.len() as u32 - 1
         })
     });
     let indices = indices.collect();
-    (vertices, indices)
+    (vertices, indices, kept)
+}
+
+/// A vertex of its own for each corner.
+pub(super) fn unweld(raw: &mut RawMesh) {
+    let RawMesh { mesh, sources, .. } = raw;
+    let corners = mesh.indices.iter().map(|&i| mesh.vertices.get(i as usize).copied());
+    // A mesh with indices outside of it is left to `prepare_all`.
+    let Some(corners) = corners.collect::<Option<Vec<Vertex>>>() else { return };
+    *sources = mesh.indices.iter().filter_map(|&i| sources.get(i as usize).copied()).collect();
+    mesh.indices = (0..corners.len() as u32).collect();
+    mesh.vertices = corners;
 }
 
 /// Unit normal of a triangle with area, by its winding.

@@ -38,11 +38,16 @@ pub(super) fn repair(mesh: &mut Mesh) {
 pub(in crate::scene) fn flat(mesh: &mut Mesh) {
     let corners = mesh.indices.iter().map(|&i| mesh.vertices.get(i as usize).copied());
     let Some(mut corners) = corners.collect::<Option<Vec<Vertex>>>() else { return };
+    flatten(&mut corners);
+    (mesh.vertices, mesh.indices) = weld(&corners);
+}
+
+/// Gives three corners each the normal of their face.
+pub(in crate::scene) fn flatten(corners: &mut [Vertex]) {
     for triangle in corners.as_chunks_mut::<3>().0 {
         let normal = face_normal(triangle.map(|v| v.position)).to_array();
         triangle.iter_mut().for_each(|corner| corner.normal = normal);
     }
-    (mesh.vertices, mesh.indices) = weld(&corners);
 }
 
 /// Smooth normals weighted by corner angle, over faces that meet at 60 degrees or less.

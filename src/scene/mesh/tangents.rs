@@ -1,6 +1,6 @@
 //! Tangents: MikkTSpace where a normal map needs them, otherwise any that is orthogonal to the normal.
 
-use super::weld;
+use super::weld_sources;
 use crate::scene::{Mesh, Vertex};
 use bevy_mikktspace::{Geometry, TangentSpace};
 use glam::Vec3;
@@ -9,11 +9,12 @@ use glam::Vec3;
 ///
 /// MikkTSpace's bitangent points along increasing v, which is down in the picture (glTF 2.0, 3.8.3). Normal maps have
 /// +y up (glTF 2.0, `material.normalTexture`), so the sign is negated.
-pub(super) fn generate(mesh: &mut Mesh, second_set: bool) {
+pub(super) fn generate(mesh: &mut Mesh, sources: &mut Vec<u32>, second_set: bool) {
     let corners = mesh.indices.iter().map(|&i| mesh.vertices[i as usize]).collect();
     let mut soup = Soup { corners, second_set };
     if bevy_mikktspace::generate_tangents(&mut soup).is_ok() && !soup.corners.is_empty() {
-        (mesh.vertices, mesh.indices) = weld(&soup.corners);
+        let of_corner: Vec<u32> = mesh.indices.iter().filter_map(|&i| sources.get(i as usize).copied()).collect();
+        (mesh.vertices, mesh.indices, *sources) = weld_sources(&soup.corners, &of_corner);
     }
     repair(mesh);
 }

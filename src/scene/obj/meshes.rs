@@ -132,7 +132,7 @@ impl Builder {
             smoothing::complete(&mut mesh, &groups);
             has_normals = true;
         }
-        RawMesh { mesh, has_normals, has_tangents: false }
+        RawMesh { mesh, sources: Vec::new(), has_normals, has_tangents: false }
     }
 }
 

@@ -1,0 +1,85 @@
+//! Moving nodes of a glTF file: each has a node that places it, where it is placed, and one that moves below.
+
+use glam::Mat4;
+use serde_json::{Value, json};
+
+use super::gltf::Writer;
+use crate::scene::{Curve, Interpolation, Mover, Scene, Track};
+
+/// Channels that repeat together: animations of glTF last as long as their longest channel.
+#[derive(Default)]
+pub(super) struct Clip {
+    period: Option<f32>,
+    channels: Vec<Value>,
+    samplers: Vec<Value>,
+}
+
+impl Clip {
+    pub fn json(&self) -> Value {
+        json!({ "channels": self.channels, "samplers": self.samplers })
+    }
+}
+
+/// The node of each mover that instances have, for what it moves.
+pub(super) fn movers(writer: &mut Writer, scene: &Scene) -> Vec<Option<usize>> {
+    let mut names: Vec<Option<&str>> = vec![None; scene.movers.len()];
+    for instance in &scene.instances {
+        let mut next = instance.mover.map(|m| m as usize);
+        while let Some((number, mover)) = next.and_then(|n| Some((n, scene.movers.get(n)?))) {
+            names[number].get_or_insert(&instance.name);
+            next = mover.parent.map(|p| p as usize).filter(|p| *p < number);
+        }
+    }
+    let mut nodes: Vec<Option<usize>> = vec![None; scene.movers.len()];
+    for (number, (mover, name)) in scene.movers.iter().zip(names).enumerate() {
+        let Some(name) = name else { continue };
+        let mut parent = mover.parent.and_then(|p| nodes.get(p as usize).copied().flatten());
+        if mover.placed != Mat4::IDENTITY {
+            parent = Some(writer.below(parent, json!({ "matrix": mover.placed.to_cols_array() })));
+        }
+        nodes[number] = Some(moving(writer, parent, name, mover));
+    }
+    nodes
+}
+
+fn moving(writer: &mut Writer, parent: Option<usize>, name: &str, mover: &Mover) -> usize {
+    let Track { translation, rotation, scale, period, .. } = &*mover.track;
+    let (size, turn, place) = mover.track.at(0.0).to_scale_rotation_translation();
+    let node = writer.below(
+        parent,
+        json!({ "name": format!("{name} motion"), "translation": place.to_array(), "rotation": turn.to_array(),
+            "scale": size.to_array() }),
+    );
+    let clip = writer.clips.iter().position(|clip| clip.period == *period).unwrap_or_else(|| {
+        writer.clips.push(Clip { period: *period, ..Clip::default() });
+        writer.clips.len() - 1
+    });
+    channel(writer, clip, (node, "translation"), translation.as_ref(), |v| v.to_array().to_vec());
+    channel(writer, clip, (node, "rotation"), rotation.as_ref(), |q| q.to_array().to_vec());
+    channel(writer, clip, (node, "scale"), scale.as_ref(), |v| v.to_array().to_vec());
+    node
+}
+
+fn channel<T: crate::scene::Value>(
+    writer: &mut Writer,
+    clip: usize,
+    (node, path): (usize, &str),
+    curve: Option<&Curve<T>>,
+    numbers: impl Fn(T) -> Vec<f32>,
+) {
+    let Some(curve) = curve else { return };
+    let times = curve.times();
+    let values: Vec<f32> = curve.values().iter().flat_map(|v| numbers(*v)).collect();
+    let kind = if path == "rotation" { "VEC4" } else { "VEC3" };
+    let input = writer.floats(bytemuck::cast_slice(times), "SCALAR", times.len());
+    writer.limits(input, times[0], times[times.len() - 1]);
+    let output = writer.floats(bytemuck::cast_slice(&values), kind, curve.values().len());
+    let interpolation = match curve.interpolation() {
+        Interpolation::Step => "STEP",
+        Interpolation::Linear => "LINEAR",
+        Interpolation::Cubic => "CUBICSPLINE",
+    };
+    let clip = &mut writer.clips[clip];
+    clip.channels.push(json!({ "sampler": clip.samplers.len(), "target": { "node": node, "path": path } }));
+    clip.samplers.push(json!({ "input": input, "output": output, "interpolation": interpolation }));
+}
