@@ -4,7 +4,7 @@
 mod common;
 
 use common::model_file::*;
-use conelab::scene::{LightKind, Lookup, Lookups, Scene, Wrap};
+use conelab::scene::{LightKind, Lookup, Lookups, Scene, Texture, TextureFormat, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 use std::f32::consts::FRAC_PI_2;
@@ -686,6 +686,37 @@ const ROWS: &[Row] = &[
     ),
     ("MeshoptCubeTestKHR", |m| compressed_square(m, "KHR_meshopt_compression"), square_is_whole),
     (
+        "StainedGlassLamp",
+        |m| {
+            // A texture with another one for readers without the extension.
+            let texture = m.texture(1, 1, &[[9; 4]], json!({}));
+            universal_texture(m, texture, "etc1s_alpha.ktx2");
+            let material = m.material(json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } } }));
+            placed_square(m, Some(material), json!({}));
+        },
+        |s| {
+            let texture = &s.textures[0];
+            assert_eq!((texture.width, texture.height, texture.mips.len()), (8, 8, 4));
+            assert_eq!((texture.format, s.warnings.len()), (TextureFormat::Rgba8Srgb, 0), "{:?}", s.warnings);
+            texel_is(texture, 0, [255, 0, 0, 255], 5);
+            texel_is(texture, 63, [128, 128, 128, 64], 5);
+        },
+    ),
+    (
+        "FlightHelmetKTX",
+        |m| {
+            let texture = m.push("textures", json!({}));
+            universal_texture(m, texture, "uastc.ktx2");
+            m.root["extensionsRequired"] = json!(["KHR_texture_basisu"]);
+            let material = m.material(json!({ "normalTexture": { "index": texture } }));
+            placed_square(m, Some(material), json!({}));
+        },
+        |s| {
+            assert_eq!((s.textures[0].format, s.warnings.len()), (TextureFormat::Rgba8Unorm, 0), "{:?}", s.warnings);
+            texel_is(&s.textures[0], 4, [0, 255, 0, 255], 1);
+        },
+    ),
+    (
         "MultipleScenes",
         |m| {
             placed_square(m, None, json!({}));
@@ -720,7 +751,6 @@ fn models_have_the_properties_that_the_samples_test() {
 fn refusals_name_a_way_on() {
     for (extension, way) in [
         ("KHR_draco_mesh_compression", "blender -b"),
-        ("KHR_texture_basisu", "gltf-transform ktxdecompress"),
         ("KHR_materials_clearcoat", "remove the name from `extensionsRequired`"),
     ] {
         let mut model = Model::new();
@@ -793,6 +823,21 @@ fn square_is_whole(s: &Scene) {
     near(s.bounds().0, Vec3::new(-5.0, -5.0, 0.0), 1e-5);
     near(s.bounds().1, Vec3::new(5.0, 5.0, 0.0), 1e-5);
     corner_normals(s).into_iter().for_each(|n| near(n, Vec3::Z, 1e-6));
+}
+
+/// Gives a texture a universal image of `tests/gltf_compressed`: red, green, blue and grey quarters.
+fn universal_texture(m: &mut Model, texture: usize, file: &str) {
+    let bytes = std::fs::read(common::root().join("tests/gltf_compressed").join(file)).unwrap();
+    let image = m.push("images", json!({ "uri": data_uri(&bytes), "mimeType": "image/ktx2" }));
+    m.root["extensionsUsed"] = json!(["KHR_texture_basisu"]);
+    m.root["textures"][texture]["extensions"] = json!({ "KHR_texture_basisu": { "source": image } });
+}
+
+#[track_caller]
+fn texel_is(texture: &Texture, place: usize, wanted: [u8; 4], most: u8) {
+    let found = &texture.mips[0][4 * place..4 * place + 4];
+    let off = found.iter().zip(wanted).map(|(a, b)| a.abs_diff(b)).max().unwrap();
+    assert!(off <= most, "{found:?} for {wanted:?}");
 }
 
 #[track_caller]
