@@ -141,7 +141,6 @@ fn quantized_meshes_are_read() {
 fn mistakes_name_the_file_and_the_part() {
     refused("accessor 9", |f| f["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(9));
     refused("accessor 9", |f| f["meshes"][0]["primitives"][0]["indices"] = json!(9));
-    refused("EXT_meshopt_compression", |f| f["extensionsRequired"] = json!(["EXT_meshopt_compression"]));
     refused("2.1", |f| f["asset"]["minVersion"] = json!("2.1"));
     refused("1.0", |f| f["asset"]["version"] = json!("1.0"));
     refused("asset", |f| drop(f.as_object_mut().unwrap().remove("asset")));
@@ -154,6 +153,40 @@ fn mistakes_name_the_file_and_the_part() {
         push(f, "/accessors", zeros);
         let primitive = json!({ "attributes": { "POSITION": 2 }, "material": 0 });
         f["meshes"][0]["primitives"] = json!(vec![primitive; 30]);
+    });
+}
+
+#[test]
+fn compressed_views_keep_their_word() {
+    let compressed = |count: u64, more: Value| {
+        move |f: &mut Value| {
+            let mut layout = json!({ "buffer": 0, "byteOffset": 0, "byteLength": 56, "byteStride": 12, "count": count,
+                "mode": "ATTRIBUTES" });
+            layout.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+            f["bufferViews"][0]["extensions"] = json!({ "EXT_meshopt_compression": layout });
+        }
+    };
+    refused("buffer view 0: its compressed data has the unknown header 0x0", compressed(3, json!({})));
+    refused("many more bytes than the file holds", compressed(1 << 40, json!({})));
+    refused("many more bytes than the file holds", compressed(u64::MAX, json!({})));
+    refused("past the end of its buffer", compressed(3, json!({ "byteOffset": 8 })));
+    refused("buffer view 0: its compression mode x is not known", compressed(3, json!({ "mode": "x" })));
+    refused("no valid `count`", compressed(3, json!({ "count": -1 })));
+    refused("do not fit Attributes", compressed(3, json!({ "byteStride": 6 })));
+    refused("only stands for compressed views", |f| {
+        f["buffers"][0]["extensions"] = json!({ "EXT_meshopt_compression": { "fallback": true } });
+    });
+    // Nothing uses the view.
+    let damaged = opens(|f| {
+        compressed(3, json!({}))(f);
+        push(f, "/bufferViews", json!({ "buffer": 0, "byteLength": 36 }));
+        f["accessors"][0]["bufferView"] = json!(4);
+    });
+    assert_eq!(damaged.triangle_count(), 1);
+    // The header byte of attributes, and no stream behind it: it decodes to as much as is asked for, or to nothing.
+    refused("decodes to 0 bytes of 36", |f| {
+        f["buffers"][0] = json!({ "byteLength": 56, "uri": format!("data:,%a0{}", "0".repeat(55)) });
+        compressed(0, json!({ "byteLength": 33 }))(f);
     });
 }
 

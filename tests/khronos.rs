@@ -4,7 +4,7 @@
 mod common;
 
 use common::model_file::*;
-use conelab::scene::{LightKind, Lookup, Lookups, Scene, Vertex, Wrap};
+use conelab::scene::{LightKind, Lookup, Lookups, Scene, Texture, TextureFormat, Vertex, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::{Value, json};
 use std::f32::consts::FRAC_PI_2;
@@ -872,6 +872,46 @@ const ROWS: &[Row] = &[
         |s| assert_eq!(s.bounds(), (Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, 2.0, 0.0))),
     ),
     (
+        "MeshoptCubeTest",
+        |m| {
+            compressed_square(m, "EXT_meshopt_compression");
+            m.root["extensionsRequired"] = json!(["EXT_meshopt_compression", "KHR_mesh_quantization"]);
+        },
+        square_is_whole,
+    ),
+    ("MeshoptCubeTestKHR", |m| compressed_square(m, "KHR_meshopt_compression"), square_is_whole),
+    (
+        "StainedGlassLamp",
+        |m| {
+            // A texture with another one for readers without the extension.
+            let texture = m.texture(1, 1, &[[9; 4]], json!({}));
+            universal_texture(m, texture, "etc1s_alpha.ktx2");
+            let material = m.material(json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } } }));
+            placed_square(m, Some(material), json!({}));
+        },
+        |s| {
+            let texture = &s.textures[0];
+            assert_eq!((texture.width, texture.height, texture.mips.len()), (8, 8, 4));
+            assert_eq!((texture.format, s.warnings.len()), (TextureFormat::Rgba8Srgb, 0), "{:?}", s.warnings);
+            texel_is(texture, 0, [255, 0, 0, 255], 5);
+            texel_is(texture, 63, [128, 128, 128, 64], 5);
+        },
+    ),
+    (
+        "FlightHelmetKTX",
+        |m| {
+            let texture = m.push("textures", json!({}));
+            universal_texture(m, texture, "uastc.ktx2");
+            m.root["extensionsRequired"] = json!(["KHR_texture_basisu"]);
+            let material = m.material(json!({ "normalTexture": { "index": texture } }));
+            placed_square(m, Some(material), json!({}));
+        },
+        |s| {
+            assert_eq!((s.textures[0].format, s.warnings.len()), (TextureFormat::Rgba8Unorm, 0), "{:?}", s.warnings);
+            texel_is(&s.textures[0], 4, [0, 255, 0, 255], 1);
+        },
+    ),
+    (
         "MultipleScenes",
         |m| {
             placed_square(m, None, json!({}));
@@ -906,7 +946,6 @@ fn models_have_the_properties_that_the_samples_test() {
 fn refusals_name_a_way_on() {
     for (extension, way) in [
         ("KHR_draco_mesh_compression", "blender -b"),
-        ("KHR_texture_basisu", "gltf-transform ktxdecompress"),
         ("KHR_materials_clearcoat", "remove the name from `extensionsRequired`"),
     ] {
         let mut model = Model::new();
@@ -935,6 +974,65 @@ fn scene_files_scale_the_lamps_of_models() {
     assert_eq!((scaled.sky, scaled.warnings.len()), (Vec3::ZERO, 0), "{:?}", scaled.warnings);
     warned(&scene("").unwrap(), "lights_scale", 1);
     assert!(scene("lights_scale: -1").unwrap_err().contains("lights_scale is from 0"));
+}
+
+/// A square of whole numbers from -100 to 100, in streams by meshoptimizer's encoder.
+fn compressed_square(m: &mut Model, extension: &str) {
+    m.push("buffers", json!({ "byteLength": 84, "extensions": { extension: { "fallback": true } } }));
+    let mut view = |offset: usize, stride: usize, mode: &str, filter: &str, stream: &str| {
+        let bytes: Vec<u8> =
+            (0..stream.len() / 2).map(|i| u8::from_str_radix(&stream[2 * i..2 * i + 2], 16).unwrap()).collect();
+        let view = m.view(&bytes);
+        let from = m.root["bufferViews"][view]["byteOffset"].clone();
+        let layout = json!({ "buffer": 0, "byteOffset": from, "byteLength": bytes.len(), "byteStride": stride, "count": 6,
+            "mode": mode, "filter": filter });
+        m.root["bufferViews"][view] =
+            json!({ "buffer": 1, "byteOffset": offset, "byteLength": 6 * stride, "extensions": { extension: layout } });
+        if mode == "ATTRIBUTES" {
+            m.root["bufferViews"][view]["byteStride"] = json!(stride);
+        }
+        view
+    };
+    let positions = "a00133f000006f706f700121900000010fc000006f706f0109800000000000000000000000000000000000000000000000000000\
+                     000000009cff9cff00000000";
+    let positions = view(0, 8, "ATTRIBUTES", "NONE", positions);
+    let normals = "a0000000000000000000000000000000000000000000000000000000000000000000007f00";
+    let normals = view(48, 4, "ATTRIBUTES", "OCTAHEDRAL", normals);
+    let indices = view(72, 2, "TRIANGLES", "NONE", "e1f00f0a007687566778a9866589689801690000");
+    let accessor = |view: usize, component: u32, kind: &str, more: Value| {
+        let mut accessor = json!({ "bufferView": view, "componentType": component, "type": kind, "count": 6 });
+        accessor.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        accessor
+    };
+    let bounds = json!({ "min": [-100, -100, 0], "max": [100, 100, 0] });
+    let positions = m.push("accessors", accessor(positions, I16, "VEC3", bounds));
+    let normals = m.push("accessors", accessor(normals, I8, "VEC3", json!({ "normalized": true })));
+    let indices = m.push("accessors", accessor(indices, U16, "SCALAR", json!({})));
+    let mesh = m.mesh(json!({ "POSITION": positions, "NORMAL": normals }), None);
+    m.root["meshes"][mesh]["primitives"][0]["indices"] = json!(indices);
+    m.node(json!({ "mesh": mesh, "scale": [0.05, 0.05, 0.05] }));
+}
+
+fn square_is_whole(s: &Scene) {
+    assert_eq!((s.triangle_count(), s.warnings.len()), (2, 0), "{:?}", s.warnings);
+    near(s.bounds().0, Vec3::new(-5.0, -5.0, 0.0), 1e-5);
+    near(s.bounds().1, Vec3::new(5.0, 5.0, 0.0), 1e-5);
+    corner_normals(s).into_iter().for_each(|n| near(n, Vec3::Z, 1e-6));
+}
+
+/// Gives a texture a universal image of `tests/gltf_compressed`: red, green, blue and grey quarters.
+fn universal_texture(m: &mut Model, texture: usize, file: &str) {
+    let bytes = std::fs::read(common::root().join("tests/gltf_compressed").join(file)).unwrap();
+    let image = m.push("images", json!({ "uri": data_uri(&bytes), "mimeType": "image/ktx2" }));
+    m.root["extensionsUsed"] = json!(["KHR_texture_basisu"]);
+    m.root["textures"][texture]["extensions"] = json!({ "KHR_texture_basisu": { "source": image } });
+}
+
+#[track_caller]
+fn texel_is(texture: &Texture, place: usize, wanted: [u8; 4], most: u8) {
+    let found = &texture.mips[0][4 * place..4 * place + 4];
+    let off = found.iter().zip(wanted).map(|(a, b)| a.abs_diff(b)).max().unwrap();
+    assert!(off <= most, "{found:?} for {wanted:?}");
 }
 
 #[track_caller]

@@ -52,6 +52,7 @@ impl Model {
         list.len() - 1
     }
 
+    /// A view of the first buffer. Buffers that are pushed come after it.
     pub fn view(&mut self, bytes: &[u8]) -> usize {
         let view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         self.bytes.extend(bytes);
@@ -118,7 +119,9 @@ impl Model {
     pub fn write(&self, folder: &Path, name: &str) -> PathBuf {
         let mut root = self.root.clone();
         if !self.bytes.is_empty() {
-            root["buffers"] = json!([{ "byteLength": self.bytes.len(), "uri": data_uri(&self.bytes) }]);
+            let first = json!({ "byteLength": self.bytes.len(), "uri": data_uri(&self.bytes) });
+            let others = self.root.get("buffers").and_then(Value::as_array).into_iter().flatten();
+            root["buffers"] = std::iter::once(&first).chain(others).cloned().collect();
         }
         let path = folder.join(name);
         std::fs::write(&path, root.to_string()).unwrap();

@@ -41,7 +41,7 @@ pub struct Seed {
     pub bytes: Vec<u8>,
 }
 
-const FILES: [(Kind, &str, &str); 44] = [
+const FILES: [(Kind, &str, &str); 48] = [
     (Kind::Scene, "room.obj", "room.obj"),
     (Kind::Scene, "room.obj", "room.mtl"),
     (Kind::Scene, "small.obj", "small.obj"),
@@ -56,6 +56,10 @@ const FILES: [(Kind, &str, &str); 44] = [
     (Kind::Scene, "small.obj", "t.ktx2"),
     (Kind::Scene, "lit.gltf", "lit.gltf"),
     (Kind::Scene, "lit.gltf", "t.ktx2"),
+    (Kind::Scene, "etc1s.gltf", "etc1s_alpha.ktx2"),
+    (Kind::Scene, "uastc.gltf", "uastc_zstd.ktx2"),
+    (Kind::Scene, "ext.glb", "ext.glb"),
+    (Kind::Scene, "khr.glb", "khr.glb"),
     (Kind::Scene, "room.gltf", "room.gltf"),
     (Kind::Scene, "room.gltf", "room.bin"),
     (Kind::Scene, "moving.gltf", "moving.gltf"),
@@ -159,6 +163,11 @@ pub fn write(folder: &Path) {
     put("points/points/0123456789abcdef0123456789abcdef.json", POINT.as_bytes());
     put("t.ktx2", &ktx2());
     put("lit.gltf", LIT.as_bytes());
+    put("etc1s.gltf", LIT.replace("t.ktx2", "etc1s_alpha.ktx2").as_bytes());
+    put("uastc.gltf", LIT.replace("t.ktx2", "uastc_zstd.ktx2").as_bytes());
+    for name in ["etc1s_alpha.ktx2", "uastc_zstd.ktx2", "ext.glb", "khr.glb"] {
+        std::fs::copy(root().join("tests/gltf_compressed").join(name), folder.join(name)).unwrap();
+    }
     let (sums, record) = reference();
     put("reference/sums-32.exr", &sums);
     put("reference/reference.json", record.as_bytes());

@@ -1,13 +1,15 @@
 //! Buffers and URIs: the binary chunk, files beside the model and data inside of it.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use ::gltf::{Document, buffer};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD_NO_PAD;
+use rayon::prelude::*;
 
+use super::meshopt::{self, Compressed};
 use crate::files::read_input;
 use crate::scene::progress::Progress;
 use crate::scene::texture::Source;
@@ -15,11 +17,17 @@ use crate::scene::texture::Source;
 /// Buffers larger than this are refused; a binary file cannot have more.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
 
+/// Decoded bytes that any file may have, and how many more for each byte of its buffers.
+const DECODED: usize = 1 << 28;
+const DECODED_PER_BYTE: usize = 64;
+
 /// What a document's numbers are read from.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
     /// The bytes of each buffer, at least as many as the file says; or why there are none.
     bytes: Vec<Result<Vec<u8>, String>>,
+    /// The bytes of compressed views by index, or the problem of a damaged one.
+    decoded: HashMap<usize, Result<Vec<u8>, String>>,
     /// Accessors of a type that the format does not have.
     pub unreadable: HashSet<usize>,
 }
@@ -35,6 +43,9 @@ impl Buffers {
     ) -> Buffers {
         let one = |buffer: buffer::Buffer| {
             let i = buffer.index();
+            if meshopt::is_fallback(&buffer) {
+                return Err(format!("buffer {i} only stands for compressed views, and something else is in it"));
+            }
             let bytes = match buffer.source() {
                 buffer::Source::Bin => blob.take().ok_or(format!("buffer {i} has neither a uri nor a binary chunk"))?,
                 buffer::Source::Uri(uri) => match resolve(uri, folder)? {
@@ -52,25 +63,63 @@ impl Buffers {
             }
             Ok(bytes)
         };
-        Buffers { bytes: document.buffers().map(one).collect(), unreadable }
+        let bytes = document.buffers().map(one).collect();
+        let mut buffers = Buffers { bytes, decoded: HashMap::new(), unreadable };
+        buffers.decoded = decode(document, &buffers);
+        buffers
     }
 
-    /// Bytes of all buffers.
+    /// Bytes of all buffers and of all that is decoded.
     pub fn len(&self) -> usize {
-        self.bytes.iter().flatten().map(Vec::len).sum()
+        self.bytes.iter().chain(self.decoded.values()).flatten().map(Vec::len).sum()
     }
+}
+
+/// Decodes the compressed views. One that is damaged is a mistake only where it is used.
+fn decode(document: &Document, buffers: &Buffers) -> HashMap<usize, Result<Vec<u8>, String>> {
+    let compressed: Vec<_> =
+        document.views().filter_map(|v| Compressed::of(&v).map(|c| (v.index(), v.length(), c))).collect();
+    let mut room = DECODED.saturating_add(buffers.len().saturating_mul(DECODED_PER_BYTE)).min(MAX_BYTES as usize);
+    // Views may share their compressed bytes; a small file must not fill the memory.
+    let mut fits = |size: usize| {
+        let left = room.checked_sub(size);
+        room = left.unwrap_or(room);
+        left.is_some()
+    };
+    let fitting: Vec<bool> = compressed.iter().map(|(.., c)| c.as_ref().is_ok_and(|c| fits(c.size()))).collect();
+    let one = |((index, length, compressed), fits): (_, bool)| {
+        let decode = |compressed: Compressed| {
+            if !fits {
+                return Err("it decodes to many more bytes than the file holds".into());
+            }
+            let (from, count) = (compressed.offset, compressed.length);
+            let bytes = compressed.decode(range(buffers, compressed.buffer, from, count)?)?;
+            let (has, needs) = (bytes.len(), length);
+            if has < needs { Err(format!("it decodes to {has} bytes of {needs}")) } else { Ok(bytes) }
+        };
+        let decoded: Result<Compressed, String> = compressed;
+        (index, decoded.and_then(|c| decode(c).map_err(|problem| format!("buffer view {index}: {problem}"))))
+    };
+    compressed.into_par_iter().zip(fitting).map(one).collect()
 }
 
 /// The bytes of a view, or what is wrong with it.
 pub(super) fn view<'a>(buffers: &'a Buffers, view: &buffer::View) -> Result<&'a [u8], String> {
-    let bytes = match buffers.bytes.get(view.buffer().index()) {
+    match buffers.decoded.get(&view.index()) {
+        Some(decoded) => decoded.as_deref().map_err(String::clone),
+        None => range(buffers, view.buffer().index(), view.offset(), view.length())
+            .map_err(|problem| format!("buffer view {}: {problem}", view.index())),
+    }
+}
+
+fn range(buffers: &Buffers, buffer: usize, offset: usize, length: usize) -> Result<&[u8], String> {
+    let bytes = match buffers.bytes.get(buffer) {
         Some(Ok(bytes)) => bytes.as_slice(),
         Some(Err(problem)) => return Err(problem.clone()),
         None => &[],
     };
-    let end = view.offset().checked_add(view.length());
-    end.and_then(|end| bytes.get(view.offset()..end))
-        .ok_or_else(|| format!("buffer view {} reaches past the end of its buffer", view.index()))
+    let end = offset.checked_add(length);
+    end.and_then(|end| bytes.get(offset..end)).ok_or_else(|| "it reaches past the end of its buffer".into())
 }
 
 /// Where an image's bytes are.

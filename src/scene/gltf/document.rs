@@ -85,10 +85,12 @@ fn write_out(value: &mut Value, warnings: &mut Warnings) {
     let textures = root.get_mut("textures").and_then(Value::as_array_mut).into_iter().flatten();
     for (i, texture) in textures.enumerate() {
         let exists = |source: &Value| source.as_u64().is_some_and(|source| source < known);
-        let Some(texture) = texture.as_object_mut().filter(|t| !t.get("source").is_some_and(exists)) else { continue };
+        let Some(texture) = texture.as_object_mut() else { continue };
         let extensions = texture.get("extensions");
         let other = |name: &str| extensions.and_then(|e| e.get(name)?.get("source")).filter(|s| exists(s)).cloned();
-        let source = other("MSFT_texture_dds").or_else(|| other("EXT_texture_webp")).unwrap_or_else(|| {
+        let own = || texture.get("source").filter(|s| exists(s)).cloned();
+        let others = || other("MSFT_texture_dds").or_else(|| other("EXT_texture_webp"));
+        let source = other("KHR_texture_basisu").or_else(own).or_else(others).unwrap_or_else(|| {
             absent.push(json!({ "name": format!("of texture {i}, which names none that can be read,") }));
             images += 1;
             json!(images - 1)

@@ -15,6 +15,7 @@ mod lights;
 mod materials;
 mod means;
 mod meshes;
+mod meshopt;
 mod nodes;
 mod placing;
 mod skins;

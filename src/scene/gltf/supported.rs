@@ -5,8 +5,9 @@ use serde_json::Value;
 use crate::scene::warnings::Warnings;
 
 /// Extensions that a file may require.
-const READ: [&str; 15] = [
+const READ: [&str; 18] = [
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
     "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -18,7 +19,9 @@ const READ: [&str; 15] = [
     // The default materials of a file with variants are ordinary ones.
     "KHR_materials_variants",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     "KHR_node_visibility",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
     // Authors and licences: nothing to see.
     "KHR_xmp_json_ld",
@@ -26,17 +29,12 @@ const READ: [&str; 15] = [
 ];
 
 /// Compressions that a file may use next to uncompressed data, which is read; and how to undo each.
-const COMPRESSED: [(&str, &str); 4] = [
-    (
-        "KHR_draco_mesh_compression",
-        "Convert it with Blender: blender -b --python-expr \"import bpy; \
-         bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.import_scene.gltf(filepath='IN.glb'); \
-         bpy.ops.export_scene.gltf(filepath='OUT.glb')\"",
-    ),
-    ("EXT_meshopt_compression", "Convert it with gltfpack: gltfpack -noq -i IN.glb -o OUT.glb"),
-    ("KHR_meshopt_compression", "Convert it with gltfpack: gltfpack -noq -i IN.glb -o OUT.glb"),
-    ("KHR_texture_basisu", "Convert it with glTF Transform: gltf-transform ktxdecompress IN.glb OUT.glb"),
-];
+const COMPRESSED: [(&str, &str); 1] = [(
+    "KHR_draco_mesh_compression",
+    "Convert it with Blender: blender -b --python-expr \"import bpy; \
+     bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.import_scene.gltf(filepath='IN.glb'); \
+     bpy.ops.export_scene.gltf(filepath='OUT.glb')\"",
+)];
 
 /// Lines about extensions that are not read, for files with very many.
 const LINES: usize = 20;

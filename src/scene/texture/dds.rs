@@ -136,8 +136,9 @@ fn uncompressed(
     Ok(texture_from_rgba(name, to.0, to.1, rgba, format, filter))
 }
 
-fn decode(image_format: ImageFormat, width: u32, height: u32, data: &[u8]) -> Result<Vec<u8>, String> {
+/// Level 0 of a format as RGBA8.
+pub(super) fn decode(image_format: ImageFormat, width: u32, height: u32, data: &[u8]) -> Result<Vec<u8>, String> {
     let surface = Surface { width, height, depth: 1, layers: 1, mipmaps: 1, image_format, data };
-    let decoded = surface.decode_rgba8().map_err(|error| format!("its DDS data is damaged ({error})"))?;
+    let decoded = surface.decode_rgba8().map_err(|error| format!("its data is damaged ({error})"))?;
     Ok(decoded.data)
 }

@@ -8,13 +8,13 @@ use image::{DynamicImage, ImageFormat, ImageReader, Limits, RgbaImage};
 
 use crate::files::read_input;
 
-use super::{Filter, Recipe, Source, Texture, TextureFormat, dds, mips, texture_from_rgba};
+use super::{Filter, Recipe, Source, Texture, TextureFormat, dds, ktx2, mips, texture_from_rgba};
 
-/// Formats of image files, besides DDS.
+/// Formats of image files, besides DDS and KTX2.
 const READ: [ImageFormat; 5] =
     [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::WebP, ImageFormat::Tga, ImageFormat::Bmp];
 /// Largest width and height of an image file.
-const MAX_FILE_SIDE: u32 = 16384;
+pub(super) const MAX_FILE_SIDE: u32 = 16384;
 /// Largest memory of a decoded image.
 pub(in crate::scene) const MAX_FILE_BYTES: u64 = 512 << 20;
 /// Larger textures are reduced to this.
@@ -174,9 +174,12 @@ fn is_dds(bytes: &[u8]) -> bool {
 
 /// By the file's own magic; TGA has none, so there the name's extension decides.
 fn decode(bytes: &[u8], name: &str) -> Result<RgbaImage, String> {
+    if ktx2::is_ktx2(bytes) {
+        return ktx2::pixels(bytes);
+    }
     let by_name = || ImageFormat::from_path(name).ok();
     let format =
-        image::guess_format(bytes).ok().or_else(by_name).ok_or("not a PNG, JPEG, WebP, TGA, BMP or DDS image")?;
+        image::guess_format(bytes).ok().or_else(by_name).ok_or("not a PNG, JPEG, WebP, TGA, BMP, DDS or KTX2 image")?;
     if !READ.contains(&format) {
         return Err(format!("{format:?} images are not supported; convert it to PNG"));
     }

@@ -3,6 +3,7 @@
 mod content;
 mod dds;
 mod decode;
+mod ktx2;
 mod mips;
 mod stand_in;
 
