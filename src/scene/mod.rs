@@ -4,6 +4,7 @@
 //! are counter-clockwise, and colours are linear RGB (only base-colour and emission images are sRGB).
 
 pub mod builtin;
+mod coordinates;
 pub(crate) mod defaults;
 pub(crate) mod environment;
 mod error;
@@ -15,6 +16,7 @@ mod lookup;
 mod mesh;
 mod obj;
 mod open;
+mod phong;
 mod progress;
 mod reach;
 mod resample;
