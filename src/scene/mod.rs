@@ -9,6 +9,7 @@ pub(crate) mod defaults;
 pub(crate) mod environment;
 mod error;
 mod export;
+mod fbx;
 mod file;
 mod gltf;
 mod limits;

@@ -1,0 +1,152 @@
+//! Meshes: one of the scene for each mesh of the file and list of materials that its nodes give it.
+
+use glam::DVec2;
+use ufbx::{Mesh as From, VertexVec2};
+
+use super::materials::{Read, UvSource};
+use crate::metrics::colour::srgb_to_linear;
+use crate::scene::mesh::{RawMesh, weld};
+use crate::scene::progress::Progress;
+use crate::scene::{Mesh, Submesh, Vertex};
+
+/// Corners that any file may have.
+const MANY: usize = 1 << 24;
+
+/// A mesh of the file, and what its parts are made of.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Wanted {
+    /// A number in the file.
+    pub mesh: u32,
+    /// By the number of a part, materials of the file.
+    pub materials: Vec<u32>,
+}
+
+/// The meshes in order, and whether any part has no material: its number is the one after those of the file.
+pub(super) fn read(
+    file: &ufbx::Scene,
+    wanted: &[Wanted],
+    materials: &[Read],
+    bytes: usize,
+    progress: Progress,
+) -> Result<(Vec<RawMesh>, bool), String> {
+    // Nodes may share meshes; a small file must not fill the memory.
+    let mut room = MANY + bytes;
+    let mut used = false;
+    let mut meshes = Vec::new();
+    for Wanted { mesh: number, materials: list } in wanted {
+        if progress.stopped() {
+            return Err(String::new());
+        }
+        let Some(from) = file.meshes.as_ref().get(*number as usize) else { return Err(damaged()) };
+        let name = name(from);
+        room = room
+            .checked_sub(from.num_triangles.saturating_mul(3))
+            .ok_or_else(|| format!("mesh '{name}': with it there are many more corners than the file holds bytes"))?;
+        let of_part = |part: usize| list.get(part).map_or(materials.len(), |m| *m as usize);
+        let mut reader = Reader { from, corners: Vec::new(), triangles: vec![0; from.max_face_triangles * 3] };
+        let mut submeshes = Vec::new();
+        for (part, faces) in from.material_parts.iter().enumerate() {
+            let material = of_part(part);
+            let read = materials.get(material);
+            if read.is_some_and(|read| read.asked.material.is_left_out()) || faces.num_triangles == 0 {
+                continue;
+            }
+            used |= read.is_none();
+            let first = reader.corners.len();
+            reader.add(&faces.face_indices, read).ok_or_else(damaged)?;
+            let index_count = (reader.corners.len() - first) as u32;
+            submeshes.push(Submesh { first_index: first as u32, index_count, material: material as u32 });
+        }
+        let (vertices, indices) = weld(&reader.corners);
+        let mesh = Mesh { name, vertices, indices, submeshes };
+        meshes.push(RawMesh { mesh, has_normals: true, has_tangents: false });
+    }
+    Ok((meshes, used))
+}
+
+/// Its own name, or that of its first node.
+fn name(from: &From) -> String {
+    let own = from.element.name.as_ref();
+    let node = from.element.instances.into_iter().next().map(|node| node.element.name.as_ref());
+    if own.is_empty() { node.unwrap_or_default().to_owned() } else { own.to_owned() }
+}
+
+fn damaged() -> String {
+    "its faces name vertices that do not exist. The file is damaged; export it again".into()
+}
+
+struct Reader<'a> {
+    from: &'a From,
+    /// Three a triangle.
+    corners: Vec<Vertex>,
+    /// Of one face.
+    triangles: Vec<u32>,
+}
+
+impl Reader<'_> {
+    /// Adds faces of one material; none if one of them is broken.
+    fn add(&mut self, faces: &[u32], material: Option<&Read>) -> Option<()> {
+        let no_sources = Default::default();
+        let sources = material.map_or(&no_sources, |read| &read.uv);
+        let first = set(self.from, Some(&sources.first));
+        let second = set(self.from, sources.second.as_ref());
+        for number in faces {
+            let face = *self.from.faces.as_ref().get(*number as usize)?;
+            if face.num_indices < 3 {
+                continue;
+            }
+            let count = self.from.triangulate_face(&mut self.triangles, face) as usize * 3;
+            for index in self.triangles.get(..count)? {
+                let mut vertex = corner(self.from, *index as usize)?;
+                vertex.uv = first.map_or(Some([0.0; 2]), |set| set.at(*index as usize))?;
+                vertex.uv_second = second.map_or(Some([0.0; 2]), |set| set.at(*index as usize))?;
+                self.corners.push(vertex);
+            }
+        }
+        Some(())
+    }
+}
+
+/// The set that a source names, or the first one.
+fn set<'a>(from: &'a From, source: Option<&'a UvSource>) -> Option<Set<'a>> {
+    let source = source?;
+    let sets = from.uv_sets.as_ref();
+    let set = sets.iter().find(|set| set.name == source.set.as_str()).or(sets.first())?;
+    Some(Set { values: &set.vertex_uv, source })
+}
+
+/// Texture coordinates of a mesh, placed as a texture asks for.
+#[derive(Clone, Copy)]
+struct Set<'a> {
+    values: &'a VertexVec2,
+    source: &'a UvSource,
+}
+
+impl Set<'_> {
+    /// The origin of FBX is the lower left of the picture, that of scenes the upper left.
+    fn at(&self, corner: usize) -> Option<[f32; 2]> {
+        let index = *self.values.indices.as_ref().get(corner)?;
+        let uv = self.values.values.as_ref().get(index as usize)?;
+        let placed = self.source.transform.transform_point2(DVec2::new(uv.x, uv.y));
+        Some([placed.x as f32, (1.0 - placed.y) as f32])
+    }
+}
+
+/// Position, normal and colour of a corner.
+fn corner(from: &From, index: usize) -> Option<Vertex> {
+    let at = |list: &ufbx::VertexVec3| {
+        let value = list.values.as_ref().get(*list.indices.as_ref().get(index)? as usize)?;
+        Some([value.x as f32, value.y as f32, value.z as f32])
+    };
+    let colors = &from.vertex_color;
+    let color = if colors.exists {
+        let value = colors.values.as_ref().get(*colors.indices.as_ref().get(index)? as usize)?;
+        // Programs write what the screen shows.
+        let [r, g, b] = [value.x, value.y, value.z].map(|c| srgb_to_linear((c as f32).clamp(0.0, 1.0)));
+        [r, g, b, value.w as f32]
+    } else {
+        [1.0; 4]
+    };
+    let normal = if from.skinned_normal.exists { at(&from.skinned_normal)? } else { [0.0; 3] };
+    Some(Vertex { position: at(&from.skinned_position)?, normal, color, ..Vertex::default() })
+}
