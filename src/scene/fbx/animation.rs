@@ -26,7 +26,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// The first animation of a file of so many bytes.
+    /// Bakes the first animation. The file's length in bytes limits the memory.
     pub fn read(file: &ufbx::Scene, bytes: usize, warnings: &mut Warnings) -> Result<Motion, String> {
         let mut stacks = file.anim_stacks.into_iter();
         let first = stacks.next();

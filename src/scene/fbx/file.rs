@@ -11,10 +11,12 @@ use crate::scene::progress::Progress;
 const MEMORY: usize = 256 << 20;
 /// Memory that a file may take for each of its bytes: arrays are compressed, and numbers become 64 bits.
 const PER_BYTE: usize = 64;
+/// Begins a binary file, which may be too short to be known otherwise.
+const MAGIC: &[u8] = b"Kaydara FBX Binary";
 /// Nodes above a node.
 const MAX_DEPTH: u32 = 512;
 
-/// Memory for the content of a file of so many bytes.
+/// Limits memory by the length of a file in bytes.
 pub(super) fn memory(bytes: usize) -> AllocatorOpts {
     AllocatorOpts { memory_limit: MEMORY.saturating_add(bytes.saturating_mul(PER_BYTE)), ..AllocatorOpts::default() }
 }
@@ -30,6 +32,7 @@ pub(super) fn read(bytes: &[u8], progress: Progress) -> Result<SceneRoot, String
         result_allocator: memory(bytes.len()),
         progress_cb: ProgressCb::Ref(&ask),
         node_depth_limit: MAX_DEPTH,
+        file_format: if bytes.starts_with(MAGIC) { FileFormat::Fbx } else { FileFormat::Unknown },
         no_format_from_extension: true,
         evaluate_skinning: true,
         generate_missing_normals: true,
@@ -40,7 +43,7 @@ pub(super) fn read(bytes: &[u8], progress: Progress) -> Result<SceneRoot, String
         ..LoadOpts::default()
     };
     let file = load_memory(bytes, options).map_err(|error| match error.type_ {
-        ErrorType::EmptyFile | ErrorType::UnrecognizedFileFormat => not_fbx(),
+        ErrorType::EmptyFile | ErrorType::UnrecognizedFileFormat if !bytes.starts_with(MAGIC) => not_fbx(),
         ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => {
             format!("it needs more than {MEMORY} bytes of memory and {PER_BYTE} for each of its own. Export it again")
         }

@@ -17,7 +17,8 @@ pub(super) fn read(
     warnings: &mut Warnings,
 ) -> Result<Light, &'static str> {
     let is_blender = matches!(exporter, Exporter::BlenderBinary | Exporter::BlenderAscii);
-    // Blender leaves out what its own template says, and may not write that template: another's numbers would stand in.
+    // Blender omits numbers that are equal to its own template and may not write that template. Then ufbx takes numbers of
+    // another template.
     let is_own = |name: &str| !is_blender || from.element.props.props.iter().any(|prop| prop.name == name);
     let tint = if is_own("Color") { vector(from.color) } else { DVec3::ONE };
     let intensity = if is_own("Intensity") { from.intensity } else { 1.0 };

@@ -1,4 +1,4 @@
-//! Materials. Those of physical kinds have numbers of their own; Phong and Lambert are read as MTL's are.
+//! Materials of physical kinds, and Phong and Lambert, which are read as MTL files are.
 
 use glam::{DAffine2, DVec3, Vec3};
 use ufbx::{Material as From, MaterialMap, ShaderType};
@@ -88,7 +88,7 @@ fn convert(from: &From, pictures: &mut Pictures, warnings: &mut Warnings) -> Rea
     Read { asked: Asked { material: reflective(from, is_phong, asked.material), ..asked }, uv }
 }
 
-/// The numbers. A texture stands in for the value, and is multiplied by the factor.
+/// The numbers. A texture replaces the value, and the factor multiplies it.
 fn parts(from: &From, is_phong: bool, maps: Maps, name: String) -> Parts {
     let (pbr, fbx) = (&from.pbr, &from.fbx);
     let tinted = |map: &MaterialMap, factor: &MaterialMap, has_map: bool, default: Vec3| {

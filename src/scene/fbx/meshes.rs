@@ -17,7 +17,7 @@ const MANY: usize = 1 << 24;
 pub(super) struct Wanted {
     /// A number in the file.
     pub mesh: u32,
-    /// By the number of a part, materials of the file.
+    /// Numbers of materials in the file, one for each part.
     pub materials: Vec<u32>,
 }
 
@@ -79,7 +79,7 @@ struct Reader<'a> {
     from: &'a From,
     /// Three a triangle.
     corners: Vec<Vertex>,
-    /// Of one face.
+    /// Indices of the triangles of one face.
     triangles: Vec<u32>,
 }
 
@@ -141,7 +141,7 @@ fn corner(from: &From, index: usize) -> Option<Vertex> {
     let colors = &from.vertex_color;
     let color = if colors.exists {
         let value = colors.values.as_ref().get(*colors.indices.as_ref().get(index)? as usize)?;
-        // Programs write what the screen shows.
+        // Most programs write sRGB.
         let [r, g, b] = [value.x, value.y, value.z].map(|c| srgb_to_linear((c as f32).clamp(0.0, 1.0)));
         [r, g, b, value.w as f32]
     } else {

@@ -16,7 +16,7 @@ use crate::scene::{Lookup, Wrap};
 
 /// Finds pictures and requests them.
 pub(super) struct Pictures<'a> {
-    /// Of the document.
+    /// The name of the document.
     name: &'a str,
     finder: Finder,
     pub requests: &'a mut Requests,
