@@ -361,6 +361,12 @@ fn absurd_files_are_refused_or_bounded() {
             assert!(scene.triangle_count() <= 12, "{count}");
         }
     }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fbx_files");
+    let mut binary = std::fs::read(folder.join("blender.fbx")).unwrap();
+    let at = binary.windows(10).position(|bytes| bytes == b"\x08Verticesd").unwrap() + 10;
+    binary[at..at + 4].copy_from_slice(&0xffff_fff0_u32.to_le_bytes());
+    let told = open_bytes(&binary).unwrap_err();
+    assert!(told.contains("it needs more than 268435456 bytes of memory"), "{told}");
     // Vertices that do not exist, texture coordinates that do not, and places that are too far.
     let polygons = text::SIDES.map(|index| if index == 7 { 70_000 } else { index });
     let broken = text::mesh(1, &box_points(), &polygons, "", &[]) + model(2, "box", "Mesh", "");
