@@ -44,7 +44,7 @@ pub(super) fn read(bytes: &[u8], progress: Progress) -> Result<SceneRoot, String
     };
     let file = load_memory(bytes, options).map_err(|error| match error.type_ {
         ErrorType::EmptyFile | ErrorType::UnrecognizedFileFormat if !bytes.starts_with(MAGIC) => not_fbx(),
-        ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory => {
+        ErrorType::MemoryLimit => {
             format!("it needs more than {MEMORY} bytes of memory and {PER_BYTE} for each of its own. Export it again")
         }
         ErrorType::NodeDepthLimit => format!("its nodes are nested more than {MAX_DEPTH} deep"),
