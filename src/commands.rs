@@ -151,7 +151,7 @@ impl DeviceArgs {
 
 #[derive(Debug, Args)]
 struct SceneArgs {
-    /// A built-in scene's name, a scene RON, or a model file (.obj, .gltf, .glb).
+    /// A built-in scene's name, a scene RON, or a model file (.obj, .gltf, .glb, .fbx).
     #[arg(value_parser = spec())]
     scene: String,
     /// Write the scene to this file (.obj, .gltf or .glb) instead of describing it.

@@ -5,6 +5,12 @@
 //! that fails is kept under `target/tmp/fuzz`, and its number is its seed.
 
 mod common;
+#[macro_use]
+#[path = "fbx_files/text.rs"]
+#[allow(dead_code, reason = "the fuzz test uses a part")]
+mod text;
+#[path = "fuzz/fbx.rs"]
+mod fbx;
 #[path = "fuzz/holds.rs"]
 mod holds;
 #[path = "fuzz/mutate.rs"]

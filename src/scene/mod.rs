@@ -4,10 +4,12 @@
 //! are counter-clockwise, and colours are linear RGB (only base-colour and emission images are sRGB).
 
 pub mod builtin;
+mod coordinates;
 pub(crate) mod defaults;
 pub(crate) mod environment;
 mod error;
 mod export;
+mod fbx;
 mod file;
 mod gltf;
 mod limits;
@@ -16,6 +18,7 @@ mod mesh;
 mod motion;
 mod obj;
 mod open;
+mod phong;
 mod progress;
 mod reach;
 mod resample;

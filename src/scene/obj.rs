@@ -1,35 +1,33 @@
 //! Wavefront OBJ with MTL, and the keys that other programs add for metallic-roughness materials.
 
 mod faces;
-mod find;
 mod geometry;
 mod library;
 mod lines;
 mod maps;
 mod material;
 mod meshes;
-mod pictures;
 mod smoothing;
 mod triangulate;
 
 use std::collections::HashMap;
 use std::path::Path;
 
-use glam::{Mat4, Vec4};
+use glam::Mat4;
 use indexmap::IndexSet;
 
 use crate::files::read_input;
 
 use super::mesh::prepare_all;
+use super::phong::{Finder, decide, grey};
 use super::progress::Progress;
 use super::texture::Requests;
 use super::warnings::Warnings;
 use super::{Instance, Material, Mesh, Scene, SceneError};
-use find::Finder;
 use library::Library;
-use lines::{decode, shown, without_comment};
-use material::{Pictures, Surface, surface_of};
-use pictures::Owned;
+use lines::decode;
+pub(super) use lines::{shown, without_comment};
+use material::{Pictures, Read, Surface, surface_of};
 
 /// Files larger than this are refused.
 const MAX_BYTES: u64 = 4 << 30;
@@ -53,16 +51,19 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let mut materials = read_materials(&mut libraries, &mut finder, &mut requests);
     progress.step("textures", 0.5)?;
     let (mut textures, texture_warnings) = requests.load(progress)?;
-    pictures::decide(&mut materials, &mut textures, &mut libraries);
+    let owners: Vec<usize> = materials.iter().map(|(library, _)| *library).collect();
+    let asked = materials.iter_mut().map(|(_, read)| &mut read.asked).collect();
+    decide(asked, &mut textures, &material::WORDS, |number, name, what| {
+        if let Some(library) = owners.get(number).and_then(|owner| libraries.get_mut(*owner)) {
+            library.warnings.add(what, shown(name));
+        }
+    });
 
     progress.step("meshes", 0.7)?;
     let surfaces = surfaces(&geometry.used, &libraries, &materials, &mut warnings);
-    let mut materials: Vec<Material> = materials.into_iter().map(|(_, read)| read.material).collect();
+    let mut materials: Vec<Material> = materials.into_iter().map(|(_, read)| read.asked.material).collect();
     if geometry.pieces.iter().any(|piece| surface_of(&surfaces, piece.material).material as usize == materials.len()) {
-        let grey = Material::default().base_color;
-        // Colours of vertices are the whole colour of a surface without a material.
-        let base_color = if geometry.colors.is_empty() { grey } else { Vec4::ONE };
-        materials.push(Material { base_color, two_sided: true, ..Material::default() });
+        materials.push(grey(!geometry.colors.is_empty()));
     }
     let raw = meshes::build(&geometry, &surfaces, &mut warnings, progress).map_err(fail)?;
     drop(geometry);
@@ -82,6 +83,9 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     });
     Ok(Scene { instances: instances.collect(), meshes, materials, textures, warnings: told, ..Scene::default() })
 }
+
+/// A material with the number of its library.
+type Owned = (usize, Read);
 
 /// The materials of all libraries, in their order.
 fn read_materials(libraries: &mut [Library], finder: &mut Finder, requests: &mut Requests) -> Vec<Owned> {
@@ -126,7 +130,7 @@ fn surfaces(
             warnings.add("materials that no library defines are grey", shown(name));
             return none;
         };
-        Surface { material: index as u32, placement: read.placement, left_out: read.material.is_left_out() }
+        Surface { material: index as u32, placement: read.placement, left_out: read.asked.material.is_left_out() }
     };
     used.iter().map(of).chain([none]).collect()
 }

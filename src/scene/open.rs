@@ -12,13 +12,13 @@ use crate::files::{ending, path_of};
 
 use super::limits::{check_extent, with_size_told};
 use super::progress::{Progress, Watch};
-use super::{Material, Scene, SceneError, builtin, defaults, file, gltf, obj};
+use super::{Material, Scene, SceneError, builtin, defaults, fbx, file, gltf, obj};
 
 /// How often the callback is asked while a scene loads.
 const ASK: Duration = Duration::from_millis(20);
 
 impl Scene {
-    /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb). A path that may not be UTF-8 is
+    /// Opens a built-in scene by name, a scene file (.ron) or a model (.obj, .gltf, .glb, .fbx). A path that may not be UTF-8 is
     /// given as [`crate::files::spec_of`] writes it.
     ///
     /// A model without lights gets a sun and a sky, one with lights none. Its first camera becomes the camera `default`;
@@ -104,8 +104,9 @@ pub(super) fn load_model(path: &Path, progress: Progress) -> Result<Scene, Scene
     let reader = match ending(path).as_str() {
         "obj" => obj::load,
         "gltf" | "glb" => gltf::load,
+        "fbx" => fbx::load,
         _ => {
-            let hint = "the file's extension must be .ron, .obj, .gltf or .glb; convert other formats to glTF";
+            let hint = "the file's extension must be .ron, .obj, .gltf, .glb or .fbx; convert other formats to glTF";
             return Err(SceneError::NotFound { spec: path.display().to_string(), hint: hint.into() });
         }
     };

@@ -15,7 +15,7 @@ pub struct Models {
 const DEEP: usize = 2;
 const MOST: usize = 200;
 
-const ENDINGS: [&str; 4] = ["gltf", "glb", "obj", "ron"];
+const ENDINGS: [&str; 5] = ["fbx", "gltf", "glb", "obj", "ron"];
 const OPENED: &str = "Scenes, models, experiments";
 
 impl Models {

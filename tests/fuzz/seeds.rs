@@ -41,7 +41,7 @@ pub struct Seed {
     pub bytes: Vec<u8>,
 }
 
-const FILES: [(Kind, &str, &str); 48] = [
+const FILES: [(Kind, &str, &str); 50] = [
     (Kind::Scene, "room.obj", "room.obj"),
     (Kind::Scene, "room.obj", "room.mtl"),
     (Kind::Scene, "small.obj", "small.obj"),
@@ -65,6 +65,8 @@ const FILES: [(Kind, &str, &str); 48] = [
     (Kind::Scene, "moving.gltf", "moving.gltf"),
     (Kind::Scene, "moving.gltf", "moving.bin"),
     (Kind::Scene, "room.glb", "room.glb"),
+    (Kind::Scene, "blender.fbx", "blender.fbx"),
+    (Kind::Scene, "text.fbx", "text.fbx"),
     (Kind::Scene, "scene.ron", "scene.ron"),
     (Kind::Scene, "sky.ron", "sky.ron"),
     (Kind::Scene, "sky.ron", "sky.hdr"),
@@ -110,6 +112,8 @@ pub fn write(folder: &Path) {
     let (room, moving) = (builtin("cornell"), builtin("moving-box"));
     ["room.obj", "room.gltf", "room.glb"].iter().for_each(|name| drop(room.export(&folder.join(name)).unwrap()));
     moving.export(&folder.join("moving.gltf")).unwrap();
+    std::fs::copy(root().join("tests/fbx_files/blender.fbx"), folder.join("blender.fbx")).unwrap();
+    put("text.fbx", super::fbx::room().as_bytes());
     put("small.obj", SMALL_OBJ.as_bytes());
     put("small.mtl", SMALL_MTL.as_bytes());
     let picture = DynamicImage::ImageRgba8(RgbaImage::from_fn(8, 8, |x, y| {

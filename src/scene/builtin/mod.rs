@@ -96,8 +96,10 @@ pub(super) fn hint(name: &str) -> String {
     let all = names.join(", ");
     match nearest {
         Some(near) if strsim::jaro_winkler(near, name) > 0.7 => {
-            format!("did you mean '{near}'? Built-in scenes: {all}; otherwise give a .ron, .obj, .gltf or .glb file")
+            format!(
+                "did you mean '{near}'? Built-in scenes: {all}; otherwise give a .ron, .obj, .gltf, .glb or .fbx file"
+            )
         }
-        _ => format!("built-in scenes: {all}; otherwise give a .ron, .obj, .gltf or .glb file"),
+        _ => format!("built-in scenes: {all}; otherwise give a .ron, .obj, .gltf, .glb or .fbx file"),
     }
 }

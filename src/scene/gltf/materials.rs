@@ -139,10 +139,10 @@ fn convert(
 
     let mut placing = Placing::default();
     let references = [
-        color.as_ref().map(|t| placing.add(t)),
-        rough.as_ref().map(|(t, _)| placing.add(t)),
+        color.as_ref().map(|t| placing.add_texture(t)),
+        rough.as_ref().map(|(t, _)| placing.add_texture(t)),
         normal.as_ref().and_then(|_| placing.add_normal_map(from)),
-        emission.as_ref().map(|t| placing.add(t)),
+        emission.as_ref().map(|t| placing.add_texture(t)),
     ];
     let (uv, more) = placing.sources();
     if more {

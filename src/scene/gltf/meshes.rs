@@ -11,8 +11,9 @@ use rayon::prelude::*;
 use super::accessors;
 use super::buffers::Buffers;
 use super::placing::{UvSource, UvSources};
-use super::skins::Rig;
+use super::skins;
 use crate::scene::mesh::{Dropped, RawMesh, flat, flatten, prepare_rigged, unweld};
+use crate::scene::motion::Rig;
 use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Material, Mesh, Submesh, Vertex};
@@ -57,7 +58,7 @@ pub(super) fn read(
             room = room.checked_sub(raw.mesh.vertices.len() + raw.mesh.indices.len()).ok_or_else(|| {
                 format!("mesh '{name}': with it there are many more vertices than the file holds bytes")
             })?;
-            let rig = Rig::read(&primitive, buffers, raw.mesh.vertices.len(), &mut room);
+            let rig = skins::read(&primitive, buffers, raw.mesh.vertices.len(), &mut room);
             let rig = rig.map_err(|problem| format!("mesh '{name}': {problem}"))?;
             if rig.is_some() {
                 raw.sources = (0..raw.mesh.vertices.len() as u32).collect();

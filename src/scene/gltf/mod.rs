@@ -25,6 +25,7 @@ use std::path::Path;
 
 use crate::files::read_input;
 
+use super::motion::attach;
 use super::progress::Progress;
 use super::{Scene, SceneError};
 use buffers::Buffers;
@@ -55,8 +56,13 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let placed = nodes::place(&document, &buffers, &tracks, &rigs, &mut warnings).map_err(fail)?;
     let nodes::Placed { mut scene, frames, deforming } = placed;
     scene.meshes = meshes;
-    let parts = (&rigs, &tracks, &frames);
-    skins::attach(&mut scene, &deforming, parts, (&document, &buffers), &mut warnings).map_err(fail)?;
+    let mut posings = Vec::new();
+    for (instance, node) in &deforming {
+        let Some(rig) = rigs.get(&(scene.instances[*instance].mesh as usize)) else { continue };
+        let posing = skins::posing((*instance, node), rig, (&tracks, &frames), &buffers, &mut warnings);
+        posings.push(posing.map_err(fail)?);
+    }
+    attach(&mut scene, posings, &rigs, meshes::MANY + buffers.len()).map_err(fail)?;
     lights::warn_of_units(&document, &scene.lights, &mut warnings);
     // Warnings so far know only parts of the file; each must name the file itself.
     let name = path.display().to_string();

@@ -10,8 +10,8 @@ use super::animation::Tracks;
 use super::buffers::Buffers;
 use super::instancing::{self, MAX_INSTANCES};
 use super::lights;
-use super::skins::Rig;
 use crate::scene::defaults::least_reach;
+use crate::scene::motion::Rig;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Camera, Instance, Mover, Scene};
 

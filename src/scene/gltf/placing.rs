@@ -5,6 +5,7 @@ use ::gltf::texture::{MagFilter, Sampler, WrappingMode};
 use ::gltf::{Material, texture};
 use glam::{Affine2, Vec2};
 
+use crate::scene::coordinates::References;
 use crate::scene::{Lookup, Wrap};
 
 /// Texture coordinates: a set of the file, and a transform that is baked into the vertices.
@@ -51,57 +52,30 @@ fn placed(offset: [f32; 2], rotation: f32, scale: [f32; 2]) -> Affine2 {
     Affine2::from_scale_angle_translation(Vec2::from_array(scale), -rotation, Vec2::from_array(offset))
 }
 
-/// The two kinds of texture coordinates that the vertices of a material have.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct UvSources {
-    pub first: UvSource,
-    pub second: Option<UvSource>,
-}
+/// The sources that the vertices of a material have.
+pub(super) type UvSources = crate::scene::coordinates::UvSources<UvSource>;
 
-/// Texture references of a material: where each takes its coordinates from, and its sampler.
-#[derive(Default)]
-pub(super) struct Placing<'a> {
-    references: Vec<(UvSource, Sampler<'a>)>,
-}
+/// Textures of a material: where each takes its coordinates from, and its sampler.
+pub(super) type Placing = References<UvSource>;
 
-impl<'a> Placing<'a> {
-    /// Adds a reference and gives its number.
-    pub fn add(&mut self, info: &texture::Info<'a>) -> usize {
-        self.references.push((UvSource::of(info), info.texture().sampler()));
-        self.references.len() - 1
+impl Placing {
+    /// Adds a texture and gives its number.
+    pub fn add_texture(&mut self, info: &texture::Info) -> usize {
+        self.add(UvSource::of(info), lookup(&info.texture().sampler()))
     }
 
     /// Adds the normal map of a material that has one.
-    pub fn add_normal_map(&mut self, material: &Material<'a>) -> Option<usize> {
+    pub fn add_normal_map(&mut self, material: &Material) -> Option<usize> {
         let sampler = material.normal_texture()?.texture().sampler();
-        self.references.push((UvSource::of_normal_map(material)?, sampler));
-        Some(self.references.len() - 1)
+        Some(self.add(UvSource::of_normal_map(material)?, lookup(&sampler)))
     }
+}
 
-    /// The two sources that most references take, those of earlier ones first; and whether others are left out.
-    pub fn sources(&self) -> (UvSources, bool) {
-        let mut counts: Vec<(UvSource, usize)> = Vec::new();
-        for (source, _) in &self.references {
-            match counts.iter_mut().find(|(known, _)| known == source) {
-                Some((_, count)) => *count += 1,
-                None => counts.push((*source, 1)),
-            }
-        }
-        // The sort is stable.
-        counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        let mut sources = counts.iter().map(|(source, _)| *source);
-        let found = UvSources { first: sources.next().unwrap_or_default(), second: sources.next() };
-        (found, sources.next().is_some())
-    }
-
-    /// How a reference is looked up; one of a third source takes the first.
-    pub fn lookup(&self, reference: Option<usize>, sources: &UvSources) -> Lookup {
-        let Some((source, sampler)) = reference.and_then(|i| self.references.get(i)) else { return Lookup::default() };
-        Lookup {
-            wrap: [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())],
-            nearest: sampler.mag_filter() == Some(MagFilter::Nearest),
-            second_set: sources.second.as_ref() == Some(source),
-        }
+fn lookup(sampler: &Sampler) -> Lookup {
+    Lookup {
+        wrap: [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())],
+        nearest: sampler.mag_filter() == Some(MagFilter::Nearest),
+        ..Lookup::default()
     }
 }
 

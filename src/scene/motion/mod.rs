@@ -3,6 +3,7 @@
 mod bounds;
 mod curve;
 mod deform;
+mod rig;
 
 use std::sync::Arc;
 
@@ -10,6 +11,7 @@ use glam::{Mat4, Quat, Vec3};
 
 pub use curve::{Curve, Interpolation, Value};
 pub use deform::{Deformer, Influence, Joint, Morph};
+pub(in crate::scene) use rig::{Posing, Rig, attach};
 
 use super::Scene;
 

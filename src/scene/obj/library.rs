@@ -8,8 +8,8 @@ use indexmap::IndexSet;
 
 use crate::files::read_input;
 
-use super::find::{Finder, Found};
 use super::lines::{decode, lines, shown, without_comment, words};
+use crate::scene::phong::{Finder, Found};
 use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 

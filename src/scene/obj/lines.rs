@@ -87,7 +87,7 @@ pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
 }
 
 /// A name without the comment behind it. `Material #25` of 3ds Max is a name.
-pub(super) fn without_comment(text: &str) -> &str {
+pub(in crate::scene) fn without_comment(text: &str) -> &str {
     let is_comment = |at: &(usize, &str)| {
         let before = text[..at.0].ends_with(is_blank);
         before && !text[at.0 + 1..].starts_with(|c: char| c.is_ascii_digit())
@@ -97,7 +97,7 @@ pub(super) fn without_comment(text: &str) -> &str {
 }
 
 /// A name for a message: whatever a file calls itself is one short line.
-pub(super) fn shown(name: &str) -> String {
+pub(in crate::scene) fn shown(name: &str) -> String {
     const LONGEST: usize = 60;
     let end = if name.chars().nth(LONGEST).is_some() { "..." } else { "" };
     let clean = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };

@@ -2,13 +2,13 @@
 
 use glam::Vec3;
 
-use super::find::{Finder, Found};
 use super::library::Definition;
 use super::lines::shown;
 use super::maps::{Map, Placement, parse};
-use crate::scene::texture::{Recipe, Requests, Source};
+use crate::scene::phong::{Asked, Finder, Found, Maps, Parts, Picture, Words, opacity};
+use crate::scene::texture::{Requests, Source};
 use crate::scene::warnings::Warnings;
-use crate::scene::{Lookup, Lookups, Material, Wrap};
+use crate::scene::{Lookup, Material, Wrap};
 
 /// What faces need of their material.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -25,16 +25,18 @@ pub(super) fn surface_of(surfaces: &[Surface], material: Option<u32>) -> Surface
     material.map_or(surfaces.last(), |used| surfaces.get(used as usize)).copied().unwrap_or_default()
 }
 
-/// A material, with questions that its pictures answer.
+/// A material with the placement of its pictures.
 #[derive(Debug)]
 pub(super) struct Read {
-    pub material: Material,
+    pub asked: Asked,
     pub placement: Placement,
-    /// Whether the alpha of its picture may be a mask: the library has no other.
-    pub mask_by_alpha: bool,
-    /// Whether its normal map may hold heights.
-    pub is_bump: bool,
 }
+
+pub(super) const WORDS: Words = Words {
+    holes: "the picture of map_Kd has holes in its alpha and there is no map_d: it is a mask at 0.5",
+    all_clear: "the alpha of map_Kd is below 0.5 everywhere: it is left out",
+    heights: "bump maps that hold heights are left out. Convert them to normal maps, and write 'norm FILE'",
+};
 
 /// Finds pictures and requests them.
 pub(super) struct Pictures<'a> {
@@ -57,68 +59,44 @@ pub(super) fn read(definition: &Definition, pictures: &mut Pictures, warnings: &
     let (normal_map, is_bump) = reader.normal_map();
     let strength = normal_map.as_ref().and_then(|(_, map)| map.strength);
     let placement = reader.placement([&color, &alpha, &emission_map, &rough_map, &metal_map, &normal_map]);
-    let lookup = |map: &Option<(Source, Map)>| Lookup {
-        wrap: if map.as_ref().is_some_and(|(_, map)| map.clamp) { [Wrap::Clamp; 2] } else { [Wrap::Repeat; 2] },
-        ..Lookup::default()
+    let laid = |map: Option<(Source, Map)>| {
+        map.map(|(image, map)| {
+            let wrap = if map.clamp { [Wrap::Clamp; 2] } else { [Wrap::Repeat; 2] };
+            Picture { image, lookup: Lookup { wrap, ..Lookup::default() } }
+        })
     };
-    let lookups = Lookups {
-        base_color: lookup(if color.is_some() { &color } else { &alpha }),
-        metallic_roughness: lookup(if rough_map.is_some() { &rough_map } else { &metal_map }),
-        normal: lookup(&normal_map),
-        emission: lookup(&emission_map),
+    let maps = Maps {
+        color: laid(color),
+        alpha: laid(alpha),
+        roughness: laid(rough_map),
+        metallic: laid(metal_map),
+        normal: laid(normal_map),
+        is_bump,
+        emission: laid(emission_map),
     };
-    let file = |map: Option<(Source, Map)>| map.map(|(source, _)| source);
-    let (color, alpha, emission_map) = (file(color), file(alpha), file(emission_map));
-    let (rough_map, metal_map, normal_map) = (file(rough_map), file(metal_map), file(normal_map));
-
-    let cutoff = reader.number("alpha_cutoff");
-    let mask_by_alpha = color.is_some() && alpha.is_none() && cutoff.is_none();
-    let cutoff = cutoff.unwrap_or(0.5).clamp(0.0, 1.0);
-    let opacity = reader.opacity(alpha.is_some(), cutoff);
-    let masked = alpha.is_some() || opacity < cutoff;
-    let base_color = reader.factor("kd", "map_Kd", color.is_some()).unwrap_or(Vec3::splat(0.8));
-    let emission = reader.factor("ke", "map_Ke", emission_map.is_some()).unwrap_or(Vec3::ZERO);
-    let mask = (cutoff * 255.0).round() as u8;
-    let base_color_texture = match (color, alpha) {
-        (Some(image), None) => Some(Recipe::Color { image, mask: None }),
-        (Some(image), Some(alpha)) if image == alpha => Some(Recipe::Color { image, mask: Some(mask) }),
-        (color, Some(alpha)) => Some(Recipe::ColorAndMask { color, alpha, mask }),
-        (None, None) => None,
+    let mut parts = Parts {
+        base_color: reader.factor("kd", "map_Kd", maps.color.is_some()).unwrap_or(Vec3::splat(0.8)),
+        emission: reader.factor("ke", "map_Ke", maps.emission.is_some()).unwrap_or(Vec3::ZERO),
+        opacity: reader.number("d").or_else(|| reader.number("tr").map(|t| 1.0 - t)).unwrap_or(1.0),
+        cutoff: reader.number("alpha_cutoff"),
+        roughness: reader.number("pr"),
+        exponent: reader.number("ns"),
+        metallic: reader.number("pm"),
+        maps,
+        name,
     };
-    let rough_metal = rough_map.is_some() || metal_map.is_some();
-    // A factor that is not given must not switch its map off.
-    let metallic = reader.number("pm").unwrap_or(if metal_map.is_some() { 1.0 } else { 0.0 });
-    let from_exponent = |ns: f32| {
-        if rough_metal { 1.0 } else { (2.0 / (ns.max(0.0) + 2.0)).sqrt() }
-    };
-    let roughness = reader.number("pr").unwrap_or_else(|| reader.number("ns").map_or(1.0, from_exponent));
-    let mut ask = |recipe: Recipe| reader.pictures.requests.ask(recipe, &name);
-    let base_color_texture = base_color_texture.map(&mut ask);
-    let metallic_roughness_texture =
-        rough_metal.then(|| ask(Recipe::RoughnessAndMetallic { roughness: rough_map, metallic: metal_map }));
-    let normal_texture = normal_map.map(|image| ask(Recipe::Normal { image }));
-    let emission_texture = emission_map.map(|image| ask(Recipe::Color { image, mask: None }));
+    let has_alpha = parts.maps.alpha.is_some();
+    parts.opacity = opacity(parts.opacity, has_alpha, parts.cutoff(), &shown(&parts.name), reader.warnings);
+    let asked = parts.build(reader.pictures.requests);
     let material = Material {
-        base_color: base_color.extend(opacity),
-        metallic: metallic.clamp(0.0, 1.0),
-        roughness: roughness.clamp(0.0, 1.0),
         ior: reader.number("ior").unwrap_or(1.5).clamp(0.0, 1e6),
         specular: reader.number("specular").unwrap_or(1.0).clamp(0.0, 1.0),
         specular_color: reader.color("specular_color").unwrap_or(Vec3::ONE),
-        emission,
-        alpha_cutoff: if masked { cutoff } else { 0.0 },
-        // OBJ cannot say; windings of old files are unreliable, so nothing may be culled.
         two_sided: reader.number("two_sided").is_none_or(|v| v != 0.0),
         normal_scale: reader.number("normal_scale").or(strength).unwrap_or(1.0),
-        base_color_texture,
-        metallic_roughness_texture,
-        normal_texture,
-        emission_texture,
-        lookups,
-        name,
-        ..Material::default()
+        ..asked.material
     };
-    Read { material, placement, mask_by_alpha, is_bump }
+    Read { asked: Asked { material, ..asked }, placement }
 }
 
 impl Reader<'_, '_> {
@@ -147,17 +125,6 @@ impl Reader<'_, '_> {
             return Some(Vec3::ONE);
         }
         color.or(Some(Vec3::ONE))
-    }
-
-    /// `d`, or the rest of `Tr`. Without a map the surface is there, or it is not.
-    fn opacity(&mut self, has_map: bool, cutoff: f32) -> f32 {
-        let opacity = self.number("d").or_else(|| self.number("tr").map(|t| 1.0 - t));
-        let opacity = opacity.unwrap_or(1.0).clamp(0.0, 1.0);
-        if !has_map && opacity < 1.0 && cutoff > 0.0 {
-            let shown = if opacity < cutoff { "left out" } else { "opaque" };
-            self.warn(format!("materials with an opacity of {opacity:.2} are {shown}"));
-        }
-        opacity
     }
 
     /// The file of an entry, with its options.

@@ -1,9 +1,9 @@
-//! Files that an OBJ or MTL file names, as other machines write their paths.
+//! Files that a model names, as other machines write their paths.
 
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
-use super::lines::{shown, without_comment};
+use crate::scene::obj::{shown, without_comment};
 use crate::scene::warnings::Warnings;
 
 /// Longer texts are no paths.
@@ -16,7 +16,7 @@ const ENTRIES: usize = 1 << 16;
 const DEPTH: usize = 8;
 
 /// Finds files from the folder of the model.
-pub(super) struct Finder {
+pub(in crate::scene) struct Finder {
     folder: PathBuf,
     /// Texts that were looked for.
     known: HashMap<String, (PathBuf, Found)>,
@@ -26,7 +26,7 @@ pub(super) struct Finder {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Found {
+pub(in crate::scene) enum Found {
     /// Where the text says.
     Exact,
     /// In another case or folder.

@@ -1,0 +1,46 @@
+//! Texture coordinates of materials: each texture names its source, and vertices have two.
+
+use super::Lookup;
+
+/// The two sources of texture coordinates that the vertices of a material have.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct UvSources<S> {
+    pub first: S,
+    pub second: Option<S>,
+}
+
+/// The textures of a material: the source of each, and how it is looked up.
+#[derive(Clone, Debug, Default)]
+pub(super) struct References<S> {
+    list: Vec<(S, Lookup)>,
+}
+
+impl<S: Clone + Default + PartialEq> References<S> {
+    /// Adds a texture and gives its number.
+    pub fn add(&mut self, source: S, lookup: Lookup) -> usize {
+        self.list.push((source, lookup));
+        self.list.len() - 1
+    }
+
+    /// The two sources that most textures take, those of earlier ones first; and whether others are left out.
+    pub fn sources(&self) -> (UvSources<S>, bool) {
+        let mut counts: Vec<(&S, usize)> = Vec::new();
+        for (source, _) in &self.list {
+            match counts.iter_mut().find(|(known, _)| *known == source) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((source, 1)),
+            }
+        }
+        // The sort is stable.
+        counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let mut sources = counts.into_iter().map(|(source, _)| source.clone());
+        let found = UvSources { first: sources.next().unwrap_or_default(), second: sources.next() };
+        (found, sources.next().is_some())
+    }
+
+    /// How a texture is looked up; one of a third source takes the first.
+    pub fn lookup(&self, reference: Option<usize>, sources: &UvSources<S>) -> Lookup {
+        let Some((source, lookup)) = reference.and_then(|i| self.list.get(i)) else { return Lookup::default() };
+        Lookup { second_set: sources.second.as_ref() == Some(source), ..*lookup }
+    }
+}

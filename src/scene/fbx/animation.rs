@@ -1,0 +1,93 @@
+//! Motion of nodes by the first animation, baked by ufbx to keys with straight lines between them.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::{DQuat, Quat, Vec3};
+use ufbx::{BakeOpts, BakedNode, BakedVec3, Node, bake_anim};
+
+use super::file::memory;
+use super::numbers::vector;
+use crate::scene::obj::shown;
+use crate::scene::warnings::Warnings;
+use crate::scene::{Curve, Interpolation, Rest, Track};
+
+/// The tracks of nodes that move, by their numbers.
+#[derive(Default)]
+pub(super) struct Motion(HashMap<u32, Arc<Track>>);
+
+impl Motion {
+    /// Bakes the first animation. The file's length in bytes limits the memory.
+    pub fn read(file: &ufbx::Scene, bytes: usize, warnings: &mut Warnings) -> Result<Motion, String> {
+        let mut stacks = file.anim_stacks.into_iter();
+        let Some(first) = stacks.next() else { return Ok(Motion::default()) };
+        for other in stacks {
+            warnings.add("of several animations the first is played", shown(&other.element.name));
+        }
+        let (temp_allocator, result_allocator) = (memory(bytes), memory(bytes));
+        let options = BakeOpts { temp_allocator, result_allocator, trim_start_time: true, ..BakeOpts::default() };
+        let baked = bake_anim(file, &first.anim, options)
+            .map_err(|error| format!("its animation cannot be read ({})", error.description.to_lowercase()))?;
+        let moving =
+            baked.nodes.iter().filter(|n| !(n.constant_translation && n.constant_rotation && n.constant_scale));
+        let moving: Vec<&BakedNode> = moving.collect();
+        // All start over together.
+        let period = moving.iter().map(|n| last_key(n)).fold(0.0, f64::max) as f32;
+        let mut tracks = HashMap::new();
+        for baked in moving {
+            let Some(node) = file.nodes.as_ref().get(baked.typed_id as usize) else { continue };
+            let track = track(node, baked, Some(period).filter(|p| *p > 0.0 && p.is_finite()));
+            let track = track.ok_or_else(|| {
+                format!("node '{}' has a motion that is not finite. Export it again", shown(&node.element.name))
+            })?;
+            tracks.insert(baked.typed_id, Arc::new(track));
+        }
+        Ok(Motion(tracks))
+    }
+
+    /// How a node moves in its parent, if it does.
+    pub fn of(&self, node: &Node) -> Option<Arc<Track>> {
+        self.0.get(&node.element.typed_id).cloned()
+    }
+}
+
+fn last_key(node: &BakedNode) -> f64 {
+    let vectors = [&node.translation_keys, &node.scale_keys].into_iter().filter_map(|keys| keys.last().map(|k| k.time));
+    vectors.chain(node.rotation_keys.last().map(|k| k.time)).filter(|t| t.is_finite()).fold(0.0, f64::max)
+}
+
+/// None where a number is not finite.
+fn track(node: &Node, baked: &BakedNode, period: Option<f32>) -> Option<Track> {
+    let rest = &node.local_transform;
+    let rest = Rest {
+        translation: vector(rest.translation).as_vec3(),
+        rotation: rotation(rest.rotation),
+        scale: vector(rest.scale).as_vec3(),
+    };
+    let vectors = |keys: &[BakedVec3]| {
+        let times = keys.iter().map(|k| k.time as f32).collect();
+        let values: Vec<Vec3> = keys.iter().map(|k| vector(k.value).as_vec3()).collect();
+        Curve::new(times, values, Interpolation::Linear)
+    };
+    let curve = |keys: &[BakedVec3]| if keys.is_empty() { Some(None) } else { vectors(keys).map(Some) };
+    let rotations: Vec<Quat> = baked.rotation_keys.iter().map(|k| rotation(k.value)).collect();
+    let times: Vec<f32> = baked.rotation_keys.iter().map(|k| k.time as f32).collect();
+    let turns = match times.is_empty() {
+        true => None,
+        false => Some(Curve::new(times, rotations, Interpolation::Linear)?),
+    };
+    Some(Track {
+        translation: curve(&baked.translation_keys)?,
+        rotation: turns,
+        scale: curve(&baked.scale_keys)?,
+        rest,
+        period,
+    })
+}
+
+/// Without a length it turns nothing.
+fn rotation(q: ufbx::Quat) -> Quat {
+    let q = DQuat::from_xyzw(q.x, q.y, q.z, q.w);
+    let sound = q.is_finite() && q.length_squared() > 0.0;
+    if sound { q.normalize().as_quat().normalize() } else { Quat::IDENTITY }
+}

@@ -1,0 +1,193 @@
+//! Meshes: one of the scene for each mesh of the file and list of materials that its nodes give it.
+
+use std::collections::HashMap;
+
+use glam::DVec2;
+use ufbx::{Mesh as From, VertexVec2};
+
+use super::materials::{Read, UvSource};
+use super::skins;
+use crate::metrics::colour::srgb_to_linear;
+use crate::scene::mesh::{RawMesh, weld_sources};
+use crate::scene::motion::Rig;
+use crate::scene::progress::Progress;
+use crate::scene::warnings::Warnings;
+use crate::scene::{Mesh, Submesh, Vertex};
+
+/// Corners that any file may have.
+pub(super) const MANY: usize = 1 << 24;
+
+/// A mesh of the file, and what its parts are made of.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Wanted {
+    /// A number in the file.
+    pub mesh: u32,
+    /// Numbers of materials in the file, one for each part.
+    pub materials: Vec<u32>,
+}
+
+/// The meshes in order, what moves the vertices of those with a skin, and whether any part has no material: its number is the one after those of the file.
+pub(super) fn read(
+    file: &ufbx::Scene,
+    wanted: &[Wanted],
+    materials: &[Read],
+    bytes: usize,
+    warnings: &mut Warnings,
+    progress: Progress,
+) -> Result<(Vec<RawMesh>, HashMap<usize, Rig>, bool), String> {
+    // Nodes may share meshes; a small file must not fill the memory.
+    let mut room = MANY + bytes;
+    let mut used = false;
+    let (mut meshes, mut rigs) = (Vec::new(), HashMap::new());
+    for Wanted { mesh: number, materials: list } in wanted {
+        if progress.stopped() {
+            return Err(String::new());
+        }
+        let Some(from) = file.meshes.as_ref().get(*number as usize) else { return Err(damaged()) };
+        let name = name(from);
+        room = room
+            .checked_sub(from.num_triangles.saturating_mul(3))
+            .ok_or_else(|| format!("mesh '{name}': with it there are many more corners than the file holds bytes"))?;
+        let of_part = |part: usize| list.get(part).map_or(materials.len(), |m| *m as usize);
+        let skin = skins::of(from);
+        if let Some(skin) = skin {
+            rigs.insert(meshes.len(), skins::rig(from, skin, warnings));
+        }
+        let moved = skin.map(|_| skins::rest(from));
+        let (corners, sources) = (Vec::new(), Vec::new());
+        let mut reader = Reader { from, moved, corners, sources, triangles: vec![0; from.max_face_triangles * 3] };
+        let mut submeshes = Vec::new();
+        for (part, faces) in from.material_parts.iter().enumerate() {
+            let material = of_part(part);
+            let read = materials.get(material);
+            if read.is_some_and(|read| read.asked.material.is_left_out()) || faces.num_triangles == 0 {
+                continue;
+            }
+            used |= read.is_none();
+            let first = reader.corners.len();
+            reader.add(&faces.face_indices, read).ok_or_else(damaged)?;
+            let index_count = (reader.corners.len() - first) as u32;
+            submeshes.push(Submesh { first_index: first as u32, index_count, material: material as u32 });
+        }
+        let (vertices, indices, sources) = weld_sources(&reader.corners, &reader.sources);
+        let mesh = Mesh { name, vertices, indices, submeshes };
+        meshes.push(RawMesh { mesh, sources, has_normals: true, has_tangents: false });
+    }
+    Ok((meshes, rigs, used))
+}
+
+/// Its own name, or that of its first node.
+fn name(from: &From) -> String {
+    let own = from.element.name.as_ref();
+    let node = from.element.instances.into_iter().next().map(|node| node.element.name.as_ref());
+    if own.is_empty() { node.unwrap_or_default().to_owned() } else { own.to_owned() }
+}
+
+fn damaged() -> String {
+    "its faces name vertices that do not exist. The file is damaged; export it again".into()
+}
+
+struct Reader<'a> {
+    from: &'a From,
+    /// Of a mesh with a skin, which is read as it is before the skin moves it: how far vertices are from their places.
+    moved: Option<HashMap<u32, [f64; 3]>>,
+    /// Three a triangle.
+    corners: Vec<Vertex>,
+    /// Of a mesh with a skin: the vertex of each corner.
+    sources: Vec<u32>,
+    /// Indices of the triangles of one face.
+    triangles: Vec<u32>,
+}
+
+impl Reader<'_> {
+    /// Adds faces of one material; none if one of them is broken.
+    fn add(&mut self, faces: &[u32], material: Option<&Read>) -> Option<()> {
+        let no_sources = Default::default();
+        let sources = material.map_or(&no_sources, |read| &read.uv);
+        let first = set(self.from, Some(&sources.first));
+        let second = set(self.from, sources.second.as_ref());
+        for number in faces {
+            let face = *self.from.faces.as_ref().get(*number as usize)?;
+            if face.num_indices < 3 {
+                continue;
+            }
+            let count = self.from.triangulate_face(&mut self.triangles, face) as usize * 3;
+            for i in 0..count {
+                let index = *self.triangles.get(i)? as usize;
+                let mut vertex = self.corner(index)?;
+                vertex.uv = first.map_or(Some([0.0; 2]), |set| set.at(index))?;
+                vertex.uv_second = second.map_or(Some([0.0; 2]), |set| set.at(index))?;
+                self.corners.push(vertex);
+            }
+        }
+        Some(())
+    }
+}
+
+impl Reader<'_> {
+    /// Position, normal and colour of a corner.
+    fn corner(&mut self, index: usize) -> Option<Vertex> {
+        let from = self.from;
+        let color = color(from, index)?;
+        let Some(moved) = &self.moved else {
+            let normal = if from.skinned_normal.exists { vector_at(&from.skinned_normal, index)? } else { [0.0; 3] };
+            return Some(Vertex {
+                position: vector_at(&from.skinned_position, index)?,
+                normal,
+                color,
+                ..Vertex::default()
+            });
+        };
+        let vertex = *from.vertex_indices.as_ref().get(index)?;
+        self.sources.push(vertex);
+        let mut position = vector_at(&from.vertex_position, index)?;
+        if let Some(by) = moved.get(&vertex) {
+            position.iter_mut().zip(by).for_each(|(p, by)| *p += *by as f32);
+        }
+        let normal = if from.vertex_normal.exists { vector_at(&from.vertex_normal, index)? } else { [0.0; 3] };
+        Some(Vertex { position, normal, color, ..Vertex::default() })
+    }
+}
+
+/// The set that a source names, or the first one.
+fn set<'a>(from: &'a From, source: Option<&'a UvSource>) -> Option<Set<'a>> {
+    let source = source?;
+    let sets = from.uv_sets.as_ref();
+    let set = sets.iter().find(|set| set.name == source.set.as_str()).or(sets.first())?;
+    Some(Set { values: &set.vertex_uv, source })
+}
+
+/// Texture coordinates of a mesh, placed as a texture asks for.
+#[derive(Clone, Copy)]
+struct Set<'a> {
+    values: &'a VertexVec2,
+    source: &'a UvSource,
+}
+
+impl Set<'_> {
+    /// The origin of FBX is the lower left of the picture, that of scenes the upper left.
+    fn at(&self, corner: usize) -> Option<[f32; 2]> {
+        let index = *self.values.indices.as_ref().get(corner)?;
+        let uv = self.values.values.as_ref().get(index as usize)?;
+        let placed = self.source.transform.transform_point2(DVec2::new(uv.x, uv.y));
+        Some([placed.x as f32, (1.0 - placed.y) as f32])
+    }
+}
+
+fn vector_at(list: &ufbx::VertexVec3, index: usize) -> Option<[f32; 3]> {
+    let value = list.values.as_ref().get(*list.indices.as_ref().get(index)? as usize)?;
+    Some([value.x as f32, value.y as f32, value.z as f32])
+}
+
+/// The colour of a corner; white where there is none.
+fn color(from: &From, index: usize) -> Option<[f32; 4]> {
+    let colors = &from.vertex_color;
+    Some(if colors.exists {
+        let value = colors.values.as_ref().get(*colors.indices.as_ref().get(index)? as usize)?;
+        // Most programs write sRGB.
+        let [r, g, b] = [value.x, value.y, value.z].map(|c| srgb_to_linear((c as f32).clamp(0.0, 1.0)));
+        [r, g, b, value.w as f32]
+    } else {
+        [1.0; 4]
+    })
+}

@@ -1,0 +1,93 @@
+//! Pictures of materials: files that the document names or holds.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::DAffine2;
+use ufbx::{Texture, TextureType, WrapMode};
+
+use super::materials::UvSource;
+use super::numbers::affine;
+use crate::scene::obj::shown;
+use crate::scene::phong::{Finder, Found};
+use crate::scene::texture::{MAX_FILE_BYTES, Requests, Source};
+use crate::scene::warnings::Warnings;
+use crate::scene::{Lookup, Wrap};
+
+/// Finds pictures and requests them.
+pub(super) struct Pictures<'a> {
+    /// The name of the document.
+    name: &'a str,
+    finder: Finder,
+    pub requests: &'a mut Requests,
+    /// Pictures in the document, by where their bytes begin and how many they are.
+    held: HashMap<(usize, usize), Source>,
+}
+
+/// A picture with the place of its coordinates.
+pub(super) struct Laid {
+    pub image: Source,
+    pub source: UvSource,
+    pub lookup: Lookup,
+    /// Whether nothing is there.
+    pub is_missing: bool,
+}
+
+impl<'a> Pictures<'a> {
+    pub fn new(name: &'a str, finder: Finder, requests: &'a mut Requests) -> Pictures<'a> {
+        Pictures { name, finder, requests, held: HashMap::new() }
+    }
+
+    /// The picture of a texture; of layers the first one.
+    pub fn find(&mut self, texture: &Texture, warnings: &mut Warnings) -> Option<Laid> {
+        let name = shown(&texture.element.name);
+        let Some(file) = texture.file_textures.into_iter().next() else {
+            warnings.add("textures without a picture are left out", name);
+            return None;
+        };
+        if texture.type_ != TextureType::File {
+            warnings.add("of textures in layers and of procedural ones the first picture is used", name);
+        }
+        let wrap = |mode: WrapMode| if mode == WrapMode::Clamp { Wrap::Clamp } else { Wrap::Repeat };
+        let to_texture = affine(&file.uv_to_texture);
+        let transform = DAffine2::from_mat2_translation(
+            glam::DMat2::from_cols(to_texture.matrix3.x_axis.truncate(), to_texture.matrix3.y_axis.truncate()),
+            to_texture.translation.truncate(),
+        );
+        let (image, is_missing) = self.image(file, warnings);
+        Some(Laid {
+            image,
+            source: UvSource { set: file.uv_set.to_string(), transform },
+            lookup: Lookup { wrap: [wrap(file.wrap_u), wrap(file.wrap_v)], ..Lookup::default() },
+            is_missing,
+        })
+    }
+
+    /// The bytes in the document, or the file by its relative name, or by the one on its author's machine.
+    fn image(&mut self, file: &Texture, warnings: &mut Warnings) -> (Source, bool) {
+        let texts = [file.relative_filename.as_ref(), file.absolute_filename.as_ref(), file.filename.as_ref()];
+        let bytes: &[u8] = &file.content;
+        if !bytes.is_empty() {
+            let key = (bytes.as_ptr() as usize, bytes.len());
+            let name = || {
+                let text = texts.into_iter().find(|text| !text.is_empty()).unwrap_or("picture");
+                format!("{}: {}", self.name, shown(text.rsplit(['/', '\\']).next().unwrap_or(text)))
+            };
+            let source = self.held.entry(key).or_insert_with(|| match bytes.len() as u64 > MAX_FILE_BYTES {
+                true => Source::Missing(name(), format!("it has more than {MAX_FILE_BYTES} bytes")),
+                false => Source::Bytes(name(), Arc::new(bytes.to_vec())),
+            });
+            return (source.clone(), false);
+        }
+        let named = || texts.into_iter().filter(|text| !text.is_empty());
+        let Some(first) = named().next() else {
+            return (Source::Missing(shown(&file.element.name), "it names no file".into()), true);
+        };
+        for found in [Found::Exact, Found::Elsewhere] {
+            if let Some(text) = named().find(|text| self.finder.look(text).1 == found) {
+                return (Source::File(self.finder.find(text, warnings)), false);
+            }
+        }
+        (Source::File(self.finder.look(first).0), true)
+    }
+}

@@ -1,0 +1,9 @@
+//! Materials and pictures of formats that describe surfaces as Blinn and Phong did: OBJ with MTL, and FBX.
+
+mod find;
+mod parts;
+mod pictures;
+
+pub(super) use find::{Finder, Found};
+pub(super) use parts::{Maps, Parts, Picture, grey, opacity};
+pub(super) use pictures::{Asked, Words, decide};

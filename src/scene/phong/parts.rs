@@ -1,0 +1,128 @@
+//! From the colours, numbers and maps of a file to a material of the scene.
+
+use glam::{Vec3, Vec4};
+
+use super::pictures::Asked;
+use crate::scene::texture::{Recipe, Requests, Source};
+use crate::scene::warnings::Warnings;
+use crate::scene::{Lookup, Lookups, Material};
+
+/// A picture, and how it is looked up.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::scene) struct Picture {
+    pub image: Source,
+    pub lookup: Lookup,
+}
+
+/// The pictures of a material, each of one kind.
+#[derive(Clone, Debug, Default)]
+pub(in crate::scene) struct Maps {
+    pub color: Option<Picture>,
+    /// White is opaque.
+    pub alpha: Option<Picture>,
+    /// Grey.
+    pub roughness: Option<Picture>,
+    /// Grey.
+    pub metallic: Option<Picture>,
+    pub normal: Option<Picture>,
+    /// Whether the normal map may hold heights.
+    pub is_bump: bool,
+    pub emission: Option<Picture>,
+}
+
+/// A material as a file describes it.
+#[derive(Clone, Debug)]
+pub(in crate::scene) struct Parts {
+    pub name: String,
+    pub base_color: Vec3,
+    pub opacity: f32,
+    /// Below this alpha nothing is there, if the file names a number.
+    pub cutoff: Option<f32>,
+    pub roughness: Option<f32>,
+    /// The exponent of Blinn and Phong, used if there is no roughness.
+    pub exponent: Option<f32>,
+    pub metallic: Option<f32>,
+    pub emission: Vec3,
+    pub maps: Maps,
+}
+
+impl Parts {
+    /// The alpha below which nothing is there.
+    pub fn cutoff(&self) -> f32 {
+        self.cutoff.unwrap_or(0.5).clamp(0.0, 1.0)
+    }
+
+    /// The material, with its pictures requested.
+    pub fn build(self, requests: &mut Requests) -> Asked {
+        let cutoff = self.cutoff();
+        let Parts { name, maps, .. } = self;
+        let lookup = |map: &Option<Picture>| map.as_ref().map_or(Lookup::default(), |map| map.lookup);
+        let lookups = Lookups {
+            base_color: lookup(if maps.color.is_some() { &maps.color } else { &maps.alpha }),
+            metallic_roughness: lookup(if maps.roughness.is_some() { &maps.roughness } else { &maps.metallic }),
+            normal: lookup(&maps.normal),
+            emission: lookup(&maps.emission),
+        };
+        let masked = maps.alpha.is_some() || self.opacity < cutoff;
+        let mask_by_alpha = maps.color.is_some() && maps.alpha.is_none() && self.cutoff.is_none();
+        let file = |map: Option<Picture>| map.map(|map| map.image);
+        let (color, alpha) = (file(maps.color), file(maps.alpha));
+        let (rough_map, metal_map) = (file(maps.roughness), file(maps.metallic));
+        let mask = (cutoff * 255.0).round() as u8;
+        let base_color_texture = match (color, alpha) {
+            (Some(image), None) => Some(Recipe::Color { image, mask: None }),
+            (Some(image), Some(alpha)) if image == alpha => Some(Recipe::Color { image, mask: Some(mask) }),
+            (color, Some(alpha)) => Some(Recipe::ColorAndMask { color, alpha, mask }),
+            (None, None) => None,
+        };
+        let rough_metal = rough_map.is_some() || metal_map.is_some();
+        // A factor that is not given must not switch its map off.
+        let metallic = self.metallic.unwrap_or(if metal_map.is_some() { 1.0 } else { 0.0 });
+        let from_exponent = |exponent: f32| if rough_metal { 1.0 } else { roughness_of(exponent) };
+        let roughness = self.roughness.unwrap_or_else(|| self.exponent.map_or(1.0, from_exponent));
+        let mut ask = |recipe: Recipe| requests.ask(recipe, &name);
+        let base_color_texture = base_color_texture.map(&mut ask);
+        let metallic_roughness_texture =
+            rough_metal.then(|| ask(Recipe::RoughnessAndMetallic { roughness: rough_map, metallic: metal_map }));
+        let normal_texture = file(maps.normal).map(|image| ask(Recipe::Normal { image }));
+        let emission_texture = file(maps.emission).map(|image| ask(Recipe::Color { image, mask: None }));
+        let material = Material {
+            base_color: self.base_color.extend(self.opacity),
+            metallic: metallic.clamp(0.0, 1.0),
+            roughness: roughness.clamp(0.0, 1.0),
+            emission: self.emission,
+            alpha_cutoff: if masked { cutoff } else { 0.0 },
+            // These formats cannot say; windings of old files are unreliable, so nothing may be culled.
+            two_sided: true,
+            base_color_texture,
+            metallic_roughness_texture,
+            normal_texture,
+            emission_texture,
+            lookups,
+            name,
+            ..Material::default()
+        };
+        Asked { material, mask_by_alpha, is_bump: maps.is_bump }
+    }
+}
+
+/// Roughness with a lobe as wide as that of an exponent.
+fn roughness_of(exponent: f32) -> f32 {
+    (2.0 / (exponent.max(0.0) + 2.0)).sqrt()
+}
+
+/// The material of faces without one. Colours of their vertices are their whole colour.
+pub(in crate::scene) fn grey(has_colors: bool) -> Material {
+    let base_color = if has_colors { Vec4::ONE } else { Material::default().base_color };
+    Material { base_color, two_sided: true, ..Material::default() }
+}
+
+/// An opacity from 0 to 1. Without a map the surface is there, or it is not; numbers between are a warning.
+pub(in crate::scene) fn opacity(opacity: f32, has_map: bool, cutoff: f32, name: &str, warnings: &mut Warnings) -> f32 {
+    let opacity = opacity.clamp(0.0, 1.0);
+    if !has_map && opacity < 1.0 && cutoff > 0.0 {
+        let shown = if opacity < cutoff { "left out" } else { "opaque" };
+        warnings.add(format!("materials with an opacity of {opacity:.2} are {shown}"), name);
+    }
+    opacity
+}
