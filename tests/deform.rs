@@ -195,11 +195,10 @@ fn frames_that_redo_what_changed_are_those_that_redo_all() {
         session.set_redo(redo);
         // It moves, stands, and moves on.
         let steps = [0.1, 0.1, 0.1, 0.0, 0.0, 0.0, 0.2, 0.0, 0.0];
-        let frames = steps.map(|step| {
+        steps.map(|step| {
             session.frame(step).unwrap();
             floats(&mut session, "radiance", 0)
-        });
-        frames
+        })
     });
     assert!(all == changed, "a picture that nothing was forgotten in differs");
     assert_ne!(all[2], all[6]);

@@ -1073,34 +1073,6 @@ fn posed(scene: &Scene, time: f32) -> Vec<Vertex> {
     scene.posed_meshes(time)[scene.instances[0].mesh as usize].to_vec()
 }
 
-/// A strip from y 0 to 2 on two joints, the upper of which turns by 90 degrees in a second, or has turned already.
-fn bending(m: &mut Model, at_rest: bool) {
-    let positions = m.floats(&[[-0.5, 0., 0.], [0.5, 0., 0.], [0.5, 1., 0.], [0.5, 2., 0.], [-0.5, 2., 0.]]);
-    let normals = m.floats(&[[0., 0., 1.]; 5]);
-    let (low, both, high) = ([1., 0., 0., 0.], [0.5, 0.5, 0., 0.], [0., 1., 0., 0.]);
-    let weights = m.floats(&[low, low, both, high, high]);
-    let joints = m.raw(U8, "VEC4", 5, &[0u8, 1, 0, 0].repeat(5), json!({}));
-    let attributes = json!({ "POSITION": positions, "NORMAL": normals, "JOINTS_0": joints, "WEIGHTS_0": weights });
-    let indices = m.raw(U8, "SCALAR", 9, &[0, 1, 2, 0, 2, 4, 2, 3, 4], json!({}));
-    let primitive = json!({ "attributes": attributes, "indices": indices });
-    let mesh = m.push("meshes", json!({ "primitives": [primitive] }));
-    let half = std::f32::consts::FRAC_1_SQRT_2;
-    let turned = if at_rest { [0., 0., half, half] } else { [0., 0., 0., 1.] };
-    let upper = m.push("nodes", json!({ "translation": [0, 1, 0], "rotation": turned }));
-    let lower = m.node(json!({ "children": [upper] }));
-    let down = |y: f32| [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., y, 0., 1f32];
-    let bytes: Vec<u8> = [down(0.0), down(-1.0)].concat().iter().flat_map(|f| f.to_le_bytes()).collect();
-    let inverse = m.raw(FLOAT, "MAT4", 2, &bytes, json!({}));
-    let skin = m.push("skins", json!({ "joints": [lower, upper], "inverseBindMatrices": inverse }));
-    m.node(json!({ "mesh": mesh, "skin": skin, "translation": [7, 8, 9] }));
-    if !at_rest {
-        let (times, values) = (m.floats(&[[0.0], [1.0]]), m.floats(&[[0., 0., 0., 1.], [0., 0., half, half]]));
-        let channel = json!({ "sampler": 0, "target": { "node": upper, "path": "rotation" } });
-        let sampler = json!({ "input": times, "output": values });
-        m.push("animations", json!({ "samplers": [sampler], "channels": [channel] }));
-    }
-}
-
 /// The square with two targets, which lift it by 3 and by 1.
 fn morphed(m: &mut Model, weights: Value) -> usize {
     let mesh = m.square(json!({}), None);

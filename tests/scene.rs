@@ -272,7 +272,8 @@ fn bad_models_are_errors_with_advice() {
     assert_error(open(dir.path().join("none.obj")), &["none.obj", "Check the path"]);
     assert_error(open(write(&dir, "index.obj", "v 0 0 0\nf 1 2 3\n")), &["index.obj", "line 2", "Export it again"]);
     assert_error(open(write(&dir, "text.obj", "v a b c\n")), &["text.obj", "position", "line 1"]);
-    assert_error(open(write(&dir, "a.fbx", "")), &["a.fbx", "convert other formats to glTF"]);
+    assert_error(open(write(&dir, "a.fbx", "")), &["a.fbx", "it is no FBX file", "export it again"]);
+    assert_error(open(write(&dir, "a.blend", "")), &["a.blend", "convert other formats to glTF"]);
     assert_error(open("cornel"), &["cornel", "did you mean 'cornell'?", "furnace"]);
     assert_error(open(write(&dir, "cut.glb", b"glTF\x02\0\0\0\xff\0\0\0")), &["cut.glb", "Export it again"]);
     assert_error(open(write(&dir, "empty.gltf", "{}")), &["empty.gltf", "Export it again"]);

@@ -1,5 +1,6 @@
 //! Whole files of every kind, to be mutated.
 
+use super::common::model_file::{Model, bending};
 use super::common::root;
 use conelab::graph::link::generated;
 use conelab::graph::load::{Folders, load};
@@ -41,7 +42,7 @@ pub struct Seed {
     pub bytes: Vec<u8>,
 }
 
-const FILES: [(Kind, &str, &str); 50] = [
+const FILES: [(Kind, &str, &str); 51] = [
     (Kind::Scene, "room.obj", "room.obj"),
     (Kind::Scene, "room.obj", "room.mtl"),
     (Kind::Scene, "small.obj", "small.obj"),
@@ -64,6 +65,7 @@ const FILES: [(Kind, &str, &str); 50] = [
     (Kind::Scene, "room.gltf", "room.bin"),
     (Kind::Scene, "moving.gltf", "moving.gltf"),
     (Kind::Scene, "moving.gltf", "moving.bin"),
+    (Kind::Scene, "skin.gltf", "skin.gltf"),
     (Kind::Scene, "room.glb", "room.glb"),
     (Kind::Scene, "blender.fbx", "blender.fbx"),
     (Kind::Scene, "text.fbx", "text.fbx"),
@@ -112,6 +114,9 @@ pub fn write(folder: &Path) {
     let (room, moving) = (builtin("cornell"), builtin("moving-box"));
     ["room.obj", "room.gltf", "room.glb"].iter().for_each(|name| drop(room.export(&folder.join(name)).unwrap()));
     moving.export(&folder.join("moving.gltf")).unwrap();
+    let mut skin = Model::new();
+    bending(&mut skin, false);
+    skin.write(folder, "skin.gltf");
     std::fs::copy(root().join("tests/fbx_files/blender.fbx"), folder.join("blender.fbx")).unwrap();
     put("text.fbx", super::fbx::room().as_bytes());
     put("small.obj", SMALL_OBJ.as_bytes());

@@ -9,7 +9,7 @@ use super::materials::{Read, UvSource};
 use super::skins;
 use crate::metrics::colour::srgb_to_linear;
 use crate::scene::mesh::{RawMesh, weld_sources};
-use crate::scene::motion::Rig;
+use crate::scene::motion::Rigs;
 use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Mesh, Submesh, Vertex};
@@ -34,11 +34,11 @@ pub(super) fn read(
     bytes: usize,
     warnings: &mut Warnings,
     progress: Progress,
-) -> Result<(Vec<RawMesh>, HashMap<usize, Rig>, bool), String> {
+) -> Result<(Vec<RawMesh>, Rigs, bool), String> {
     // Nodes may share meshes; a small file must not fill the memory.
     let mut room = MANY + bytes;
     let mut used = false;
-    let (mut meshes, mut rigs) = (Vec::new(), HashMap::new());
+    let (mut meshes, mut rigs) = (Vec::new(), Rigs::new());
     for Wanted { mesh: number, materials: list } in wanted {
         if progress.stopped() {
             return Err(String::new());

@@ -15,13 +15,12 @@ mod pictures;
 mod skins;
 mod unread;
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use crate::files::read_input;
 
 use super::mesh::prepare_rigged;
-use super::motion::{Posing, Rig, attach};
+use super::motion::{Posing, Rig, Rigs, attach};
 use super::phong::{Finder, decide, grey};
 use super::progress::Progress;
 use super::texture::Requests;
@@ -71,7 +70,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
         scene.materials.push(grey(has_colors));
     }
     let (prepared, dropped) = prepare_rigged(raw, &scene.materials, progress).map_err(fail)?;
-    let mut rigs = HashMap::new();
+    let mut rigs = Rigs::new();
     for (i, (mesh, sources)) in prepared.into_iter().enumerate() {
         if let Some(read) = read_rigs.get(&i) {
             let mut rig = Rig::default();

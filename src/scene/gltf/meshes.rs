@@ -1,7 +1,5 @@
 //! Meshes: each primitive is read and repaired by itself, then becomes a submesh.
 
-use std::collections::HashMap;
-
 use ::gltf::accessor::Dimensions;
 use ::gltf::mesh::{Mode, Primitive};
 use ::gltf::{Document, Semantic};
@@ -13,7 +11,7 @@ use super::buffers::Buffers;
 use super::placing::{UvSource, UvSources};
 use super::skins;
 use crate::scene::mesh::{Dropped, RawMesh, flat, flatten, prepare_rigged, unweld};
-use crate::scene::motion::Rig;
+use crate::scene::motion::Rigs;
 use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Material, Mesh, Submesh, Vertex};
@@ -29,7 +27,7 @@ pub(super) fn read(
     uv_sources: &[UvSources],
     warnings: &mut Warnings,
     progress: Progress,
-) -> Result<(Vec<Mesh>, HashMap<usize, Rig>, Dropped), String> {
+) -> Result<(Vec<Mesh>, Rigs, Dropped), String> {
     let mut primitive_rigs = Vec::new();
     let mut owners = Vec::new();
     let mut primitives = Vec::new();
@@ -86,7 +84,7 @@ pub(super) fn read(
         raw.has_normals = true;
     });
     let (prepared, dropped) = prepare_rigged(primitives, materials, progress)?;
-    let mut rigs: HashMap<usize, Rig> = HashMap::new();
+    let mut rigs = Rigs::new();
     for ((owner, (primitive, sources)), (rig, flat)) in owners.into_iter().zip(prepared).zip(primitive_rigs) {
         let before = meshes[owner].vertices.len();
         let sources = if rig.is_some() { sources } else { vec![0; primitive.vertices.len()] };

@@ -11,7 +11,7 @@ use super::buffers::Buffers;
 use super::instancing::{self, MAX_INSTANCES};
 use super::lights;
 use crate::scene::defaults::least_reach;
-use crate::scene::motion::Rig;
+use crate::scene::motion::Rigs;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Camera, Instance, Mover, Scene};
 
@@ -42,7 +42,7 @@ pub(super) fn place<'a>(
     document: &'a Document,
     buffers: &Buffers,
     tracks: &Tracks,
-    rigs: &HashMap<usize, Rig>,
+    rigs: &Rigs,
     warnings: &mut Warnings,
 ) -> Result<Placed<'a>, String> {
     let mut placed = Placed::default();
@@ -108,7 +108,7 @@ fn add_instances<'a>(
     node: &Node<'a>,
     (mut mover, mut transform): (Option<u32>, Mat4),
     name: &str,
-    rigs: &HashMap<usize, Rig>,
+    rigs: &Rigs,
     (document, buffers): (&Document, &Buffers),
 ) -> Result<(), String> {
     let Some(mesh) = node.mesh() else { return Ok(()) };

@@ -55,12 +55,15 @@ pub(super) fn prepare_all(
     Ok((prepared.into_iter().map(|(mesh, _)| mesh).collect(), dropped))
 }
 
+/// A mesh, and the sources of its vertices if it deforms.
+pub(super) type Rigged = (Mesh, Vec<u32>);
+
 /// [`prepare_all`], with the sources of vertices.
 pub(super) fn prepare_rigged(
     raw: Vec<RawMesh>,
     materials: &[Material],
     progress: Progress,
-) -> Result<(Vec<(Mesh, Vec<u32>)>, Dropped), String> {
+) -> Result<(Vec<Rigged>, Dropped), String> {
     let one = |raw| if progress.stopped() { Err(String::new()) } else { prepare(raw, materials) };
     let prepared: Result<Vec<_>, String> = raw.into_par_iter().map(one).collect();
     let mut total = Dropped::default();
@@ -115,6 +118,12 @@ fn check_indices(mesh: &Mesh, materials: usize) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// Takes out what a pose has left without a place or an area.
+pub(super) fn drop_flat(mesh: &mut Mesh) {
+    drop_bad_triangles(mesh, false);
+    drop_unused_vertices(mesh, &mut Vec::new());
 }
 
 /// Rewrites indices and submeshes without the triangles that have no place or no area.

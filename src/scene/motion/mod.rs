@@ -11,7 +11,7 @@ use glam::{Mat4, Quat, Vec3};
 
 pub use curve::{Curve, Interpolation, Value};
 pub use deform::{Deformer, Influence, Joint, Morph};
-pub(in crate::scene) use rig::{Posing, Rig, attach};
+pub(in crate::scene) use rig::{Posing, Rig, Rigs, attach};
 
 use super::Scene;
 

@@ -6,7 +6,8 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::{Curve, Deformer, Influence, Joint, Morph};
-use crate::scene::Scene;
+use crate::scene::mesh::drop_flat;
+use crate::scene::{Mesh, Scene};
 
 /// What can move the vertices of a mesh or of its part, by vertex.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +18,9 @@ pub(in crate::scene) struct Rig {
     /// Whether a vertex has the normal of its triangle.
     flat: Vec<bool>,
 }
+
+/// By mesh: what can move the vertices of those that deform.
+pub(in crate::scene) type Rigs = HashMap<usize, Rig>;
 
 /// What poses the mesh of an instance.
 pub(in crate::scene) struct Posing {
@@ -75,25 +79,26 @@ impl Rig {
 pub(in crate::scene) fn attach(
     scene: &mut Scene,
     posings: Vec<Posing>,
-    rigs: &HashMap<usize, Rig>,
+    rigs: &Rigs,
     mut room: usize,
 ) -> Result<(), String> {
     // Each mesh is itself for the first that poses it, unless something else shows it too.
     let posing: HashSet<usize> = posings.iter().map(|p| p.instance).collect();
     let shown = scene.instances.iter().enumerate().filter(|(i, _)| !posing.contains(i));
     let mut taken: HashSet<u32> = shown.map(|(_, instance)| instance.mesh).collect();
-    let mut rest = HashMap::new();
+    let mut read: HashMap<u32, Mesh> = HashMap::new();
     for Posing { instance, joints, weights, period } in posings {
         let mesh = scene.instances[instance].mesh;
         let Some(rig) = rigs.get(&(mesh as usize)) else { continue };
         let own = if taken.insert(mesh) { mesh } else { scene.meshes.len() as u32 };
-        let rest = rest.entry(mesh).or_insert_with(|| scene.meshes[mesh as usize].vertices.clone()).clone();
+        // The mesh in its place may have been posed.
+        let rest = read.entry(mesh).or_insert_with(|| scene.meshes[mesh as usize].clone());
         if own != mesh {
-            let copy = scene.meshes[mesh as usize].clone();
-            let left = room.checked_sub(copy.vertices.len() + copy.indices.len());
+            let left = room.checked_sub(rest.vertices.len() + rest.indices.len());
             room = left.ok_or("its skins and weights make very many copies of its meshes")?;
-            scene.meshes.push(copy);
+            scene.meshes.push(rest.clone());
         }
+        let rest = rest.vertices.clone();
         scene.instances[instance].mesh = own;
         let skinned = !joints.is_empty();
         let mut deformer = Deformer {
@@ -115,7 +120,11 @@ pub(in crate::scene) fn attach(
             deformer.bounds = scene.deformed_bounds(&deformer);
             scene.deformers.push(deformer);
         }
-        scene.meshes[own as usize].vertices = posed;
+        let mesh = &mut scene.meshes[own as usize];
+        mesh.vertices = posed;
+        if !moves {
+            drop_flat(mesh);
+        }
     }
     Ok(())
 }
