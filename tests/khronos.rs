@@ -834,7 +834,8 @@ const ROWS: &[Row] = &[
             }
         },
         |s| {
-            warned(s, "of several animations of one node the first is played ('run')", 1);
+            warned(s, "of several animations of one node the first is played. `clip: \"NAME\"`", 1);
+            warned(s, "('run')", 1);
             near(s.instance_transform(0, 0.5).transform_point3(Vec3::ZERO), Vec3::X * 0.5, 1e-6);
         },
     ),
@@ -974,6 +975,39 @@ fn scene_files_scale_the_lamps_of_models() {
     assert_eq!((scaled.sky, scaled.warnings.len()), (Vec3::ZERO, 0), "{:?}", scaled.warnings);
     warned(&scene("").unwrap(), "lights_scale", 1);
     assert!(scene("lights_scale: -1").unwrap_err().contains("lights_scale is from 0"));
+}
+
+#[test]
+fn scene_files_choose_the_clips_of_models() {
+    let mut model = Model::new();
+    placed_square(&mut model, None, json!({}));
+    let times = model.floats(&[[0.0], [1.0]]);
+    for (name, end) in [("walk", 1.0), ("run", 9.0)] {
+        let output = model.floats(&[[0.0, 0.0, 0.0], [end, 0.0, 0.0]]);
+        let channel = json!({ "sampler": 0, "target": { "node": 0, "path": "translation" } });
+        let sampler = json!({ "input": times, "output": output });
+        model.push("animations", json!({ "name": name, "samplers": [sampler], "channels": [channel] }));
+    }
+    let folder = tempfile::tempdir().unwrap();
+    model.write(folder.path(), "m.gltf");
+    std::fs::write(folder.path().join("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let path = folder.path().join("s.ron");
+    let scene = |models: &str| {
+        std::fs::write(&path, format!("(models: [{models}])")).unwrap();
+        open(&path)
+    };
+    let both = scene("(file: \"m.gltf\", clip: \"run\"), (file: \"m.gltf\")").unwrap();
+    let place = |i| both.instance_transform(i, 0.5).transform_point3(Vec3::ZERO);
+    near(place(0), Vec3::X * 4.5, 1e-6);
+    near(place(1), Vec3::X * 0.5, 1e-6);
+    for (models, pieces) in [
+        ("(file: \"m.gltf\", clip: \"runn\")", &["m.gltf", "no clip 'runn'", "did you mean 'run'?"][..]),
+        ("(file: \"m.obj\", clip: \"run\")", &["m.obj", "OBJ files have no clips"]),
+        ("(builtin: \"cornell\", clip: \"run\")", &["`clip` is of models from files"]),
+    ] {
+        let error = scene(models).unwrap_err();
+        assert!(pieces.iter().all(|piece| error.contains(piece)), "{error}");
+    }
 }
 
 /// A square of whole numbers from -100 to 100, in streams by meshoptimizer's encoder.

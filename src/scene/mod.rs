@@ -4,6 +4,7 @@
 //! are counter-clockwise, and colours are linear RGB (only base-colour and emission images are sRGB).
 
 pub mod builtin;
+mod clips;
 mod coordinates;
 pub(crate) mod defaults;
 pub(crate) mod environment;

@@ -85,7 +85,7 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
     if path.extension().is_none() && !path.exists() {
         return Err(SceneError::NotFound { spec: spec.into(), hint: builtin::hint(spec) });
     }
-    let mut scene = load_model(path, progress)?;
+    let mut scene = load_model(path, None, progress)?;
     scene.sky = defaults::sky_over(&scene);
     if scene.lights.is_empty() {
         scene.lights.push(defaults::sun());
@@ -98,11 +98,15 @@ fn load(spec: &str, progress: Progress) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// A model with what its file says and no more.
-pub(super) fn load_model(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
+/// A model with what its file says and no more; `clip`: the animation that is played, where it is not the first.
+pub(super) fn load_model(path: &Path, clip: Option<&str>, progress: Progress) -> Result<Scene, SceneError> {
     progress.reads(path);
     let reader = match ending(path).as_str() {
-        "obj" => obj::load,
+        "obj" if clip.is_some() => {
+            let message = "OBJ files have no clips. Leave `clip` out".into();
+            return Err(SceneError::Model { path: path.into(), message });
+        }
+        "obj" => |path: &Path, _: Option<&str>, progress: Progress| obj::load(path, progress),
         "gltf" | "glb" => gltf::load,
         "fbx" => fbx::load,
         _ => {
@@ -110,7 +114,7 @@ pub(super) fn load_model(path: &Path, progress: Progress) -> Result<Scene, Scene
             return Err(SceneError::NotFound { spec: path.display().to_string(), hint: hint.into() });
         }
     };
-    let mut scene = caught(|| reader(path, progress)).unwrap_or_else(|message| {
+    let mut scene = caught(|| reader(path, clip, progress)).unwrap_or_else(|message| {
         let message = format!("{message}. The file is damaged; export it again");
         Err(SceneError::Model { path: path.into(), message })
     })?;

@@ -614,7 +614,12 @@ fn motions() -> Vec<Case> {
         Y_UP,
         objects,
         below(2, 0) + below(1, 2) + connections,
-        vec![Bounds(0.5, [0.0, 2.0, 0.0], [1.0, 4.0, 3.0]), Warns("of several animations the first is played ('run')")],
+        vec![
+            Bounds(0.5, [0.0, 2.0, 0.0], [1.0, 4.0, 3.0]),
+            Warns(
+                "of several animations of one node the first is played. `clip: \"NAME\"` of a scene file's model chooses another ('run')",
+            ),
+        ],
     );
     vec![
         several,

@@ -8,6 +8,7 @@ use ufbx::{BakeOpts, BakedNode, BakedVec3, Node, bake_anim};
 
 use super::file::memory;
 use super::numbers::vector;
+use crate::scene::clips;
 use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Interpolation, Rest, Track};
@@ -17,13 +18,21 @@ use crate::scene::{Curve, Interpolation, Rest, Track};
 pub(super) struct Motion(HashMap<u32, Arc<Track>>);
 
 impl Motion {
-    /// Bakes the first animation. The file's length in bytes limits the memory.
-    pub fn read(file: &ufbx::Scene, bytes: usize, warnings: &mut Warnings) -> Result<Motion, String> {
-        let mut stacks = file.anim_stacks.into_iter();
-        let Some(first) = stacks.next() else { return Ok(Motion::default()) };
-        for other in stacks {
-            warnings.add("of several animations the first is played", shown(&other.element.name));
-        }
+    /// Bakes the first animation, or the one with the name of `clip`. The file's length in bytes limits the memory.
+    pub fn read(
+        file: &ufbx::Scene,
+        bytes: usize,
+        clip: Option<&str>,
+        warnings: &mut Warnings,
+    ) -> Result<Motion, String> {
+        let names: Vec<String> = file.anim_stacks.into_iter().map(|stack| shown(&stack.element.name)).collect();
+        let chosen = clip.map(|clip| clips::number(clip, &names)).transpose()?.unwrap_or(0);
+        let Some(first) = file.anim_stacks.into_iter().nth(chosen) else { return Ok(Motion::default()) };
+        names
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i != chosen)
+            .for_each(|(_, name)| warnings.add(clips::LEFT_OUT, name));
         let (temp_allocator, result_allocator) = (memory(bytes), memory(bytes));
         let options = BakeOpts { temp_allocator, result_allocator, trim_start_time: true, ..BakeOpts::default() };
         let baked = bake_anim(file, &first.anim, options)

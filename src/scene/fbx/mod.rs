@@ -33,7 +33,9 @@ use pictures::Pictures;
 const MAX_BYTES: u64 = 4 << 30;
 
 /// Geometry, materials, textures, lights and cameras of an FBX file; no sky.
-pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
+///
+/// `clip`: the name of the animation that is played, where it is not the first.
+pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Result<Scene, SceneError> {
     let fail = |message: String| SceneError::Model { path: path.into(), message };
     progress.step("reading", 0.0)?;
     let bytes = read_input(path, MAX_BYTES).map_err(|source| SceneError::Read {
@@ -53,7 +55,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let mut pictures = Pictures::new(&name, Finder::new(path.parent().unwrap_or(Path::new(""))), &mut requests);
     let mut materials = materials::read(&file, &mut pictures, &mut warnings);
     progress.step("nodes", 0.4)?;
-    let motion = Motion::read(&file, length, &mut warnings).map_err(fail)?;
+    let motion = Motion::read(&file, length, clip, &mut warnings).map_err(fail)?;
     let placed = nodes::place(&file, &motion, &mut warnings).map_err(fail)?;
     let nodes::Placed { mut scene, wanted, frames, skinned } = placed;
     progress.step("textures", 0.5)?;

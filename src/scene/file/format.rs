@@ -104,6 +104,8 @@ impl TryFrom<EnvironmentFields> for EnvironmentEntry {
 pub(super) struct ModelEntry {
     pub file: Option<String>,
     pub builtin: Option<String>,
+    /// The animation that is played, where it is not the first.
+    pub clip: Option<String>,
     pub transform: Mat4,
     pub motion: Option<Arc<Track>>,
     pub lights: bool,
@@ -118,6 +120,8 @@ struct ModelFields {
     file: Option<String>,
     #[serde(default)]
     builtin: Option<String>,
+    #[serde(default)]
+    clip: Option<String>,
     #[serde(default)]
     transform: Placed,
     #[serde(default)]
@@ -239,6 +243,7 @@ impl Default for ModelEntry {
         ModelEntry {
             file: None,
             builtin: None,
+            clip: None,
             transform: Mat4::IDENTITY,
             motion: None,
             lights: true,
@@ -254,7 +259,10 @@ impl TryFrom<ModelFields> for ModelEntry {
     fn try_from(fields: ModelFields) -> Result<Self, String> {
         match (&fields.file, &fields.builtin) {
             (Some(_), None) => {}
-            (None, Some(name)) if builtin::is_one(name) => {}
+            (None, Some(name)) if builtin::is_one(name) && fields.clip.is_none() => {}
+            (None, Some(name)) if builtin::is_one(name) => {
+                return Err("`clip` is of models from files".into());
+            }
             (None, Some(name)) => {
                 return Err(format!("unknown builtin '{name}': {}", builtin::hint(name)));
             }
@@ -268,6 +276,7 @@ impl TryFrom<ModelFields> for ModelEntry {
             motion: fields.animation.map(|moves| moves.0),
             file: fields.file,
             builtin: fields.builtin,
+            clip: fields.clip,
             lights: fields.lights,
             lights_scale: fields.lights_scale,
             cameras: fields.cameras,

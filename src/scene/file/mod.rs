@@ -45,11 +45,11 @@ pub(super) fn read(text: &str, path: &Path, progress: Progress) -> Result<Scene,
     let mut scene = Scene { name: file.name.clone().unwrap_or(name), ..Scene::default() };
     let (mut sky, mut picture) = (None, None);
     // A model that stands in several places is read once, and its meshes are shared.
-    let mut added: BTreeMap<(bool, &str), Added> = BTreeMap::new();
+    let mut added: BTreeMap<(bool, &str, Option<&str>), Added> = BTreeMap::new();
     for (i, entry) in file.models.iter().enumerate() {
         let named = entry.builtin.as_deref().or(entry.file.as_deref()).unwrap_or_default();
         let share = progress.share(i, file.models.len() + 1);
-        let known = match added.entry((entry.builtin.is_some(), named)) {
+        let known = match added.entry((entry.builtin.is_some(), named, entry.clip.as_deref())) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => new.insert(compose::add(&mut scene, load_model(entry, path, text, share)?)),
         };
@@ -135,7 +135,7 @@ fn load_model(entry: &ModelEntry, scene_file: &Path, text: &str, progress: Progr
         );
         return Err(SceneError::NoModel { path: scene_file.into(), line, column, message });
     };
-    let mut model = open::load_model(found, progress)?;
+    let mut model = open::load_model(found, entry.clip.as_deref(), progress)?;
     if entry.lights {
         model.sky = defaults::sky_over(&model);
     } else {

@@ -9,6 +9,7 @@ use glam::{Quat, Vec3, Vec4};
 
 use super::accessors;
 use super::buffers::Buffers;
+use crate::scene::clips;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Interpolation, Rest, Track, Value};
 
@@ -35,13 +36,25 @@ impl Tracks {
     }
 }
 
-/// All animations that move nothing which an earlier one moves: others are clips to choose from, and the first is played.
-pub(super) fn tracks(document: &Document, buffers: &Buffers, warnings: &mut Warnings) -> Result<Tracks, String> {
+/// All animations that move nothing which an earlier one moves: others are clips to choose from, and the first is played,
+/// or the one with the name of `clip`.
+pub(super) fn tracks(
+    document: &Document,
+    buffers: &Buffers,
+    clip: Option<&str>,
+    warnings: &mut Warnings,
+) -> Result<Tracks, String> {
     let mut tracks = Tracks::default();
-    for animation in document.animations() {
-        let called = animation.name().map_or_else(|| format!("animation {}", animation.index()), str::to_owned);
+    let name = |a: &Animation| a.name().map_or_else(|| format!("animation {}", a.index()), str::to_owned);
+    let names: Vec<String> = document.animations().map(|a| name(&a)).collect();
+    let chosen = clip.map(|clip| clips::number(clip, &names)).transpose()?;
+    let mut animations: Vec<Animation> = document.animations().collect();
+    // The sort is stable.
+    animations.sort_by_key(|a| Some(a.index()) != chosen);
+    for animation in animations {
+        let called = name(&animation);
         if animation.channels().any(|c| tracks.moves(&c)) {
-            warnings.add("of several animations of one node the first is played", &called);
+            warnings.add(clips::LEFT_OUT, &called);
             continue;
         }
         let period = period(&animation, buffers)?;

@@ -33,7 +33,9 @@ use document::Checks;
 pub(super) use lights::SCALE;
 
 /// Geometry, materials, textures, lights and cameras of a glTF file; no sky.
-pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError> {
+///
+/// `clip`: the name of the animation that comes before all others.
+pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Result<Scene, SceneError> {
     let fail = |message: String| SceneError::Model { path: path.into(), message };
     progress.step("reading", 0.0)?;
     let bytes = read_input(path, buffers::MAX_BYTES).map_err(|source| SceneError::Read {
@@ -52,7 +54,7 @@ pub(super) fn load(path: &Path, progress: Progress) -> Result<Scene, SceneError>
     let (meshes, rigs, dropped) =
         meshes::read(&document, &buffers, &materials, &uv_sources, &mut warnings, progress).map_err(fail)?;
     progress.step("nodes", 0.6)?;
-    let tracks = animation::tracks(&document, &buffers, &mut warnings).map_err(fail)?;
+    let tracks = animation::tracks(&document, &buffers, clip, &mut warnings).map_err(fail)?;
     let placed = nodes::place(&document, &buffers, &tracks, &rigs, &mut warnings).map_err(fail)?;
     let nodes::Placed { mut scene, frames, deforming } = placed;
     scene.meshes = meshes;
