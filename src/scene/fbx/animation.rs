@@ -13,9 +13,16 @@ use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Interpolation, Rest, Track};
 
-/// The tracks of nodes that move, by their numbers.
+/// All that moves.
 #[derive(Default)]
-pub(super) struct Motion(HashMap<u32, Arc<Track>>);
+pub(super) struct Motion {
+    /// By the numbers of nodes.
+    tracks: HashMap<u32, Arc<Track>>,
+    /// By the elements of channels.
+    weights: HashMap<u32, Curve<f32>>,
+    /// Seconds after which all start over.
+    pub period: Option<f32>,
+}
 
 impl Motion {
     /// Bakes the first animation, or the one with the name of `clip`. The file's length in bytes limits the memory.
@@ -40,24 +47,47 @@ impl Motion {
         let moving =
             baked.nodes.iter().filter(|n| !(n.constant_translation && n.constant_rotation && n.constant_scale));
         let moving: Vec<&BakedNode> = moving.collect();
+        let weights = weights(&baked)?;
         // All start over together.
-        let period = moving.iter().map(|n| last_key(n)).fold(0.0, f64::max) as f32;
+        let last = moving.iter().map(|n| last_key(n)).fold(0.0, f64::max) as f32;
+        let last = weights.values().filter_map(|curve| curve.times().last().copied()).fold(last, f32::max);
+        let period = Some(last).filter(|last| *last > 0.0 && last.is_finite());
         let mut tracks = HashMap::new();
         for baked in moving {
             let Some(node) = file.nodes.as_ref().get(baked.typed_id as usize) else { continue };
-            let track = track(node, baked, Some(period).filter(|p| *p > 0.0 && p.is_finite()));
+            let track = track(node, baked, period);
             let track = track.ok_or_else(|| {
                 format!("node '{}' has a motion that is not finite. Export it again", shown(&node.element.name))
             })?;
             tracks.insert(baked.typed_id, Arc::new(track));
         }
-        Ok(Motion(tracks))
+        Ok(Motion { tracks, weights, period })
+    }
+
+    /// How much of a channel's shapes there is, if it changes.
+    pub fn weights(&self, channel: &ufbx::BlendChannel) -> Option<&Curve<f32>> {
+        self.weights.get(&channel.element.element_id)
     }
 
     /// How a node moves in its parent, if it does.
     pub fn of(&self, node: &Node) -> Option<Arc<Track>> {
-        self.0.get(&node.element.typed_id).cloned()
+        self.tracks.get(&node.element.typed_id).cloned()
     }
+}
+
+/// The weights of blend channels that change, 1 for all of a shape.
+fn weights(baked: &ufbx::BakedAnim) -> Result<HashMap<u32, Curve<f32>>, String> {
+    let mut found = HashMap::new();
+    for element in &baked.elements {
+        let percent = element.props.iter().find(|p| p.name.as_ref() == "DeformPercent" && !p.constant_value);
+        let Some(percent) = percent.filter(|p| !p.keys.is_empty()) else { continue };
+        let times = percent.keys.iter().map(|k| k.time as f32).collect();
+        let values = percent.keys.iter().map(|k| (k.value.x / 100.0) as f32).collect();
+        let curve = Curve::new(times, values, Interpolation::Linear);
+        let curve = curve.ok_or("a blend shape has weights that are not finite. Export it again")?;
+        found.insert(element.element_id, curve);
+    }
+    Ok(found)
 }
 
 fn last_key(node: &BakedNode) -> f64 {

@@ -1,15 +1,13 @@
 //! Meshes: one of the scene for each mesh of the file and list of materials that its nodes give it.
 
-use std::collections::HashMap;
-
 use glam::DVec2;
 use ufbx::{Mesh as From, VertexVec2};
 
 use super::materials::{Read, UvSource};
-use super::skins;
+use super::{blends, skins};
 use crate::metrics::colour::srgb_to_linear;
 use crate::scene::mesh::{RawMesh, weld_sources};
-use crate::scene::motion::Rigs;
+use crate::scene::motion::{Rig, Rigs};
 use crate::scene::progress::Progress;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Mesh, Submesh, Vertex};
@@ -49,13 +47,15 @@ pub(super) fn read(
             .checked_sub(from.num_triangles.saturating_mul(3))
             .ok_or_else(|| format!("mesh '{name}': with it there are many more corners than the file holds bytes"))?;
         let of_part = |part: usize| list.get(part).map_or(materials.len(), |m| *m as usize);
-        let skin = skins::of(from);
-        if let Some(skin) = skin {
-            rigs.insert(meshes.len(), skins::rig(from, skin, warnings));
+        let (skin, blends) = (skins::of(from), blends::any(from));
+        let is_rigged = skin.is_some() || blends;
+        if is_rigged {
+            let mut rig = Rig { morphs: blends::morphs(from, &mut room)?, ..Rig::default() };
+            skin.into_iter().for_each(|skin| skins::add(&mut rig, from, skin, warnings));
+            rigs.insert(meshes.len(), rig);
         }
-        let moved = skin.map(|_| skins::rest(from));
         let (corners, sources) = (Vec::new(), Vec::new());
-        let mut reader = Reader { from, moved, corners, sources, triangles: vec![0; from.max_face_triangles * 3] };
+        let mut reader = Reader { from, is_rigged, corners, sources, triangles: vec![0; from.max_face_triangles * 3] };
         let mut submeshes = Vec::new();
         for (part, faces) in from.material_parts.iter().enumerate() {
             let material = of_part(part);
@@ -89,11 +89,11 @@ fn damaged() -> String {
 
 struct Reader<'a> {
     from: &'a From,
-    /// Of a mesh with a skin, which is read as it is before the skin moves it: how far vertices are from their places.
-    moved: Option<HashMap<u32, [f64; 3]>>,
+    /// Whether it is read as it is before skins and blend shapes move it.
+    is_rigged: bool,
     /// Three a triangle.
     corners: Vec<Vertex>,
-    /// Of a mesh with a skin: the vertex of each corner.
+    /// Of such a mesh: the vertex of each corner.
     sources: Vec<u32>,
     /// Indices of the triangles of one face.
     triangles: Vec<u32>,
@@ -129,7 +129,7 @@ impl Reader<'_> {
     fn corner(&mut self, index: usize) -> Option<Vertex> {
         let from = self.from;
         let color = color(from, index)?;
-        let Some(moved) = &self.moved else {
+        if !self.is_rigged {
             let normal = if from.skinned_normal.exists { vector_at(&from.skinned_normal, index)? } else { [0.0; 3] };
             return Some(Vertex {
                 position: vector_at(&from.skinned_position, index)?,
@@ -137,13 +137,10 @@ impl Reader<'_> {
                 color,
                 ..Vertex::default()
             });
-        };
+        }
         let vertex = *from.vertex_indices.as_ref().get(index)?;
         self.sources.push(vertex);
-        let mut position = vector_at(&from.vertex_position, index)?;
-        if let Some(by) = moved.get(&vertex) {
-            position.iter_mut().zip(by).for_each(|(p, by)| *p += *by as f32);
-        }
+        let position = vector_at(&from.vertex_position, index)?;
         let normal = if from.vertex_normal.exists { vector_at(&from.vertex_normal, index)? } else { [0.0; 3] };
         Some(Vertex { position, normal, color, ..Vertex::default() })
     }

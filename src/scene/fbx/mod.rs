@@ -5,6 +5,7 @@
 //! divided by 4 pi, as its glTF exporter does. `lights_scale` of a scene file scales them.
 
 mod animation;
+mod blends;
 mod file;
 mod lights;
 mod materials;
@@ -57,7 +58,7 @@ pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Resul
     progress.step("nodes", 0.4)?;
     let motion = Motion::read(&file, length, clip, &mut warnings).map_err(fail)?;
     let placed = nodes::place(&file, &motion, &mut warnings).map_err(fail)?;
-    let nodes::Placed { mut scene, wanted, frames, skinned } = placed;
+    let nodes::Placed { mut scene, wanted, frames, rigged } = placed;
     progress.step("textures", 0.5)?;
     let (mut textures, texture_warnings) = requests.load(progress)?;
     let asked = materials.iter_mut().map(|read| &mut read.asked).collect();
@@ -81,11 +82,14 @@ pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Resul
         }
         scene.meshes.push(mesh);
     }
-    let posings = skinned.into_iter().map(|(instance, skin)| {
-        let joints = skins::joints(skin, &frames, &mut warnings);
-        Posing { instance, joints, weights: Vec::new(), period: None }
-    });
-    attach(&mut scene, posings.collect(), &rigs, meshes::MANY + length).map_err(fail)?;
+    let mut posings = Vec::new();
+    for (instance, mesh) in rigged {
+        let joints = skins::of(mesh).map(|skin| skins::joints(skin, &frames, &mut warnings)).unwrap_or_default();
+        let weights = blends::weights(mesh, &motion)
+            .ok_or_else(|| fail("a blend shape has weights that are not finite. Export it again".into()))?;
+        posings.push(Posing { instance, joints, weights, period: motion.period });
+    }
+    attach(&mut scene, posings, &rigs, meshes::MANY + length).map_err(fail)?;
     scene.warnings = warnings.lines(&name);
     scene.warnings.extend(dropped.warning(&name));
     scene.warnings.extend(texture_warnings);

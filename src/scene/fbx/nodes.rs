@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3, Mat4};
 use indexmap::IndexSet;
-use ufbx::{Camera as From, ElementType, Node, ProjectionMode, SkinDeformer, find_prop};
+use ufbx::{Camera as From, ElementType, Mesh, Node, ProjectionMode, find_prop};
 
 use super::animation::Motion;
 use super::lights;
 use super::meshes::Wanted;
 use super::numbers::{affine, frame, placement};
-use super::skins;
+use super::{blends, skins};
 use crate::scene::defaults::least_reach;
 use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
@@ -36,13 +36,13 @@ pub(super) struct Placed<'a> {
     /// The meshes that instances name.
     pub wanted: Vec<Wanted>,
     pub frames: Frames,
-    /// Instances whose mesh has a skin.
-    pub skinned: Vec<(usize, &'a SkinDeformer)>,
+    /// Instances whose mesh has a skin or blend shapes.
+    pub rigged: Vec<(usize, &'a Mesh)>,
 }
 
 /// Instances, lights and cameras, and the meshes that instances name.
 pub(super) fn place<'a>(file: &'a ufbx::Scene, motion: &Motion, warnings: &mut Warnings) -> Result<Placed<'a>, String> {
-    let (mut placed, mut frames, mut skinned) = (Scene::default(), Frames::new(), Vec::new());
+    let (mut placed, mut frames, mut rigged) = (Scene::default(), Frames::new(), Vec::new());
     let mut wanted = IndexSet::new();
     let root = file.root_node.as_ref();
     let mut stack = vec![Visit { node: root, mover: None, above: DAffine3::IDENTITY, visible: true }];
@@ -62,9 +62,9 @@ pub(super) fn place<'a>(file: &'a ufbx::Scene, motion: &Motion, warnings: &mut W
         if let Some(mesh) = node.mesh.as_ref().filter(|_| visible) {
             let materials = node.materials.into_iter().map(|material| material.element.typed_id).collect();
             let (mesh, _) = wanted.insert_full(Wanted { mesh: mesh.element.typed_id, materials });
-            skinned.extend(
-                node.mesh.as_ref().and_then(|mesh| skins::of(mesh.as_ref())).map(|skin| (placed.instances.len(), skin)),
-            );
+            let mesh_of = node.mesh.as_ref().map(|mesh| mesh.as_ref());
+            let moves = mesh_of.filter(|mesh| skins::of(mesh).is_some() || blends::any(mesh));
+            rigged.extend(moves.map(|mesh| (placed.instances.len(), mesh)));
             placed.instances.push(instance(node, mesh as u32, &name, (mover, here))?);
         }
         // Lights and cameras stand where they are at the start.
@@ -105,7 +105,7 @@ pub(super) fn place<'a>(file: &'a ufbx::Scene, motion: &Motion, warnings: &mut W
     if let Some(own) = placed.cameras.get_index_of(file.settings.default_camera.as_ref()) {
         placed.cameras.move_index(own, 0);
     }
-    Ok(Placed { scene: placed, wanted: wanted.into_iter().collect(), frames, skinned })
+    Ok(Placed { scene: placed, wanted: wanted.into_iter().collect(), frames, rigged })
 }
 
 fn instance(node: &Node, mesh: u32, name: &str, (mover, here): (Option<u32>, DAffine3)) -> Result<Instance, String> {

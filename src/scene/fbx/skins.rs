@@ -1,11 +1,9 @@
 //! Skins: what moves the vertices of meshes, and the bones of instances.
 
-use std::collections::HashMap;
-
-use ufbx::{Mesh, SkinDeformer, SkinningMethod, get_blend_vertex_offset};
+use ufbx::{Mesh, SkinDeformer, SkinningMethod};
 
 use super::nodes::Frames;
-use super::numbers::{affine, placement, vector};
+use super::numbers::{affine, placement};
 use crate::scene::motion::Rig;
 use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
@@ -16,15 +14,14 @@ pub(super) fn of(mesh: &Mesh) -> Option<&SkinDeformer> {
     mesh.skin_deformers.into_iter().next()
 }
 
-/// A rig of a mesh's vertices, by their numbers in the file.
-pub(super) fn rig(mesh: &Mesh, skin: &SkinDeformer, warnings: &mut Warnings) -> Rig {
+/// Adds the bones of a mesh's vertices to its rig, by their numbers in the file.
+pub(super) fn add(rig: &mut Rig, mesh: &Mesh, skin: &SkinDeformer, warnings: &mut Warnings) {
     if matches!(skin.skinning_method, SkinningMethod::DualQuaternion | SkinningMethod::BlendedDqLinear) {
         warnings.add("skins by dual quaternions are posed by linear blending", shown(&skin.element.name));
     }
     if mesh.skin_deformers.len() > 1 {
         warnings.add("of several skins of one mesh the first moves it", shown(&mesh.element.name));
     }
-    let mut rig = Rig::default();
     for vertex in &skin.vertices {
         let range =
             vertex.weight_begin as usize..(vertex.weight_begin as usize).saturating_add(vertex.num_weights as usize);
@@ -34,7 +31,6 @@ pub(super) fn rig(mesh: &Mesh, skin: &SkinDeformer, warnings: &mut Warnings) -> 
             sound.map(|w| Influence { joint: w.cluster_index, weight: w.weight as f32 }).collect();
         rig.push(&list);
     }
-    rig
 }
 
 /// The bones of a skin, where nodes have them.
@@ -49,19 +45,4 @@ pub(super) fn joints(skin: &SkinDeformer, frames: &Frames, warnings: &mut Warnin
         Joint { mover, transform, inverse_bind }
     };
     skin.clusters.into_iter().map(joint).collect()
-}
-
-/// Where the vertices of a mesh are before its skin moves them: with the weights of its blend shapes in the file.
-pub(super) fn rest(mesh: &Mesh) -> HashMap<u32, [f64; 3]> {
-    let mut moved = HashMap::new();
-    for blend in &mesh.blend_deformers {
-        for vertex in 0..mesh.vertices.len() as u32 {
-            let offset = vector(get_blend_vertex_offset(blend, vertex as usize));
-            if offset.is_finite() && offset != glam::DVec3::ZERO {
-                let sum: &mut [f64; 3] = moved.entry(vertex).or_default();
-                sum.iter_mut().zip(offset.to_array()).for_each(|(sum, add)| *sum += add);
-            }
-        }
-    }
-    moved
 }

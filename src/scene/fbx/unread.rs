@@ -15,7 +15,9 @@ pub(super) fn warn(file: &ufbx::Scene, warnings: &mut Warnings) {
             }
             ElementType::ProceduralGeometry => "procedural geometry is left out. Convert it to polygons",
             ElementType::CacheDeformer => "geometry caches are left out: their meshes stay at rest",
-            ElementType::BlendDeformer => "blend shapes stay at the weights of the file",
+            ElementType::BlendChannel if has_steps(element) => {
+                "blend shapes with shapes in between stay at the weights of the file"
+            }
             ElementType::StereoCamera | ElementType::CameraSwitcher => {
                 "stereo cameras and camera switchers are left out"
             }
@@ -27,6 +29,11 @@ pub(super) fn warn(file: &ufbx::Scene, warnings: &mut Warnings) {
     for warning in &file.metadata.warnings {
         warnings.add(format!("the file has mistakes that were corrected ({})", warning.description.to_lowercase()), "");
     }
+}
+
+/// Whether a channel has several shapes by its weight.
+fn has_steps(element: &ufbx::Element) -> bool {
+    ufbx::as_blend_channel(element).is_some_and(|channel| channel.keyframes.len() > 1)
 }
 
 /// The kind of a material, if it is unknown, and its maps and layers that are left out.

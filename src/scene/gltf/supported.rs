@@ -29,12 +29,8 @@ const READ: [&str; 18] = [
 ];
 
 /// Compressions that a file may use next to uncompressed data, which is read; and how to undo each.
-const COMPRESSED: [(&str, &str); 1] = [(
-    "KHR_draco_mesh_compression",
-    "Convert it with Blender: blender -b --python-expr \"import bpy; \
-     bpy.ops.wm.read_factory_settings(use_empty=True); bpy.ops.import_scene.gltf(filepath='IN.glb'); \
-     bpy.ops.export_scene.gltf(filepath='OUT.glb')\"",
-)];
+const COMPRESSED: [(&str, &str); 1] =
+    [("KHR_draco_mesh_compression", "Convert it with glTF Transform: npx @gltf-transform/cli copy IN.glb OUT.glb")];
 
 /// Lines about extensions that are not read, for files with very many.
 const LINES: usize = 20;

@@ -41,6 +41,15 @@ impl<T: Value> Curve<T> {
         (fits && finite && times.is_sorted()).then_some(Curve { times, values, interpolation })
     }
 
+    /// Its values times a factor, if they stay finite.
+    pub(in crate::scene) fn scaled(&self, factor: f32) -> Option<Curve<T>>
+    where
+        T: std::ops::Mul<f32, Output = T>,
+    {
+        let values = self.values.iter().map(|v| *v * factor).collect();
+        Curve::new(self.times.clone(), values, self.interpolation)
+    }
+
     /// Seconds, in order.
     pub fn times(&self) -> &[f32] {
         &self.times

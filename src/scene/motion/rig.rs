@@ -13,10 +13,10 @@ use crate::scene::{Mesh, Scene};
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Rig {
     pub influences: Vec<Influence>,
-    influenced: Vec<Range<u32>>,
+    pub influenced: Vec<Range<u32>>,
     pub morphs: Vec<Morph>,
     /// Whether a vertex has the normal of its triangle.
-    flat: Vec<bool>,
+    pub flat: Vec<bool>,
 }
 
 /// By mesh: what can move the vertices of those that deform.

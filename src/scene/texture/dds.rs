@@ -4,7 +4,7 @@ use ddsfile::Dds;
 use image::RgbaImage;
 use image_dds::{ImageFormat, Surface, dds_image_format};
 
-use super::{Filter, Texture, TextureFormat, mips, texture_from_rgba};
+use super::{Filter, Notice, Texture, TextureFormat, mips, texture_from_rgba};
 
 /// Texture from a DDS file; whether it is sRGB follows from its use, not from the file.
 pub(super) fn texture(
@@ -13,7 +13,7 @@ pub(super) fn texture(
     srgb: bool,
     filter: Filter,
     max_side: u32,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Notice>,
 ) -> Result<Texture, String> {
     let file = parse(bytes)?;
     let Some(format) = kept_format(file.format, srgb) else {
@@ -30,7 +30,7 @@ pub(super) fn texture(
     })?;
     let (width, height) = level_size(&file, first);
     if first > 0 {
-        warnings.push(format!("texture {name}: {}x{} reduced to {width}x{height}", file.width, file.height));
+        warnings.push(Notice::of_size(name, (file.width, file.height), (width, height)));
     }
     let mips = levels.into_iter().skip(first).map(<[u8]>::to_vec).collect();
     Ok(Texture { name: name.into(), width, height, format, mips })
@@ -119,7 +119,7 @@ fn uncompressed(
     srgb: bool,
     filter: Filter,
     max_side: u32,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Notice>,
 ) -> Result<Texture, String> {
     let rgba = decode(file.format, file.width, file.height, file.levels)?;
     let format = if srgb { TextureFormat::Rgba8Srgb } else { TextureFormat::Rgba8Unorm };
@@ -131,7 +131,7 @@ fn uncompressed(
     if to == from {
         return Ok(texture_from_rgba(name, to.0, to.1, rgba, format, filter));
     }
-    warnings.push(format!("texture {name}: {}x{} reduced to {}x{}", from.0, from.1, to.0, to.1));
+    warnings.push(Notice::of_size(name, from, to));
     let rgba = mips::reduce(&rgba, from, to, srgb, filter);
     Ok(texture_from_rgba(name, to.0, to.1, rgba, format, filter))
 }

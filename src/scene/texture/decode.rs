@@ -8,7 +8,7 @@ use image::{DynamicImage, ImageFormat, ImageReader, Limits, RgbaImage};
 
 use crate::files::read_input;
 
-use super::{Filter, Recipe, Source, Texture, TextureFormat, dds, ktx2, mips, texture_from_rgba};
+use super::{Filter, Notice, Recipe, Source, Texture, TextureFormat, dds, ktx2, mips, texture_from_rgba};
 
 /// Formats of image files, besides DDS and KTX2.
 const READ: [ImageFormat; 5] =
@@ -24,7 +24,7 @@ const MAX_SIDE: u32 = 4096;
 type Failure = (String, String);
 
 /// Texture for a recipe; reductions go to the warnings.
-pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<String>) -> Result<Texture, Failure> {
+pub(super) fn cook(recipe: &Recipe, warnings: &mut Vec<Notice>) -> Result<Texture, Failure> {
     match recipe {
         Recipe::Color { image, mask } => {
             let filter = mask.map_or(Filter::Plain, |cutoff| Filter::Masked(f32::from(cutoff) / 255.0));
@@ -86,7 +86,7 @@ impl Texture {
     }
 }
 
-fn single(image: &Source, srgb: bool, filter: Filter, warnings: &mut Vec<String>) -> Result<Texture, Failure> {
+fn single(image: &Source, srgb: bool, filter: Filter, warnings: &mut Vec<Notice>) -> Result<Texture, Failure> {
     let fail = |problem: String| (image.name(), problem);
     let bytes = read(image).map_err(fail)?;
     if is_dds(&bytes) {
@@ -100,7 +100,7 @@ fn color_and_mask(
     color: Option<&Source>,
     alpha: &Source,
     cutoff: f32,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Notice>,
 ) -> Result<Texture, Failure> {
     let mask = pixels(alpha)?;
     let mut result = match color {
@@ -121,7 +121,7 @@ fn color_and_mask(
 fn roughness_and_metallic(
     roughness: Option<&Source>,
     metallic: Option<&Source>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Notice>,
 ) -> Result<Texture, Failure> {
     let rough = roughness.map(pixels).transpose()?;
     let metal = metallic.map(pixels).transpose()?;
@@ -137,7 +137,7 @@ fn roughness_and_metallic(
     Ok(finish(merged, &name, false, Filter::Plain, warnings))
 }
 
-fn glossiness(image: &Source, factor: u8, warnings: &mut Vec<String>) -> Result<Texture, Failure> {
+fn glossiness(image: &Source, factor: u8, warnings: &mut Vec<Notice>) -> Result<Texture, Failure> {
     let mut texels = pixels(image)?;
     for pixel in texels.pixels_mut() {
         let gloss = u32::from(pixel.0[3]) * u32::from(factor) / 255;
@@ -198,13 +198,13 @@ pub(in crate::scene) fn decode_limited(bytes: &[u8], format: ImageFormat) -> Res
     if image.width() == 0 || image.height() == 0 { Err("the image is empty".into()) } else { Ok(image) }
 }
 
-fn finish(image: RgbaImage, name: &str, srgb: bool, filter: Filter, warnings: &mut Vec<String>) -> Texture {
+fn finish(image: RgbaImage, name: &str, srgb: bool, filter: Filter, warnings: &mut Vec<Notice>) -> Texture {
     let format = if srgb { TextureFormat::Rgba8Srgb } else { TextureFormat::Rgba8Unorm };
     let (width, height) = image.dimensions();
     let mut rgba = image.into_raw();
     let to = within_limit(width, height);
     if to != (width, height) {
-        warnings.push(format!("texture {name}: {width}x{height} reduced to {}x{}", to.0, to.1));
+        warnings.push(Notice::of_size(name, (width, height), to));
         rgba = mips::reduce(&rgba, (width, height), to, srgb, filter);
     }
     texture_from_rgba(name, to.0, to.1, rgba, format, filter)

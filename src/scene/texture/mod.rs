@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use crate::diagnostics::panics::caught;
 
 use super::progress::Progress;
+use super::warnings::Warnings;
 use super::{SceneError, Texture, TextureFormat};
 
 pub(super) use content::Holes;
@@ -92,6 +93,23 @@ impl Recipe {
     }
 }
 
+/// Something to warn about, by kind.
+pub(super) struct Notice {
+    what: String,
+    name: String,
+}
+
+impl Notice {
+    fn of_size(name: &str, from: (u32, u32), to: (u32, u32)) -> Notice {
+        let name = format!("{name}: {}x{} to {}x{}", from.0, from.1, to.0, to.1);
+        Notice { what: "they are too large and were reduced".into(), name }
+    }
+
+    fn of_file(file: &str, material: &str, problem: &str, instead: &str) -> Notice {
+        Notice { what: format!("{problem}; {instead}"), name: format!("{file} of material {material}") }
+    }
+}
+
 /// The textures that materials ask for, each recipe once.
 #[derive(Debug, Default)]
 pub(super) struct Requests {
@@ -120,18 +138,18 @@ impl Requests {
             let mean = decoded(recipe, &mut warnings)
                 .and_then(|texture| mips::mean_color(&texture).map_err(|problem| (texture.name.clone(), problem)));
             let mean = mean.unwrap_or_else(|(file, problem)| {
-                warnings.push(format!("texture {file} of material '{material}': {problem}; it is left out"));
+                warnings.push(Notice::of_file(&file, material, &problem, "it is left out"));
                 Vec4::ONE
             });
             (mean, warnings)
         })
     }
 
-    /// What is made of each recipe, in parallel, and all warnings.
+    /// What is made of each recipe, in parallel, and a warning for each kind of trouble.
     fn each<T: Send>(
         self,
         progress: Progress,
-        make: impl Fn(&Recipe, &str) -> (T, Vec<String>) + Sync,
+        make: impl Fn(&Recipe, &str) -> (T, Vec<Notice>) + Sync,
     ) -> Result<(Vec<T>, Vec<String>), SceneError> {
         let recipes: Vec<(Recipe, String)> = self.recipes.into_iter().collect();
         for file in recipes.iter().flat_map(|r| r.0.files()) {
@@ -140,27 +158,28 @@ impl Requests {
         let one = |(recipe, material): &(Recipe, String)| {
             if progress.stopped() { Err(SceneError::Cancelled) } else { Ok(make(recipe, material)) }
         };
-        let made: Vec<(T, Vec<String>)> = recipes.par_iter().map(one).collect::<Result<_, _>>()?;
-        let (list, warnings): (Vec<T>, Vec<Vec<String>>) = made.into_iter().unzip();
-        Ok((list, warnings.concat()))
+        let made: Vec<(T, Vec<Notice>)> = recipes.par_iter().map(one).collect::<Result<_, _>>()?;
+        let (list, notices): (Vec<T>, Vec<Vec<Notice>>) = made.into_iter().unzip();
+        let mut warnings = Warnings::default();
+        notices.into_iter().flatten().for_each(|notice| warnings.add(notice.what, notice.name));
+        Ok((list, warnings.lines("textures")))
     }
 }
 
 /// The texture, or the file and what is wrong with it: a decoder may panic on a damaged one.
-fn decoded(recipe: &Recipe, warnings: &mut Vec<String>) -> Result<Texture, (String, String)> {
+fn decoded(recipe: &Recipe, warnings: &mut Vec<Notice>) -> Result<Texture, (String, String)> {
     let mut more = Vec::new();
     let texture = caught(|| decode::cook(recipe, &mut more));
     warnings.append(&mut more);
     texture.unwrap_or_else(|problem| Err((recipe.name(), problem)))
 }
 
-fn cook(recipe: &Recipe, material: &str) -> (Texture, Vec<String>) {
+fn cook(recipe: &Recipe, material: &str) -> (Texture, Vec<Notice>) {
     let mut warnings = Vec::new();
     match decoded(recipe, &mut warnings) {
         Ok(texture) => (texture, warnings),
         Err((file, problem)) => {
-            warnings
-                .push(format!("texture {file} of material '{material}': {problem}; a checkerboard stands in for it"));
+            warnings.push(Notice::of_file(&file, material, &problem, "a checkerboard stands in for it"));
             (stand_in::checkerboard(recipe, &file), warnings)
         }
     }
