@@ -219,7 +219,7 @@ fn wrong_arguments_are_told_and_leave_nothing() {
     assert_snapshot!(error_of(&["--size", "64x-1"]), @"error: --size 64x-1: expected WIDTHxHEIGHT, for example 1280x720");
     assert_snapshot!(error_of(&["--size", "100000x64"]), @"error: a picture of 100000x64 cannot be made: each side is 1 to 16384 pixels");
     assert_snapshot!(error_of(&["--frames", "0"]), @"error: --frames must be 1 to 1000000");
-    assert_snapshot!(error_of(&["--scene", "cornel"]), @"error: no scene 'cornel': did you mean 'cornell'? Built-in scenes: atrium, cornell, furnace, white-sky, thin-walls, triangles, moving-box, blade, small-quad, emitters, ceiling-panel, neon-tube, lampshade, huge-ground, far-away, pocket, plain, blinds, door-ajar, corridor, street, gloss, foliage, sky-window, vases; otherwise give a .ron, .obj, .gltf or .glb file");
+    assert_snapshot!(error_of(&["--scene", "cornel"]), @"error: no scene 'cornel': did you mean 'cornell'? Built-in scenes: atrium, cornell, furnace, white-sky, thin-walls, triangles, moving-box, blade, small-quad, emitters, ceiling-panel, neon-tube, lampshade, huge-ground, far-away, pocket, plain, blinds, door-ajar, corridor, street, gloss, foliage, sky-window, vases; otherwise give a .ron, .obj, .gltf, .glb or .fbx file");
     assert_snapshot!(error_of(&["--scene", "missing/model.gltf"]), @"error: cannot read missing/model.gltf: No such file or directory (os error 2). Check the path and its permissions");
     assert_snapshot!(error_of(&["--camera", "side", "--scene", "cornell"]), @"error: scene 'cornell' has no camera 'side' (known: default)");
     assert_snapshot!(error_of(&["--scene", "cornell", "--camera", "(eye: (0, 0, 1), target: (0, 0, 0))"]), @"error: --camera: 1:35: Unexpected missing field named `fov_y` in `PlacedCamera`; expected (eye: (x, y, z), target: (x, y, z), fov_y: degrees)");
@@ -254,7 +254,7 @@ fn files_that_are_missing_or_broken() {
     assert_snapshot!(scene("broken.gltf", b"{ \"asset\": { \"version\": \"2.0\" }, "), @"error: cannot load the model OUT/broken.gltf: it is no JSON: EOF while parsing a value at line 1 column 33. Export it again as glTF 2.0");
     assert_snapshot!(scene("broken.glb", &[0x67, 0x6c, 0x54, 0x46, 2, 0, 0, 0, 255, 255, 255, 255]), @"error: cannot load the model OUT/broken.glb: it has 12 bytes of 4294967295: it is cut short. Export it again as glTF 2.0");
     assert_snapshot!(scene("broken.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n"), @"error: cannot load the model OUT/broken.obj: line 3: a face names vertex 7 of 2. Export it again");
-    assert_snapshot!(scene("picture.bmp", b"BM"), @"error: no scene 'OUT/picture.bmp': the file's extension must be .ron, .obj, .gltf or .glb; convert other formats to glTF");
+    assert_snapshot!(scene("picture.bmp", b"BM"), @"error: no scene 'OUT/picture.bmp': the file's extension must be .ron, .obj, .gltf, .glb or .fbx; convert other formats to glTF");
     let mut home = conelab(root());
     home.env("CONELAB_HOME", out.0.path()).args(["render", "configs/default.ron", "-o"]).arg(&png);
     assert_snapshot!(out.tidy(&fails(&mut home)).replace(out.0.path().to_str().unwrap(), "OUT"), @"error: CONELAB_HOME is 'OUT', which has no passes and shaders folders");
