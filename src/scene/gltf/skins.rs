@@ -57,8 +57,7 @@ pub(super) fn read(
             list.extend(all.map(|(joint, weight)| Influence { joint: joint as u32, weight }));
         }
     }
-    let mut rig = Rig::default();
-    rig.morphs = morphs;
+    let mut rig = Rig { morphs, ..Rig::default() };
     each.iter().for_each(|list| rig.push(list));
     Ok(Some(rig))
 }
