@@ -398,6 +398,22 @@ const ROWS: &[Row] = &[
         },
     ),
     (
+        "ThirteenSizes",
+        |m| {
+            for size in 1..=13u32 {
+                let texture = m.texture(size, 1, &vec![[9, 9, 9, 255]; size as usize], json!({}));
+                let material =
+                    m.material(json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } } }));
+                placed_square(m, Some(material), json!({}));
+            }
+        },
+        |s| {
+            // The ten largest keep their size.
+            assert_eq!(s.warnings.len(), 1, "{:?}", s.warnings);
+            warned(s, "3 textures of rare sizes are scaled to 512 x 512", 1);
+        },
+    ),
+    (
         "UnknownExtensions",
         |m| {
             m.root["extensionsUsed"] = json!(["ACME_fog", "KHR_lights_punctual", "ACME_fog"]);

@@ -1,7 +1,9 @@
 //! Material textures as a few 2D arrays, one for each size and format: works without descriptor indexing.
 
 use crate::graph::externals::MATERIAL_ARRAYS;
-use crate::scene::{Lookup, Scene, Texture, TextureFormat, Wrap};
+use crate::scene::{
+    Lookup, MAX_TEXTURE_KINDS, SHARED_EDGE, Scene, Texture, TextureFormat, TextureKind, Wrap, keep_their_size,
+};
 use crate::vulkan::{Gpu, Image, ImageDesc, Result, Upload, View, ViewDesc, vk};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -10,15 +12,8 @@ use std::sync::Arc;
 /// A handle as shaders see it, of no texture.
 const NO_TEXTURE: u32 = u32::MAX;
 
-/// Edge of the textures that share an array because their own sizes are too rare for one.
-const SHARED_EDGE: u32 = 512;
-
-/// Width, height, mips and format: what the layers of an array have in common.
-type Class = (u32, u32, u32, TextureFormat);
-
-fn class(texture: &Texture) -> Class {
-    (texture.width, texture.height, u32::try_from(texture.mips.len()).unwrap_or(1), texture.format)
-}
+/// There is an array for each kind that a scene keeps.
+const _: () = assert!(MAX_TEXTURE_KINDS == MATERIAL_ARRAYS);
 
 /// The arrays, the handle of each texture, and bytes on the device.
 pub(super) struct MaterialTextures {
@@ -46,9 +41,9 @@ impl MaterialTextures {
 
 pub(super) fn upload(gpu: &Arc<Gpu>, scene: &Scene, upload: &mut Upload) -> Result<MaterialTextures> {
     let textures = fit(scene, gpu.info.features.bc);
-    let mut classes: BTreeMap<Class, Vec<usize>> = BTreeMap::new();
+    let mut classes: BTreeMap<TextureKind, Vec<usize>> = BTreeMap::new();
     for (i, texture) in textures.iter().enumerate() {
-        classes.entry(class(texture)).or_default().push(i);
+        classes.entry(texture.kind()).or_default().push(i);
     }
     let mut out = MaterialTextures {
         views: Vec::new(),
@@ -105,7 +100,7 @@ fn add(
     Ok(())
 }
 
-/// Textures of at most as many classes as there are arrays: the rarest are resampled to one common size.
+/// Textures of at most as many kinds as there are arrays: the rarest are resampled to one common size.
 fn fit(scene: &Scene, bc: bool) -> Vec<Cow<'_, Texture>> {
     let mut list: Vec<Cow<'_, Texture>> = scene
         .textures
@@ -114,19 +109,9 @@ fn fit(scene: &Scene, bc: bool) -> Vec<Cow<'_, Texture>> {
             if t.format.is_compressed() && !bc { Cow::Owned(t.resampled(t.width, t.height)) } else { Cow::Borrowed(t) }
         })
         .collect();
-    let mut texels: BTreeMap<Class, u64> = BTreeMap::new();
-    for texture in &list {
-        *texels.entry(class(texture)).or_default() += u64::from(texture.width) * u64::from(texture.height);
-    }
-    if texels.len() <= MATERIAL_ARRAYS {
-        return list;
-    }
-    let mut by_size: Vec<(u64, Class)> = texels.into_iter().map(|(c, n)| (n, c)).collect();
-    by_size.sort_unstable_by(|a, b| b.cmp(a));
-    // Two arrays, colour and data, take the rest.
-    let kept: Vec<Class> = by_size.iter().take(MATERIAL_ARRAYS - 2).map(|(_, c)| *c).collect();
-    for texture in &mut list {
-        if !kept.contains(&class(texture)) {
+    let kinds: Vec<TextureKind> = list.iter().map(|t| t.kind()).collect();
+    for (texture, keeps) in list.iter_mut().zip(keep_their_size(&kinds)) {
+        if !keeps {
             *texture = Cow::Owned(texture.resampled(SHARED_EDGE, SHARED_EDGE));
         }
     }

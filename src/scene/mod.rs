@@ -45,7 +45,7 @@ pub(crate) use motion::in_world;
 pub use motion::{Curve, Deformer, Influence, Interpolation, Joint, Keyframe, Morph, Mover, Rest, Track, Value};
 pub(crate) use shuffle::splitmix;
 pub use split::MAX_TRIANGLES;
-pub use texture::SmallPicture;
+pub use texture::{MAX_TEXTURE_KINDS, SHARED_EDGE, SmallPicture, TextureKind, keep_their_size};
 pub(crate) use transform::origin_of;
 
 /// Everything that is rendered, and from where.

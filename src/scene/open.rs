@@ -12,6 +12,7 @@ use crate::files::{ending, path_of};
 
 use super::limits::{check_extent, with_size_told};
 use super::progress::{Progress, Watch};
+use super::texture::with_kinds_told;
 use super::{Material, Scene, SceneError, builtin, defaults, fbx, file, gltf, obj};
 
 /// How often the callback is asked while a scene loads.
@@ -60,7 +61,7 @@ fn open_watched(
             return Err(SceneError::Cancelled);
         }
         match result.recv_timeout(ASK) {
-            Ok(loaded) => return loaded.map(with_size_told).map(Scene::with_seen_distance),
+            Ok(loaded) => return loaded.map(with_size_told).map(with_kinds_told).map(Scene::with_seen_distance),
             Err(mpsc::RecvTimeoutError::Timeout) => {}
             Err(mpsc::RecvTimeoutError::Disconnected) => break,
         }

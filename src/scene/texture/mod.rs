@@ -3,6 +3,7 @@
 mod content;
 mod dds;
 mod decode;
+mod kinds;
 mod ktx2;
 mod mips;
 mod stand_in;
@@ -23,6 +24,8 @@ use super::{SceneError, Texture, TextureFormat};
 pub(super) use content::Holes;
 pub use decode::SmallPicture;
 pub(super) use decode::{MAX_FILE_BYTES, decode_limited, first_level_rgba};
+pub(super) use kinds::with_kinds_told;
+pub use kinds::{MAX_TEXTURE_KINDS, SHARED_EDGE, TextureKind, keep_their_size};
 pub(super) use mips::{Filter, texture_from_rgba};
 
 /// Where an image's bytes come from.

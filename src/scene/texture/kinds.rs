@@ -1,0 +1,54 @@
+//! Kinds of textures: devices have few arrays, and the layers of an array are of one kind.
+
+use std::collections::BTreeMap;
+
+use crate::scene::{Scene, Texture, TextureFormat};
+
+/// Kinds that keep their size, if there are no more.
+pub const MAX_TEXTURE_KINDS: usize = 12;
+
+/// Edge of the textures that share an array because their own kinds are too rare for one, texels.
+pub const SHARED_EDGE: u32 = 512;
+
+/// Width, height, levels and format: what the layers of an array have in common.
+pub type TextureKind = (u32, u32, u32, TextureFormat);
+
+impl Texture {
+    /// Its kind.
+    pub fn kind(&self) -> TextureKind {
+        (self.width, self.height, u32::try_from(self.mips.len()).unwrap_or(1), self.format)
+    }
+}
+
+/// Whether a texture of each of these kinds keeps its size: all do, if there are few kinds, else those of the kinds with the most
+/// texels. Two arrays, for colours and for data, take the rest.
+pub fn keep_their_size(kinds: &[TextureKind]) -> Vec<bool> {
+    let mut texels: BTreeMap<TextureKind, u64> = BTreeMap::new();
+    for kind in kinds {
+        *texels.entry(*kind).or_default() += u64::from(kind.0) * u64::from(kind.1);
+    }
+    if texels.len() <= MAX_TEXTURE_KINDS {
+        return vec![true; kinds.len()];
+    }
+    let mut by_size: Vec<(u64, TextureKind)> = texels.into_iter().map(|(kind, n)| (n, kind)).collect();
+    by_size.sort_unstable_by(|a, b| b.cmp(a));
+    let kept: Vec<TextureKind> = by_size.iter().take(MAX_TEXTURE_KINDS - 2).map(|(_, kind)| *kind).collect();
+    kinds.iter().map(|kind| kept.contains(kind)).collect()
+}
+
+/// Adds a warning about textures that lose their size.
+pub(in crate::scene) fn with_kinds_told(mut scene: Scene) -> Scene {
+    let kinds: Vec<TextureKind> = scene.textures.iter().map(Texture::kind).collect();
+    let keep = keep_their_size(&kinds);
+    let names: Vec<&str> =
+        scene.textures.iter().zip(&keep).filter(|(_, keep)| !**keep).map(|(t, _)| t.name.as_str()).collect();
+    if let Some(first) = names.first() {
+        let count = names.len();
+        scene.warnings.push(format!(
+            "{}: {count} textures of rare sizes are scaled to {SHARED_EDGE} x {SHARED_EDGE}, because there are more than \
+             {MAX_TEXTURE_KINDS} sizes and formats (the first is '{first}'). Give textures common sizes",
+            scene.name
+        ));
+    }
+    scene
+}
