@@ -196,8 +196,8 @@ fn missing_and_corrupt_textures_have_stand_ins() {
     write(&dir, "a.mtl", "newmtl gone\nmap_Kd nowhere.png\nnewmtl broken\nmap_Kd bad.png\n");
     let scene =
         open(write(&dir, "a.obj", format!("mtllib a.mtl\nusemtl gone\n{QUAD}usemtl broken\nf 1 2 3\n"))).unwrap();
-    assert_warning(&scene, &["nowhere.png", "'gone'", "does not exist"]);
-    assert_warning(&scene, &["bad.png", "'broken'", "damaged"]);
+    assert_warning(&scene, &["nowhere.png of material gone", "does not exist"]);
+    assert_warning(&scene, &["bad.png of material broken", "damaged"]);
     for texture in &scene.textures {
         assert_eq!((texture.width, texture.height), (8, 8));
         assert_eq!(texture.mips[0][..8], [255, 0, 255, 255, 0, 0, 0, 255]);
@@ -352,7 +352,7 @@ fn gltf_embedded_data_and_texture_transform() {
     }))
     .unwrap();
     assert_eq!(scene.triangle_count(), 1);
-    assert_warning(&scene, &["no.png", "'m'"]);
+    assert_warning(&scene, &["no.png of material m"]);
     let uvs: Vec<[f32; 2]> = scene.meshes[0].vertices.iter().map(|v| v.uv).collect();
     assert!(uvs.contains(&[0.5, 3.0]) && uvs.contains(&[0.5, 0.0]), "{uvs:?}");
 }

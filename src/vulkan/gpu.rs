@@ -101,6 +101,8 @@ pub struct DeviceInfo {
     pub kind: &'static str,
     /// Nanoseconds of one timestamp tick; 0 when the queue has no timestamps.
     pub timestamp_ns: f64,
+    /// Bits of a tick; those above are not counted, so that the count starts over.
+    pub timestamp_mask: u64,
     /// Limits.
     pub limits: vk::PhysicalDeviceLimits,
     /// Bytes of the largest device-local heap.
@@ -113,6 +115,12 @@ pub struct DeviceInfo {
 }
 
 impl DeviceInfo {
+    /// Milliseconds between two timestamps, of which the count may have started over once; 0 where the second is the earlier one.
+    pub fn ms_between(&self, from: u64, to: u64) -> f64 {
+        let ticks = to.wrapping_sub(from) & self.timestamp_mask;
+        if ticks > self.timestamp_mask / 2 { 0.0 } else { ticks as f64 * self.timestamp_ns * 1e-6 }
+    }
+
     /// A device that does not exist, with these features and generous limits: for checks that need no device.
     pub fn imaginary(features: Features) -> DeviceInfo {
         let limits = vk::PhysicalDeviceLimits {
@@ -133,6 +141,7 @@ impl DeviceInfo {
             api: String::new(),
             kind: "none",
             timestamp_ns: 0.0,
+            timestamp_mask: u64::MAX,
             limits,
             heap: u64::MAX,
             features,
@@ -241,6 +250,11 @@ pub(super) fn has(extensions: &[vk::ExtensionProperties], name: &std::ffi::CStr)
     extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(name))
 }
 
+/// The bits of a timestamp that count (VkQueueFamilyProperties).
+fn mask_of(valid_bits: u32) -> u64 {
+    u64::MAX.checked_shr(64 - valid_bits.min(64)).unwrap_or(0)
+}
+
 fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInfo {
     // SAFETY: `physical` comes from this instance; the chained structures live through the calls.
     unsafe {
@@ -287,6 +301,7 @@ fn describe(instance: &ash::Instance, physical: vk::PhysicalDevice) -> DeviceInf
                 vk::PhysicalDeviceType::CPU => "cpu",
                 _ => "other",
             },
+            timestamp_mask: family.map_or(u64::MAX, |f| mask_of(f.timestamp_valid_bits)),
             timestamp_ns: if timestamps { f64::from(core.limits.timestamp_period) } else { 0.0 },
             limits: core.limits,
             heap,
@@ -612,5 +627,26 @@ impl Drop for Gpu {
             }
             self.instance.destroy_instance(None);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn timestamps_that_start_over_give_their_time() {
+        let info = |bits: u32| DeviceInfo {
+            timestamp_ns: 50.0,
+            timestamp_mask: mask_of(bits),
+            ..DeviceInfo::imaginary(Features::default())
+        };
+        let last = (1u64 << 36) - 1;
+        assert_eq!(info(36).ms_between(last - 9_999, 10_000), 1.0);
+        assert_eq!(info(36).ms_between(5, 20_005), 1.0);
+        assert_eq!(info(64).ms_between(u64::MAX - 9_999, 10_000), 1.0);
+        // A device that writes them out of order.
+        assert_eq!(info(36).ms_between(20_005, 5), 0.0);
+        assert_eq!((mask_of(0), mask_of(64), mask_of(36)), (0, u64::MAX, last));
     }
 }

@@ -213,7 +213,7 @@ impl Painter {
         if let Some(ticks) = ticks
             && let [a, b, c] = ticks[..]
         {
-            let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
+            let ms = |a: u64, b: u64| self.gpu.info.ms_between(a, b);
             self.gpu_ms = (ms(a, b), ms(b, c));
         }
         self.change_textures(&mut textures)?;

@@ -420,7 +420,7 @@ impl Program {
         let shown = usize::try_from(self.shown_bytes()).unwrap_or(0);
         let Slot { commands, cpu_ms, stamped, readback, handed, .. } = &mut self.slots[slot];
         let Some(ticks) = commands.wait()? else { return Ok(None) };
-        let ms = |a: u64, b: u64| b.saturating_sub(a) as f64 * self.gpu.info.timestamp_ns * 1e-6;
+        let ms = |a: u64, b: u64| self.gpu.info.ms_between(a, b);
         let passes = self.starts.iter().map(|s| self.plan.steps[*s].pass).zip(stamped.iter());
         let mut spans = ticks.windows(2).map(|t| ms(t[0], t[1]));
         // Devices without timestamps say nothing.
