@@ -681,6 +681,6 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
 
     // What a pass writes is inspected by a click.
     driver.click("Button", "shadow map writes shadowMap");
-    driver.texts_until("the inspected texture", |texts| texts.iter().any(|t| t.contains("shadowMap")));
+    driver.texts_until("the inspected texture", |texts| texts.iter().any(|t| t == "texture shadowMap"));
     driver.close();
 }

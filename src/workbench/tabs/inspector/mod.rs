@@ -172,7 +172,8 @@ impl Workbench {
                 }
             }
         });
-        named(&menu.response, egui::WidgetType::ComboBox, "texture");
+        let shown = format!("texture {}", self.inspector.target.texture);
+        named(&menu.response, egui::WidgetType::ComboBox, &shown);
         if let Some(name) = chosen {
             self.inspector.open(self.inspector.target.side, name);
         }
