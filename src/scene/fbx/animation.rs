@@ -13,12 +13,12 @@ use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Interpolation, Rest, Track};
 
-/// All that moves.
+/// Tracks of nodes and weights of shapes.
 #[derive(Default)]
 pub(super) struct Motion {
-    /// By the numbers of nodes.
+    /// The key is the number of the node.
     tracks: HashMap<u32, Arc<Track>>,
-    /// By the elements of channels.
+    /// The key is the element of the channel.
     weights: HashMap<u32, Curve<f32>>,
     /// Seconds after which all start over.
     pub period: Option<f32>,

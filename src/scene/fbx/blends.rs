@@ -1,4 +1,4 @@
-//! Blend shapes: how far they move the vertices of meshes, and how much of each there is over time.
+//! Blend shapes: offsets of vertices and weights over time.
 
 use glam::Vec3;
 use ufbx::{BlendKeyframe, BlendShape, Mesh};
@@ -18,7 +18,7 @@ pub(super) fn any(mesh: &Mesh) -> bool {
     keyframes(mesh).next().is_some()
 }
 
-/// Differences by vertex of the file; takes what it holds off `room`.
+/// Offsets for each vertex of the file. Their number is taken off `room`.
 ///
 /// # Errors
 /// There is no room.
@@ -43,7 +43,7 @@ pub(super) fn morphs(mesh: &Mesh, room: &mut usize) -> Result<Vec<Morph>, String
     keyframes(mesh).map(morph).collect()
 }
 
-/// How much of each shape there is. One between shapes of one channel stays at the weight that the file has.
+/// The weight of each shape over time. In a channel of several shapes weights stay as they are in the file.
 pub(super) fn weights(mesh: &Mesh, motion: &Motion) -> Option<Vec<Curve<f32>>> {
     let weight = |(channel, key): (&ufbx::BlendChannel, &BlendKeyframe)| {
         let alone = channel.keyframes.len() == 1 && key.target_weight != 0.0;
@@ -54,8 +54,8 @@ pub(super) fn weights(mesh: &Mesh, motion: &Motion) -> Option<Vec<Curve<f32>>> {
     keyframes(mesh).map(weight).collect()
 }
 
-/// By vertex: the sum of the normals of its faces, by their area. The difference that a shape makes of it turns the normals that
-/// a file gives; few files have normals of shapes.
+/// For each vertex the sum of the normals of its faces, by area. A shape changes this sum, and the same change is applied to the
+/// normals of the file; few files have normals of shapes.
 struct Smooth(Vec<Vec3>);
 
 impl Smooth {

@@ -93,7 +93,7 @@ struct Reader<'a> {
     is_rigged: bool,
     /// Three a triangle.
     corners: Vec<Vertex>,
-    /// Of such a mesh: the vertex of each corner.
+    /// The vertex of each corner, if it is.
     sources: Vec<u32>,
     /// Indices of the triangles of one face.
     triangles: Vec<u32>,

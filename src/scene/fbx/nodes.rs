@@ -16,7 +16,7 @@ use crate::scene::obj::shown;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Camera, Instance, Mover, Scene};
 
-/// A node to visit: what is above it.
+/// A node to visit, and the frame of its parent.
 struct Visit<'a> {
     node: &'a Node,
     /// The frame that its parent moves with.
@@ -29,14 +29,14 @@ struct Visit<'a> {
 /// Where nodes are, by number: in which moving frame, and where there.
 pub(super) type Frames = HashMap<u32, (Option<u32>, Mat4)>;
 
-/// What the hierarchy holds.
+/// The content of the hierarchy.
 pub(super) struct Placed<'a> {
     /// Instances, lights and cameras.
     pub scene: Scene,
     /// The meshes that instances name.
     pub wanted: Vec<Wanted>,
     pub frames: Frames,
-    /// Instances whose mesh has a skin or blend shapes.
+    /// Instances of meshes with a skin or blend shapes.
     pub rigged: Vec<(usize, &'a Mesh)>,
 }
 

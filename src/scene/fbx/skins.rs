@@ -1,4 +1,4 @@
-//! Skins: what moves the vertices of meshes, and the bones of instances.
+//! Skins: the bones of vertices and of instances.
 
 use ufbx::{Mesh, SkinDeformer, SkinningMethod};
 

@@ -17,7 +17,7 @@ use crate::scene::{Curve, Interpolation, Rest, Track, Value};
 #[derive(Default)]
 pub(super) struct Tracks {
     nodes: HashMap<usize, Track>,
-    /// By target, and when they start over.
+    /// A curve for each target, and the period.
     weights: HashMap<usize, (Vec<Curve<f32>>, Option<f32>)>,
 }
 

@@ -15,7 +15,7 @@ use crate::scene::motion::Rigs;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Camera, Instance, Mover, Scene};
 
-/// A node to visit: what is above it.
+/// A node to visit, and the frame of its parent.
 struct Visit<'a> {
     node: Node<'a>,
     /// The frame that its parent moves with.
@@ -28,12 +28,12 @@ struct Visit<'a> {
 /// Where nodes are, by number: in which moving frame, and where there.
 pub(super) type Frames = HashMap<usize, (Option<u32>, Mat4)>;
 
-/// What the hierarchy holds, without meshes.
+/// The content of the hierarchy, without meshes.
 #[derive(Default)]
 pub(super) struct Placed<'a> {
     pub scene: Scene,
     pub frames: Frames,
-    /// Instances whose node has a skin or morph targets.
+    /// Instances of nodes with a skin or morph targets.
     pub deforming: Vec<(usize, Node<'a>)>,
 }
 

@@ -1,4 +1,4 @@
-//! What moves the vertices of meshes: joints and morph targets of primitives, skins and weights of nodes.
+//! Joints and morph targets of primitives, skins and weights of nodes.
 
 use ::gltf::mesh::Primitive;
 use ::gltf::{Node, Semantic, Skin};
@@ -12,7 +12,7 @@ use crate::scene::motion::{Posing, Rig};
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Influence, Interpolation, Joint, Morph};
 
-/// That of a primitive with so many vertices; none where nothing moves them. Takes what it holds off `room`.
+/// The rig of a primitive with `count` vertices; none without joints and targets. Its size is taken off `room`.
 pub(super) fn read(
     primitive: &Primitive,
     buffers: &Buffers,
@@ -66,7 +66,7 @@ fn finite(v: [f32; 3]) -> Vec3 {
     Vec3::from_array(v.map(|x| if x.is_finite() { x } else { 0.0 }))
 }
 
-/// What poses the mesh of an instance, whose node this is.
+/// The pose of an instance's mesh by its node.
 pub(super) fn posing(
     (instance, node): (usize, &Node),
     rig: &Rig,

@@ -1,4 +1,4 @@
-//! How much space what moves takes.
+//! The space that moving meshes take.
 
 use glam::{Mat4, Vec3};
 
@@ -31,7 +31,7 @@ impl Scene {
         let deformer = self.deformers.iter().find(|d| d.mesh == instance.mesh);
         let mut points = Points::of(mesh, deformer);
         let mut local = instance.transform;
-        // What repeats in one time is looked at together, and what is above it moves the box of that.
+        // Movers of one period are sampled together. Movers of another period above them move the box of the result.
         for moves in self.chain(instance.mover) {
             let tracks: Vec<&Track> = moves.iter().map(|m| &*m.track).collect();
             let times = sample_times(&tracks);
@@ -80,7 +80,7 @@ impl Scene {
     }
 }
 
-/// What a box is taken around.
+/// Points inside of a box.
 enum Points<'a> {
     Mesh(&'a Mesh),
     Box(Box3),
@@ -132,6 +132,6 @@ fn between(keys: &[f32]) -> Vec<f32> {
     let step = intervals.div_ceil(MAX_POSES).max(1);
     let pairs = keys.windows(2).step_by(step);
     let inner = pairs.flat_map(|k| (0..each).map(move |i| k[0] + (k[1] - k[0]) * i as f32 / each as f32));
-    // The end of a period is its beginning to what repeats; just before it is what the last key says.
+    // At the end of a period a track is at its beginning again, so the last key is sampled just before it.
     inner.chain([last.next_down().max(keys[0]), *last]).collect()
 }

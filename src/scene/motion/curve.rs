@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec3, Vec4};
 
-/// What is between two keys.
+/// Values between two keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
     /// The value of the key before.
@@ -60,7 +60,7 @@ impl<T: Value> Curve<T> {
         &self.values
     }
 
-    /// What is between keys.
+    /// Values between keys.
     pub fn interpolation(&self) -> Interpolation {
         self.interpolation
     }

@@ -1,4 +1,4 @@
-//! Meshes whose vertices move: morph targets, then skins (glTF 2.0, 3.7.2.2 and 3.7.3).
+//! Vertices that move by morph targets, then by skins (glTF 2.0, 3.7.2.2 and 3.7.3).
 
 use std::ops::Range;
 
@@ -18,21 +18,21 @@ pub struct Deformer {
     pub mesh: u32,
     /// Position, normal and tangent of its first vertices before all that moves them.
     pub rest: Vec<Vertex>,
-    /// Shapes that are mixed in.
+    /// Shapes that are added.
     pub morphs: Vec<Morph>,
-    /// By morph: how much of it, over time.
+    /// The weight of each morph over time.
     pub weights: Vec<Curve<f32>>,
     /// Seconds after which weights start over.
     pub period: Option<f32>,
-    /// What moves vertices of a skin; none: there is no skin.
+    /// The joints of the skin; none: there is no skin.
     pub joints: Vec<Joint>,
-    /// Those of all vertices, one vertex after another.
+    /// The influences of all vertices, in the order of vertices.
     pub influences: Vec<Influence>,
-    /// By vertex: its influences.
+    /// The influences of each vertex, as a range of the list.
     pub influenced: Vec<Range<u32>>,
-    /// By vertex: whether it has the normal of its triangle in every pose. Empty: none.
+    /// Whether each vertex has the normal of its triangle in every pose. Empty: none.
     pub flat: Vec<bool>,
-    /// By vertex after those of `rest`: the two that it is in the middle of, which come before it.
+    /// The ends of the split edge for each vertex after those of `rest`; both come before the vertex.
     pub halves: Vec<[u32; 2]>,
     /// The box around all of its poses.
     pub bounds: (Vec3, Vec3),
@@ -69,7 +69,7 @@ pub struct Influence {
     pub weight: f32,
 }
 
-/// What moves vertices at a time.
+/// Weights and joints at a time.
 struct Pose {
     weights: Vec<f32>,
     joints: Vec<Mat4>,
@@ -121,7 +121,7 @@ impl Deformer {
 
     fn is_flat(&self, vertex: u32) -> bool {
         let mut vertex = vertex as usize;
-        // Halves come after what they are halves of.
+        // A half comes after its two ends.
         while let Some([first, _]) = vertex.checked_sub(self.rest.len()).and_then(|half| self.halves.get(half)) {
             if *first as usize >= vertex {
                 return false;

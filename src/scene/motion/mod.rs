@@ -1,4 +1,4 @@
-//! What moves: frames, each in that of its parent, and meshes whose vertices follow them.
+//! Motion: frames, each in the frame of its parent, and meshes with vertices that follow frames.
 
 mod bounds;
 mod curve;
@@ -139,7 +139,7 @@ impl Scene {
         self.moved(instance.mover, instance.transform, time)
     }
 
-    /// What lies in a mover's frame, in the world at a time in seconds.
+    /// The transform from a mover's frame to the world at a time in seconds, times `local`.
     pub(in crate::scene) fn moved(&self, mover: Option<u32>, local: Mat4, time: f32) -> Mat4 {
         let (mut world, mut next) = (local, mover);
         while let Some((number, mover)) = next.and_then(|n| Some((n, self.movers.get(n as usize)?))) {
@@ -150,7 +150,7 @@ impl Scene {
     }
 }
 
-/// Where something lies in the frame of a mover; in the world where that is absent.
+/// A transform in the frame of a mover as a transform in the world; without a mover it is in the world already.
 pub(crate) fn in_world(frames: &[Mat4], mover: Option<u32>, local: Mat4) -> Mat4 {
     mover.and_then(|m| frames.get(m as usize)).map_or(local, |frame| *frame * local)
 }

@@ -9,7 +9,7 @@ use super::{Curve, Deformer, Influence, Joint, Morph};
 use crate::scene::mesh::drop_flat;
 use crate::scene::{Mesh, Scene};
 
-/// What can move the vertices of a mesh or of its part, by vertex.
+/// Joints and morph targets of the vertices of a mesh or of a part.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Rig {
     pub influences: Vec<Influence>,
@@ -19,16 +19,16 @@ pub(in crate::scene) struct Rig {
     pub flat: Vec<bool>,
 }
 
-/// By mesh: what can move the vertices of those that deform.
+/// The rigs of meshes that deform, by the number of the mesh.
 pub(in crate::scene) type Rigs = HashMap<usize, Rig>;
 
-/// What poses the mesh of an instance.
+/// The pose of an instance's mesh over time.
 pub(in crate::scene) struct Posing {
     /// A number in [`Scene::instances`].
     pub instance: usize,
     /// None: there is no skin.
     pub joints: Vec<Joint>,
-    /// By morph.
+    /// One for each morph.
     pub weights: Vec<Curve<f32>>,
     /// Seconds after which weights start over.
     pub period: Option<f32>,
@@ -50,7 +50,7 @@ impl Rig {
 
     /// Adds the vertices of a primitive, each of a source in its rig, behind `before` others.
     pub fn append(&mut self, before: usize, primitive: Option<&Rig>, sources: &[u32], flat: bool) {
-        // Vertices so far that nothing moves.
+        // The vertices before may have no rig.
         self.influenced.resize(before, 0..0);
         self.flat.resize(before, false);
         self.flat.resize(before + sources.len(), flat);

@@ -10,7 +10,7 @@ pub const MAX_TEXTURE_KINDS: usize = 12;
 /// Edge of the textures that share an array because their own kinds are too rare for one, texels.
 pub const SHARED_EDGE: u32 = 512;
 
-/// Width, height, levels and format: what the layers of an array have in common.
+/// Width, height, levels and format, which the layers of an array share.
 pub type TextureKind = (u32, u32, u32, TextureFormat);
 
 impl Texture {

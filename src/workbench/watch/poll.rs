@@ -17,7 +17,7 @@ const EVERY: Duration = Duration::from_secs(1);
 type Stamp = (Option<SystemTime>, u64);
 type Folders = BTreeMap<PathBuf, (RecursiveMode, BTreeMap<PathBuf, Stamp>)>;
 
-/// Folders and what was in them at the last look. Dropping it ends the looking.
+/// Folders, and the files in them at the last look. Dropping it ends the thread.
 #[derive(Default)]
 pub(super) struct Poll(Arc<Mutex<Folders>>);
 
@@ -48,7 +48,7 @@ impl Poll {
     }
 }
 
-/// The files that changed since the last look; none once nobody wants to know.
+/// The files that changed since the last look; none once the list of folders is gone.
 fn look(folders: &Weak<Mutex<Folders>>) -> Option<Vec<PathBuf>> {
     // The lock is not held while a slow file system answers: the window waits for it in `watch`.
     let list: Vec<_> = lock(&*folders.upgrade()?).iter().map(|(folder, f)| (folder.clone(), f.0)).collect();
