@@ -221,3 +221,23 @@ fn exact_triangles_for_voxels_are_those_of_the_pose() {
         assert!((corner - low).min_element() > -1e-4 && (high - corner).min_element() > -1e-4, "{corner}");
     }
 }
+
+/// Midpoints of edges lie on their triangles, so that a pose has the same surface with them.
+#[test]
+fn triangles_that_were_split_follow_the_skin() {
+    let scene = figure(false);
+    let split = scene.split_triangles(0.1);
+    let (deformer, mesh) = (&split.deformers[0], &split.meshes[split.deformers[0].mesh as usize]);
+    assert_eq!(deformer.rest.len() + deformer.halves.len(), mesh.vertices.len());
+    assert!(mesh.triangle_count() > 3 * scene.meshes[scene.deformers[0].mesh as usize].triangle_count());
+    let area = |scene: &Scene, time: f64| -> f64 {
+        let triangles = triangles_of(scene, time).into_iter();
+        triangles.map(|t| 0.5 * (t.corners[1] - t.corners[0]).cross(t.corners[2] - t.corners[0]).length()).sum()
+    };
+    for time in [0.0, 0.6, 0.9] {
+        let (whole, parts) = (area(&scene, time), area(&split, time));
+        println!("{time} s: {whole:.5} and {parts:.5} m^2");
+        assert!((parts / whole - 1.0).abs() < 1e-5, "{time} s: {whole} and {parts}");
+    }
+    assert!((area(&scene, 0.0) / area(&scene, 0.9) - 1.0).abs() > 1e-3, "the surface changes");
+}
