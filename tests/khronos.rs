@@ -993,6 +993,28 @@ fn scene_files_scale_the_lamps_of_models() {
     assert!(scene("lights_scale: -1").unwrap_err().contains("lights_scale is from 0"));
 }
 
+/// A small file may name one list of keys very often, and nest its nodes.
+#[test]
+fn animations_do_not_grow_without_bound() {
+    let refused = |keys: usize, nodes: usize, piece: &str| {
+        let mut m = Model::new();
+        let times: Vec<[f32; 1]> = (0..keys).map(|i| [i as f32]).collect();
+        let (times, values) = (m.floats(&times), m.floats(&vec![[1.0, 0.0, 0.0]; keys]));
+        for i in 0..nodes {
+            m.push("nodes", if i == 0 { json!({}) } else { json!({ "children": [i - 1] }) });
+        }
+        m.root["scenes"][0]["nodes"] = json!([nodes - 1]);
+        let channel = |node: usize| json!({ "sampler": 0, "target": { "node": node, "path": "translation" } });
+        let channels: Vec<Value> = (0..nodes).map(channel).collect();
+        m.push("animations", json!({ "samplers": [{ "input": times, "output": values }], "channels": channels }));
+        let folder = tempfile::tempdir().unwrap();
+        let error = open(&m.write(folder.path(), "m.gltf")).unwrap_err();
+        assert!(error.contains(piece), "{error}");
+    };
+    refused(70_000, 64, "more than 4194304 keys");
+    refused(2, 300, "moves in more than 256 moving nodes");
+}
+
 #[test]
 fn scene_files_choose_the_clips_of_models() {
     let mut model = Model::new();

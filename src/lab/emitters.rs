@@ -5,7 +5,7 @@ use super::bvh::Soup;
 use crate::graph::host::{EmitterBlock, InstanceBlock};
 use crate::scene::{Lookup, Scene, Side, SmallPicture};
 use glam::{Mat4, Vec2, Vec3, Vec4};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// More emitting triangles than these are met by rays alone: 64 bytes each.
 const MOST_EMITTERS: usize = 1 << 20;
@@ -131,7 +131,11 @@ impl Emitters {
 
     /// Whether any of them moves or changes its shape.
     pub(super) fn move_in(&self, scene: &Scene) -> bool {
-        let moves = |e: &Emitter| scene.instances.get(e.instance as usize).is_some_and(|i| scene.is_animated(i));
+        let deforming: HashSet<u32> = scene.deformers.iter().map(|d| d.mesh).collect();
+        let moves = |e: &Emitter| {
+            let instance = scene.instances.get(e.instance as usize);
+            instance.is_some_and(|i| i.mover.is_some() || deforming.contains(&i.mesh))
+        };
         self.list.iter().any(moves)
     }
 

@@ -283,26 +283,32 @@ impl SceneGpu {
         let mut list = vec![Update::all(&self.instances, bytemuck::cast_slice(&self.sent).to_vec())];
         if deforms {
             self.posed_at = time as f32;
-            list.extend(self.deformed(&scene, time as f32));
+        }
+        let posed = scene.posed_meshes(self.posed_at);
+        if deforms {
+            list.extend(self.deformed(&scene, &posed));
         }
         let rays = [self.resources.buffers.get("bvhNodes"), self.resources.buffers.get("bvhTriangles")];
         let emitters = self.resources.buffers.get("emitters").filter(|_| self.emitters.move_in(&scene));
-        if rays[0].is_none() && emitters.is_none() {
+        // Emitters of rigid bodies need no vertices: these are all of the scene's.
+        if rays[0].is_none() && (emitters.is_none() || scene.deformers.is_empty()) {
+            list.extend(emitters.map(|buffer| Update::all(buffer, self.emitters.buffer(&self.sent, None))));
             return Ok(list);
         }
-        let (positions, _, indices, first_index) = vertices(&scene, &scene.posed_meshes(self.posed_at));
+        let (positions, _, indices, first_index) = vertices(&scene, &posed);
         if let Some(buffer) = emitters {
-            let posed = (!scene.deformers.is_empty()).then_some((positions.as_slice(), indices.as_slice()));
-            list.push(Update::all(buffer, self.emitters.buffer(&self.sent, posed)));
+            let moved = (!scene.deformers.is_empty()).then_some((positions.as_slice(), indices.as_slice()));
+            list.push(Update::all(buffer, self.emitters.buffer(&self.sent, moved)));
         }
         if let [Some(nodes), Some(triangles)] = rays {
             let draws = draws(&scene, &first_index);
+            let masked = |d: &DrawBlock| is_masked(&scene, d);
             let soup = Soup {
                 positions: &positions,
                 indices: &indices,
                 draws: &draws,
                 first_index: &first_index,
-                masked: &|d: &DrawBlock| is_masked(&scene, d),
+                masked: &masked,
             };
             let found = hierarchy(&soup, &self.emitters, &self.sent);
             list.push(Update::all(nodes, found.nodes));
@@ -312,8 +318,7 @@ impl SceneGpu {
     }
 
     /// Positions and attributes of the meshes that deform.
-    fn deformed(&self, scene: &Scene, time: f32) -> Vec<Update> {
-        let frames = scene.mover_frames(time);
+    fn deformed(&self, scene: &Scene, posed: &[Cow<'_, [Vertex]>]) -> Vec<Update> {
         let mut starts = vec![0usize];
         starts.extend(scene.meshes.iter().scan(0, |sum, mesh| {
             *sum += mesh.vertices.len();
@@ -321,7 +326,7 @@ impl SceneGpu {
         }));
         let parts = scene.deformers.iter().flat_map(|deformer| {
             let start = starts.get(deformer.mesh as usize).copied().unwrap_or(0);
-            let posed = scene.posed(deformer, &frames, time);
+            let posed = posed.get(deformer.mesh as usize).map(|vertices| &**vertices).unwrap_or_default();
             let positions: Vec<[f32; 3]> = posed.iter().map(|v| v.position).collect();
             let attributes: Vec<Attributes> = posed.iter().map(attributes::of).collect();
             [

@@ -49,7 +49,7 @@ impl Scene {
             "vertices": self.meshes.iter().map(|mesh| mesh.vertices.len()).sum::<usize>(),
             "meshes": self.meshes.len(),
             "instances": self.instances.len(),
-            "animated": self.instances.iter().filter(|i| self.is_animated(i)).count(),
+            "animated": self.animated().count(),
             "bounds": [low.to_array(), high.to_array()],
             "sky": self.sky.to_array(),
             "environment": self.environment.as_ref().map(|e| e.name().to_string()),
@@ -67,7 +67,7 @@ impl Scene {
         let vertices: usize = self.meshes.iter().map(|mesh| mesh.vertices.len()).sum();
         let (low, high) = self.bounds();
         let size = high - low;
-        let moving = self.instances.iter().filter(|i| self.is_animated(i)).count();
+        let moving = self.animated().count();
         writeln!(out, "scene      {}", self.name)?;
         writeln!(out, "triangles  {}", self.triangle_count())?;
         writeln!(out, "vertices   {vertices} in {} meshes", self.meshes.len())?;

@@ -49,8 +49,8 @@ impl Scene {
                         .glb to keep them";
             warnings.add(what, &material.name);
         }
-        let moving = self.instances.iter().filter(|i| self.is_animated(i));
-        moving.for_each(|i| warnings.add("motion is left out of .obj files, which hold the pose at 0 s", &i.name));
+        self.animated()
+            .for_each(|i| warnings.add("motion is left out of .obj files, which hold the pose at 0 s", &i.name));
         warnings
     }
 

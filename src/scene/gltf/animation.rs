@@ -13,12 +13,17 @@ use crate::scene::clips;
 use crate::scene::warnings::Warnings;
 use crate::scene::{Curve, Interpolation, Rest, Track, Value};
 
-/// What moves in a document, by node.
+/// Keys of all channels: a small file may name one list of times in each of many.
+const MAX_KEYS: usize = 1 << 22;
+
+/// The motion in a document, by node.
 #[derive(Default)]
 pub(super) struct Tracks {
     nodes: HashMap<usize, Track>,
     /// A curve for each target, and the period.
     weights: HashMap<usize, (Vec<Curve<f32>>, Option<f32>)>,
+    /// Keys so far.
+    keys: usize,
 }
 
 impl Tracks {
@@ -90,13 +95,20 @@ impl Tracks {
     fn add(&mut self, channel: &Channel, period: Option<f32>, buffers: &Buffers) -> Result<(), String> {
         let (node, sampler) = (channel.target().node(), channel.sampler());
         let name = format!("the animation of node {}", node.index());
-        let times = accessors::floats::<1>(&sampler.input(), buffers)?.into_iter().map(|[t]| t).collect();
+        let times: Vec<f32> = accessors::floats::<1>(&sampler.input(), buffers)?.into_iter().map(|[t]| t).collect();
+        // Weights have a list of times for each target.
+        let targets = node.mesh().and_then(|m| m.primitives().map(|p| p.morph_targets().len()).max()).unwrap_or(0);
+        let is_weights = channel.target().property() == Property::MorphTargetWeights;
+        let lists = if is_weights { targets } else { 1 };
+        self.keys = self.keys.saturating_add(times.len().saturating_mul(lists));
+        if self.keys > MAX_KEYS {
+            return Err(format!("its animations have more than {MAX_KEYS} keys"));
+        }
         let keys = Keys { name, times, interpolation: sampler.interpolation() };
         let output = sampler.output();
-        if channel.target().property() == Property::MorphTargetWeights {
+        if is_weights {
             let values = accessors::floats::<1>(&output, buffers)?.into_iter().map(|[w]| w).collect();
-            let targets = node.mesh().and_then(|m| m.primitives().map(|p| p.morph_targets().len()).max());
-            self.weights.insert(node.index(), (keys.weights(values, targets.unwrap_or(0))?, period));
+            self.weights.insert(node.index(), (keys.weights(values, targets)?, period));
             return Ok(());
         }
         let track = self.nodes.entry(node.index()).or_default();

@@ -56,7 +56,7 @@ pub(super) fn load(path: &Path, clip: Option<&str>, progress: Progress) -> Resul
     progress.step("nodes", 0.6)?;
     let tracks = animation::tracks(&document, &buffers, clip, &mut warnings).map_err(fail)?;
     let placed = nodes::place(&document, &buffers, &tracks, &rigs, &mut warnings).map_err(fail)?;
-    let nodes::Placed { mut scene, frames, deforming } = placed;
+    let nodes::Placed { mut scene, frames, deforming, .. } = placed;
     scene.meshes = meshes;
     let mut posings = Vec::new();
     for (instance, node) in &deforming {

@@ -25,6 +25,9 @@ struct Visit<'a> {
     visible: bool,
 }
 
+/// Moving nodes in one another: each pose of an instance goes through all above it.
+const MAX_DEPTH: usize = 256;
+
 /// Where nodes are, by number: in which moving frame, and where there.
 pub(super) type Frames = HashMap<usize, (Option<u32>, Mat4)>;
 
@@ -33,6 +36,8 @@ pub(super) type Frames = HashMap<usize, (Option<u32>, Mat4)>;
 pub(super) struct Placed<'a> {
     pub scene: Scene,
     pub frames: Frames,
+    /// How many moving nodes each mover is in, with itself.
+    depths: Vec<usize>,
     /// Instances of nodes with a skin or morph targets.
     pub deforming: Vec<(usize, Node<'a>)>,
 }
@@ -65,6 +70,11 @@ pub(super) fn place<'a>(
             return Err(format!("node '{name}' has a transform that is not finite. Export it again"));
         }
         if let Some(track) = tracks.of(&node) {
+            let depth = mover.and_then(|m| placed.depths.get(m as usize)).map_or(1, |depth| depth + 1);
+            if depth > MAX_DEPTH {
+                return Err(format!("node '{name}' moves in more than {MAX_DEPTH} moving nodes"));
+            }
+            placed.depths.push(depth);
             placed.scene.movers.push(Mover { parent: mover, placed: above, track });
             (mover, local) = (Some(placed.scene.movers.len() as u32 - 1), Mat4::IDENTITY);
         }

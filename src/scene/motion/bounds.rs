@@ -1,5 +1,7 @@
 //! The space that moving meshes take.
 
+use std::collections::{BTreeSet, HashMap};
+
 use glam::{Mat4, Vec3};
 
 use super::{Deformer, Mover, Track, sorted};
@@ -9,6 +11,8 @@ use crate::scene::{Instance, Mesh, Scene};
 const POSES_PER_INTERVAL: usize = 16;
 /// Poses looked at in all.
 const MAX_POSES: usize = 4096;
+/// Poses of all instances together.
+const ALL_POSES: usize = 1 << 20;
 /// Above this many points times poses, the corners of their box are moved instead (larger, never smaller).
 const EXACT_WORK: usize = 20_000_000;
 /// Part of its size that is added to the box around a mesh that deforms: between the poses looked at it may be larger.
@@ -22,24 +26,40 @@ const NOTHING: Box3 = (Vec3::INFINITY, Vec3::NEG_INFINITY);
 impl Scene {
     /// The box around everything in the world, over all poses; (0, 0) for a scene without triangles.
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        let (low, high) = self.instances.iter().map(|i| self.bounds_of(i)).fold(NOTHING, around);
+        let deformers: HashMap<u32, &Deformer> = self.deformers.iter().map(|d| (d.mesh, d)).collect();
+        let moving = self.instances.iter().filter(|i| i.mover.is_some()).count();
+        let most = (ALL_POSES / moving.max(1)).clamp(64, MAX_POSES);
+        let each = self.instances.iter().map(|i| self.bounds_of(i, deformers.get(&i.mesh).copied(), most));
+        let (low, high) = each.fold(NOTHING, around);
         if low.x <= high.x { (low, high) } else { (Vec3::ZERO, Vec3::ZERO) }
     }
 
-    fn bounds_of(&self, instance: &Instance) -> Box3 {
+    fn bounds_of(&self, instance: &Instance, deformer: Option<&Deformer>, most: usize) -> Box3 {
         let Some(mesh) = self.meshes.get(instance.mesh as usize) else { return NOTHING };
-        let deformer = self.deformers.iter().find(|d| d.mesh == instance.mesh);
         let mut points = Points::of(mesh, deformer);
         let mut local = instance.transform;
         // Movers of one period are sampled together. Movers of another period above them move the box of the result.
         for moves in self.chain(instance.mover) {
             let tracks: Vec<&Track> = moves.iter().map(|m| &*m.track).collect();
-            let times = sample_times(&tracks);
+            let times = sample_times(&tracks, most);
             let pose = |t: f32| moves.iter().fold(local, |below, m| m.placed * m.track.at(t) * below);
             points = Points::Box(points.moved(times.into_iter().map(pose)));
             local = Mat4::IDENTITY;
         }
         points.moved([local].into_iter())
+    }
+
+    /// The joints' movers and those above them, each once.
+    fn above(&self, deformer: &Deformer) -> BTreeSet<u32> {
+        let mut found = BTreeSet::new();
+        for joint in &deformer.joints {
+            let mut next = joint.mover;
+            while let Some(number) = next.filter(|n| found.insert(*n)) {
+                let parent = self.movers.get(number as usize).and_then(|m| m.parent);
+                next = parent.filter(|p| *p < number);
+            }
+        }
+        found
     }
 
     /// The movers above something, in runs of the same period, innermost first.
@@ -59,12 +79,12 @@ impl Scene {
     /// The box around a mesh in all poses that a deformer gives it, in its own space.
     pub(in crate::scene) fn deformed_bounds(&self, deformer: &Deformer) -> (Vec3, Vec3) {
         let Some(mesh) = self.meshes.get(deformer.mesh as usize) else { return (Vec3::ZERO, Vec3::ZERO) };
-        let tracks = deformer.joints.iter().flat_map(|j| self.chain(j.mover)).flatten().map(|m| &*m.track);
+        let tracks = self.above(deformer).into_iter().filter_map(|m| self.movers.get(m as usize)).map(|m| &*m.track);
         let weights = deformer.weights.iter().flat_map(|curve| curve.times().iter().copied());
         let times = sorted(tracks.flat_map(Track::times).chain(weights).collect());
-        let mut times = between(&times);
+        let mut times = between(&times, MAX_POSES);
         // As many as the work allows, evenly.
-        let most = (EXACT_WORK / mesh.vertices.len().max(1)).clamp(16, MAX_POSES);
+        let most = (EXACT_WORK / (mesh.vertices.len() + self.movers.len()).max(1)).clamp(16, MAX_POSES);
         let step = times.len().div_ceil(most).max(1);
         times = times.into_iter().step_by(step).chain([0.0]).collect();
         let pose = |time: f32| {
@@ -120,16 +140,16 @@ fn corners((low, high): Box3) -> Vec<Vec3> {
     (0..8).map(|i| Vec3::new(pick(i, 1).x, pick(i, 2).y, pick(i, 4).z)).collect()
 }
 
-fn sample_times(tracks: &[&Track]) -> Vec<f32> {
-    between(&sorted(tracks.iter().flat_map(|t| t.times()).collect()))
+fn sample_times(tracks: &[&Track], most: usize) -> Vec<f32> {
+    between(&sorted(tracks.iter().flat_map(|t| t.times()).collect()), most)
 }
 
 /// Times of keys and some between them; those of very many are looked at in part.
-fn between(keys: &[f32]) -> Vec<f32> {
+fn between(keys: &[f32], most: usize) -> Vec<f32> {
     let Some(last) = keys.last() else { return vec![0.0] };
     let intervals = keys.len() - 1;
-    let each = (MAX_POSES / intervals.max(1)).clamp(1, POSES_PER_INTERVAL);
-    let step = intervals.div_ceil(MAX_POSES).max(1);
+    let each = (most / intervals.max(1)).clamp(1, POSES_PER_INTERVAL);
+    let step = intervals.div_ceil(most).max(1);
     let pairs = keys.windows(2).step_by(step);
     let inner = pairs.flat_map(|k| (0..each).map(move |i| k[0] + (k[1] - k[0]) * i as f32 / each as f32));
     // At the end of a period a track is at its beginning again, so the last key is sampled just before it.

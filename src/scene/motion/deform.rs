@@ -76,19 +76,18 @@ struct Pose {
 }
 
 impl Scene {
-    /// The vertices of a mesh that deforms at a time in seconds; `frames` are [`Scene::mover_frames`].
-    pub fn posed(&self, deformer: &Deformer, frames: &[Mat4], time: f32) -> Vec<Vertex> {
-        self.meshes.get(deformer.mesh as usize).map_or_else(Vec::new, |mesh| deformer.posed(mesh, frames, time))
-    }
-
     /// All meshes as they are at a time in seconds: those that deform are posed.
     pub fn posed_meshes(&self, time: f32) -> Vec<std::borrow::Cow<'_, [Vertex]>> {
         let mut meshes: Vec<_> =
             self.meshes.iter().map(|m| std::borrow::Cow::Borrowed(m.vertices.as_slice())).collect();
+        if self.deformers.is_empty() {
+            return meshes;
+        }
         let frames = self.mover_frames(time);
         for deformer in &self.deformers {
-            if let Some(mesh) = meshes.get_mut(deformer.mesh as usize) {
-                *mesh = self.posed(deformer, &frames, time).into();
+            let number = deformer.mesh as usize;
+            if let (Some(posed), Some(mesh)) = (meshes.get_mut(number), self.meshes.get(number)) {
+                *posed = deformer.posed(mesh, &frames, time).into();
             }
         }
         meshes

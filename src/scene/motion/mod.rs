@@ -5,6 +5,7 @@ mod curve;
 mod deform;
 mod rig;
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use glam::{Mat4, Quat, Vec3};
@@ -13,7 +14,7 @@ pub use curve::{Curve, Interpolation, Value};
 pub use deform::{Deformer, Influence, Joint, Morph};
 pub(in crate::scene) use rig::{Posing, Rig, Rigs, attach};
 
-use super::Scene;
+use super::{Instance, Scene};
 
 /// A frame that moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,9 +119,10 @@ impl Scene {
         !self.deformers.is_empty() || self.instances.iter().any(|i| i.mover.is_some())
     }
 
-    /// Whether an instance moves or changes its shape.
-    pub fn is_animated(&self, instance: &super::Instance) -> bool {
-        instance.mover.is_some() || self.deformers.iter().any(|d| d.mesh == instance.mesh)
+    /// Instances that move or change their shape.
+    pub fn animated(&self) -> impl Iterator<Item = &Instance> {
+        let deforming: HashSet<u32> = self.deformers.iter().map(|d| d.mesh).collect();
+        self.instances.iter().filter(move |i| i.mover.is_some() || deforming.contains(&i.mesh))
     }
 
     /// All movers' frames in the world at a time in seconds.

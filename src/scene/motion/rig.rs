@@ -87,6 +87,7 @@ pub(in crate::scene) fn attach(
     let shown = scene.instances.iter().enumerate().filter(|(i, _)| !posing.contains(i));
     let mut taken: HashSet<u32> = shown.map(|(_, instance)| instance.mesh).collect();
     let mut read: HashMap<u32, Mesh> = HashMap::new();
+    let frames = scene.mover_frames(0.0);
     for Posing { instance, joints, weights, period } in posings {
         let mesh = scene.instances[instance].mesh;
         let Some(rig) = rigs.get(&(mesh as usize)) else { continue };
@@ -115,7 +116,7 @@ pub(in crate::scene) fn attach(
         };
         let moves =
             deformer.joints.iter().any(|j| j.mover.is_some()) || deformer.weights.iter().any(|w| w.times().len() > 1);
-        let posed = deformer.posed(&scene.meshes[own as usize], &scene.mover_frames(0.0), 0.0);
+        let posed = deformer.posed(&scene.meshes[own as usize], &frames, 0.0);
         if moves {
             deformer.bounds = scene.deformed_bounds(&deformer);
             scene.deformers.push(deformer);
