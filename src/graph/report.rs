@@ -194,6 +194,9 @@ pub fn params(params: &Params) -> String {
         let plain = p.plain.as_ref().map_or(String::new(), |v| format!("; plain: {v}"));
         let _ = writeln!(out, "  {} = {}{unit}  ({}{range}{plain})", p.name, p.default, p.expected());
         let _ = writeln!(out, "      {}", p.help);
+        for (option, help) in p.kind.options().iter().zip(&p.option_help).filter(|(_, help)| !help.is_empty()) {
+            let _ = writeln!(out, "      - {option}: {help}");
+        }
     }
     out
 }

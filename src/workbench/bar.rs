@@ -2,6 +2,7 @@
 
 use crate::diagnostics::{Entries, RawText};
 use crate::experiment::Experiment;
+use crate::graph::file::CompareDecl;
 use crate::results::timers::Rows;
 use crate::workbench::desired::edit;
 use crate::workbench::engine::Order;
@@ -68,11 +69,16 @@ impl Workbench {
     /// Comparisons that the graph offers: each is one click.
     fn comparisons(&mut self, ui: &mut Ui) {
         let Some(info) = self.sides[0].info.clone() else { return };
-        for compare in &info.graph.compare {
+        let is_there = |side| CompareDecl::graph(side).is_none_or(|graph| self.home.graph_path(&graph).is_file());
+        let all = info.graph.compare.iter().filter(|c| is_there(&c.value.a) && is_there(&c.value.b));
+        for compare in all.collect::<Vec<_>>() {
             let button = ui.button(&compare.value.title).on_hover_text(&compare.value.help);
             if button.clicked() {
                 let base = self.desired.sides[0].clone().unwrap_or_default();
                 let make = |values: &Entries<RawText>| {
+                    if let Some(graph) = CompareDecl::graph(values) {
+                        return self.with_graph(&base, &graph);
+                    }
                     let mut side = base.clone();
                     for (name, text) in &values.0 {
                         if let Some(param) = info.graph.params.param(&name.value)

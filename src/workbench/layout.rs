@@ -36,7 +36,12 @@ impl Workbench {
         let other = self.desired.sides[1 - number].clone();
         if let Some(side) = &mut self.desired.sides[number] {
             let found = (self.effects.of(number), self.effects.is_old(number));
+            let before = side.graph.clone();
             self.panel.show(ui, &info.graph, side, other.as_ref(), found);
+            if side.graph != before {
+                let side = side.clone();
+                self.desired.sides[number] = Some(self.with_graph(&side, &side.graph));
+            }
         }
     }
 

@@ -10,4 +10,4 @@ pub use pass::*;
 pub use resource::*;
 pub use section::*;
 pub use table::{CellKind, ColumnDecl, RowCount, TableDecl};
-pub use whole::GraphFile;
+pub use whole::{GraphFile, Retired};

@@ -97,10 +97,21 @@ pub struct CompareDecl {
     pub title: String,
     /// One line.
     pub help: String,
-    /// Parameters of the first.
+    /// Parameters of the first; `graph` names another graph's file.
     pub a: Entries<RawText>,
     /// Parameters of the second.
     pub b: Entries<RawText>,
+}
+
+/// The name under which a side of a comparison names its graph; no parameter has it.
+const GRAPH: &str = "graph";
+
+impl CompareDecl {
+    /// The graph that a side names.
+    pub fn graph(side: &Entries<RawText>) -> Option<String> {
+        let (_, text) = side.0.iter().find(|(name, _)| name.value == GRAPH)?;
+        crate::diagnostics::options().from_str(&text.value.0).ok()
+    }
 }
 
 /// Settings that the graph offers to look into its work.

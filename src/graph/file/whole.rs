@@ -22,7 +22,7 @@ pub struct GraphFile {
     pub pinned: Entries<String>,
     /// Modules that nobody chooses: name, file in the shader folder.
     pub modules: Entries<String>,
-    /// What to write instead of a parameter, or of `parameter=option`, that is no more.
+    /// Parameters that are no more, as in [`Retired`]: graphs in older captures carry their own list.
     pub retired: Entries<String>,
     /// Expressions by name, for other expressions and shaders.
     pub values: Entries<ValueDecl>,
@@ -67,4 +67,14 @@ pub struct GraphFile {
     pub ablation: Items<ViewDecl>,
     /// What tools are told, by their names.
     pub tools: Entries<ToolDecl>,
+}
+
+/// What to write instead of names that are no more: the file `retired.ron` in the folder of graphs.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Retired {
+    /// By the name of a graph's file.
+    pub graphs: Entries<String>,
+    /// By the name of a parameter, or by `parameter=option`.
+    pub parameters: Entries<String>,
 }

@@ -7,7 +7,7 @@ use crate::diagnostics::{At, Entries, Loc, RawText, nearest};
 use crate::graph::definition::Graph;
 use crate::graph::expr::Ex;
 use crate::graph::externals::EXTERNALS;
-use crate::graph::file::{CheckDecl, Path, TableDecl, ToolDecl};
+use crate::graph::file::{CheckDecl, CompareDecl, Path, TableDecl, ToolDecl};
 use crate::graph::param::Kind;
 use crate::vulkan::Format;
 use std::collections::HashSet;
@@ -32,6 +32,13 @@ impl<'g> Check<'g> {
     /// Names and values of parameters.
     pub(super) fn settings(&mut self, list: &Entries<RawText>) {
         list.0.iter().for_each(|(name, text)| self.setting(name, text));
+    }
+
+    /// A side of a comparison: parameters of this graph. Another graph may be missing, as in captures.
+    pub(super) fn side(&mut self, list: &Entries<RawText>) {
+        if CompareDecl::graph(list).is_none() {
+            self.settings(list);
+        }
     }
 
     pub(super) fn setting(&mut self, name: &Loc<String>, text: &Loc<RawText>) {

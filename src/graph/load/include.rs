@@ -3,7 +3,7 @@
 use super::findings::Findings;
 use crate::diagnostics::excerpt::chain;
 use crate::diagnostics::{At, Diagnostic, Place};
-use crate::graph::file::GraphFile;
+use crate::graph::file::{GraphFile, Retired};
 use std::path::{Component, Path, PathBuf};
 
 /// Where graphs and shaders are found.
@@ -27,11 +27,25 @@ pub(super) struct Include<'f> {
     pub files: Vec<GraphFile>,
     /// Those being read, each included by the one before.
     stack: Vec<PathBuf>,
+    /// What to write instead of a graph's name that is no more.
+    retired: Vec<(String, String)>,
 }
+
+/// The file of names that are no more, in the folder of graphs.
+const RETIRED: &str = "retired.ron";
 
 impl<'f> Include<'f> {
     pub fn new(folders: &'f Folders) -> Include<'f> {
-        Include { folders, found: Findings::default(), files: Vec::new(), stack: Vec::new() }
+        Include { folders, found: Findings::default(), files: Vec::new(), stack: Vec::new(), retired: Vec::new() }
+    }
+
+    /// Reads the names that are no more; none where the folder has no such file.
+    pub fn retired(&mut self) -> Retired {
+        let Findings { sources, errors, broken, .. } = &mut self.found;
+        let file = sources.read(&self.folders.passes.join(RETIRED)).ok();
+        let retired: Retired = file.and_then(|f| sources.parse(f, errors, broken)).unwrap_or_default();
+        self.retired = super::texts(&retired.graphs);
+        retired
     }
 
     /// Reads a file, included from there.
@@ -58,7 +72,11 @@ impl<'f> Include<'f> {
                 let known = if path.exists() { Vec::new() } else { ron_files(&self.folders.passes) };
                 let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
                 let found = from.map_or(e.clone(), |at| self.found.sources.error(at, e.message));
-                self.found.errors.push(found.nearest(&name, known.iter().map(String::as_str)));
+                let instead = self.retired.iter().find(|(graph, _)| *graph == name && !path.exists());
+                self.found.errors.push(match instead {
+                    Some((_, instead)) => found.help(Some(instead.clone())),
+                    None => found.nearest(&name, known.iter().map(String::as_str)),
+                });
                 self.found.partial = true;
                 return;
             }
@@ -94,5 +112,5 @@ impl<'f> Include<'f> {
 
 fn ron_files(folder: &Path) -> Vec<String> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).filter(|n| n.ends_with(".ron")).collect()
+    entries.flatten().map(|e| e.file_name().to_string_lossy().into_owned()).filter(|n| n.ends_with(".ron") && n != RETIRED).collect()
 }

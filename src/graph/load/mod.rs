@@ -26,6 +26,7 @@ use std::path::Path;
 /// All mistakes of all files.
 pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let mut include = include::Include::new(folders);
+    let retired = include.retired();
     include.file(path, None);
     let (files, mut found) = (include.files, include.found);
     let mut file = GraphFile::default();
@@ -51,7 +52,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
     let mut list = params::declared(&file.params.0, &mut found);
     params::set_defaults(&mut list, &file.defaults, &mut found);
     let pass_names = passes.iter().map(|p| p.value.name.value.clone()).collect();
-    let params = Params { retired: texts(&file.retired), passes: pass_names, ..Params::new(list) };
+    let retired = [texts(&retired.parameters), texts(&file.retired)].concat();
+    let params = Params { retired, passes: pass_names, ..Params::new(list) };
     let mut graph = Graph {
         name: path.file_stem().map_or(String::new(), |s| s.to_string_lossy().into_owned()),
         values: values::ordered(file.values.0, &params, &mut found),
@@ -95,8 +97,8 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         check.texture_name(name);
     }
     for compare in &graph.compare {
-        check.settings(&compare.value.a);
-        check.settings(&compare.value.b);
+        check.side(&compare.value.a);
+        check.side(&compare.value.b);
     }
     for (name, list) in &file.fit.0 {
         list.value.0.iter().for_each(|value| check.setting(name, value));

@@ -54,6 +54,8 @@ struct ModuleFields {
     #[serde(default)]
     group: String,
     help: String,
+    /// One line for each option.
+    option_help: Option<Entries<String>>,
     when: Option<Ex>,
 }
 
@@ -74,6 +76,8 @@ struct Fields<T> {
     help: String,
     #[serde(default)]
     options: Vec<Loc<String>>,
+    /// One line for each option.
+    option_help: Option<Entries<String>>,
     #[serde(default)]
     constant: bool,
     when: Option<Ex>,
@@ -103,6 +107,7 @@ impl From<Kinds> for Decl {
                     group: f.group,
                     help: f.help,
                     options,
+                    option_help: f.option_help,
                     constant: false,
                     when: f.when,
                     effective: None,
@@ -147,6 +152,7 @@ impl<T> Fields<T> {
         if self.constant && kind.components() > 0 {
             return Err(format!("parameter '{name}': a vector cannot be a constant"));
         }
+        let option_help = option_help(&name, kind.options(), self.option_help)?;
         let param = Param {
             name,
             at,
@@ -162,10 +168,27 @@ impl<T> Fields<T> {
             constant: self.constant,
             when: self.when,
             effective: self.effective,
+            option_help,
             files: Vec::new(),
         };
         param.check(&param.default).map_err(|e| format!("default of {e}"))?;
         param.plain.iter().try_for_each(|v| param.check(v)).map_err(|e| format!("plain value of {e}"))?;
         Ok(param)
     }
+}
+
+/// The line of help of each option, in the order of the options; empty for one without.
+fn option_help(name: &str, options: &[String], help: Option<Entries<String>>) -> Result<Vec<String>, String> {
+    let Some(Entries(list)) = help else { return Ok(Vec::new()) };
+    if let Some((other, _)) = list.iter().find(|(option, _)| !options.contains(&option.value)) {
+        return Err(format!("choice '{name}' has help for '{}', which is none of its options", other.value));
+    }
+    let line = |option: &String| {
+        let text = list.iter().find(|(of, _)| of.value == *option).map_or("", |(_, text)| text.value.as_str());
+        match text.contains('\n') {
+            true => Err(format!("choice '{name}' has more than one line of help for '{option}'")),
+            false => Ok(text.to_string()),
+        }
+    };
+    options.iter().map(line).collect()
 }

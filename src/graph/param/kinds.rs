@@ -134,8 +134,10 @@ pub struct Param {
     pub constant: bool,
     /// When it counts at all, where shaders decide that at run time.
     pub when: Option<Ex>,
-    /// What shaders take in its place, where that is not the value itself.
+    /// What shaders take in place of the default, which stands for a choice of the graph's.
     pub effective: Option<Ex>,
+    /// Of a choice: one line for each option, or none at all.
+    pub option_help: Vec<String>,
     /// Of a module: the shader file of each option; empty for all others.
     pub files: Vec<String>,
 }

@@ -12,6 +12,15 @@ pub(crate) type Alone = Option<(SideRequest, SideRequest)>;
 const NAMED: usize = 2;
 
 impl Workbench {
+    /// A side with another graph: it keeps the settings that the graph has too.
+    pub(crate) fn with_graph(&self, side: &SideRequest, graph: &str) -> SideRequest {
+        let mut side = SideRequest { graph: graph.into(), ..side.clone() };
+        if let Ok(graph) = self.home.read(graph) {
+            side.params.retain(|(name, value)| graph.params.clone().set(name, value).is_ok());
+        }
+        side
+    }
+
     /// Shows two sides beside each other.
     pub(crate) fn compare_sides(&mut self, sides: [Option<SideRequest>; 2]) {
         let now = self.desired.sides[0].clone();

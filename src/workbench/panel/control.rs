@@ -6,8 +6,19 @@ use egui::{Color32, DragValue, Response, RichText, Ui, WidgetInfo};
 /// Colour of what is not at its default.
 pub(crate) const CHANGED: Color32 = Color32::from_rgb(255, 196, 84);
 
-/// Shows a value under a title; edits go into it.
-pub(crate) fn control(ui: &mut Ui, param: &Param, title: &str, value: &mut Value, changed: bool) -> Response {
+/// Shows a value under a title; edits go into it. `auto`: what the graph chooses in place of a number at its default.
+pub(crate) fn control(
+    ui: &mut Ui,
+    param: &Param,
+    title: &str,
+    value: &mut Value,
+    (changed, auto): (bool, Option<f64>),
+) -> Response {
+    if let Some(auto) = auto
+        && let Some(response) = automatic(ui, param, title, value, auto)
+    {
+        return response;
+    }
     let name = if changed { RichText::new(title).color(CHANGED) } else { RichText::new(title) };
     let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
     let (low, high) = param.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
@@ -47,8 +58,14 @@ pub(crate) fn control(ui: &mut Ui, param: &Param, title: &str, value: &mut Value
         (Value::Choice(v), Kind::Choice(options)) => {
             let combo = egui::ComboBox::from_id_salt(("choice", title)).selected_text(v.as_str());
             let shown = combo.show_ui(ui, |ui| {
-                for option in options {
-                    ui.selectable_value(v, option.clone(), option);
+                for (i, option) in options.iter().enumerate() {
+                    ui.horizontal(|ui| {
+                        let label = ui.selectable_value(v, option.clone(), option);
+                        if let Some(help) = param.option_help.get(i).filter(|help| !help.is_empty()) {
+                            label.on_hover_text(help);
+                            ui.weak(RichText::new(help).small());
+                        }
+                    });
                 }
             });
             let label = ui.label(name);
@@ -56,6 +73,34 @@ pub(crate) fn control(ui: &mut Ui, param: &Param, title: &str, value: &mut Value
         }
         (Value::Choice(v), _) => ui.label(v.as_str()),
     }
+}
+
+/// A number that the graph chooses: `auto (78)`, and edits start from 78. Nothing for values that are no numbers.
+fn automatic(ui: &mut Ui, param: &Param, title: &str, value: &mut Value, auto: f64) -> Option<Response> {
+    let default = param.default.number()?;
+    let (low, high) = param.range?;
+    let (mut number, shown) = (auto, short_number(auto));
+    let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
+    let slid = slider(ui, param, title, &mut number, (low, high));
+    let field = DragValue::new(&mut number)
+        .range(low..=high)
+        .clamp_existing_to_range(false)
+        .speed(param.step.unwrap_or((high - low) / 500.0))
+        .custom_formatter(move |x, _| if x == auto { format!("auto ({shown}{unit})") } else { short_number(x) })
+        .custom_parser(move |text| if text.trim().starts_with("auto") { Some(default) } else { text.trim().parse().ok() });
+    let response = joined(Some(slid), spin(ui, field, title), ui.label(title));
+    if number != auto {
+        *value = match value {
+            Value::Int(_) => Value::Int(number.round() as i64),
+            _ => Value::Float(number),
+        };
+    }
+    Some(response)
+}
+
+/// A number for people.
+pub(crate) fn short_number(x: f64) -> String {
+    format!("{}", (x * 1e3).round() / 1e3)
 }
 
 fn slider<N: egui::emath::Numeric>(

@@ -173,11 +173,9 @@ impl Shown<'_> {
             if idle.is_some() {
                 ui.multiply_opacity(0.55);
             }
-            let response = control(ui, param, title, &mut value, changed);
+            let auto = self.found.and_then(|f| f.effective.get(&param.name)).filter(|_| !changed).copied();
+            let response = control(ui, param, title, &mut value, (changed, auto));
             response.on_hover_ui(|ui| help(ui, param, idle));
-            if let Some(taken) = self.found.and_then(|f| f.effective.get(&param.name)) {
-                ui.weak(format!("= {}{}", short_number(*taken), unit(param))).on_hover_text("What shaders take for it");
-            }
             if let Some(other) = self.other {
                 let theirs = edit::value(other, param);
                 if theirs != before {
@@ -258,14 +256,6 @@ fn help(ui: &mut Ui, param: &Param, idle: Option<&Reason>) {
         facts.push("a constant of its shaders: changing it builds them anew".into());
     }
     ui.weak(facts.join(", "));
-}
-
-fn unit(param: &Param) -> String {
-    if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) }
-}
-
-fn short_number(x: f64) -> String {
-    format!("{}", (x * 1e3).round() / 1e3)
 }
 
 #[cfg(test)]
