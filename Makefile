@@ -29,9 +29,9 @@ demo: ## Render the built-in atrium, lit through voxels, on any Vulkan device
 	@scripts/setup.sh build run
 	@cargo build --release --locked
 	@$(CONELAB) devices
-	@$(CONELAB) render configs/default.ron --scene atrium --size $(SIZE) $(ARGS) \
+	@$(CONELAB) render configs/rays.ron --scene atrium --size $(SIZE) $(ARGS) \
 		--json $(OUT)/stats.json -o $(OUT)/atrium.png
-	@$(CONELAB) render configs/default.ron --scene atrium --size $(SIZE) $(ARGS) \
+	@$(CONELAB) render configs/rays.ron --scene atrium --size $(SIZE) $(ARGS) \
 		--set view=voxels --set voxel_view=color -o $(OUT)/voxels.png
 	@printf '\nLook at:\n  %s\n  %s\n  %s\n' \
 		'$(OUT)/atrium.png   the atrium by direct light and light that bounced' \
@@ -45,7 +45,7 @@ view: ## Open the workbench
 
 shot: ## Take the README's picture of the workbench
 	@scripts/setup.sh build run
-	@$(CONELAB) screenshot configs/default.ron --scene atrium --window 1600x900 \
+	@$(CONELAB) screenshot configs/rays.ron --scene atrium --window 1600x900 \
 		--click "raster | tessellated" --click Time --click "keep rendering" --measure 400 $(ARGS) -o docs/workbench.jpg
 
 quick: ## Run the tests that take a minute together

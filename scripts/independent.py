@@ -6,7 +6,7 @@ written from the papers.
 
     pip install mitsuba numpy openexr    # tried: 3.9.1 with LLVM 19 and 22, DRJIT_LIBLLVM_PATH=/path/to/libLLVM.so.19.1
     conelab scene cornell --export cornell.gltf
-    for k in 1 2 3; do conelab reference configs/default.ron --scene cornell --size 128x96 --set pixel=box \\
+    for k in 1 2 3; do conelab reference configs/rays.ron --scene cornell --size 128x96 --set pixel=box \\
         --bounces $k --spp 2048; done           # each says the folder it keeps its samples in
     python3 scripts/independent.py cornell.gltf --size 128x96 --spp 2048 --against FOLDER1 FOLDER2 FOLDER3
 

@@ -47,18 +47,18 @@ sweep() {
 }
 
 record() {
-    local name=$1 threads=(configs/default.ron configs/raster.ron)
+    local name=$1 threads=(configs/rays.ron configs/raster.ron)
     case $name in
         thesis) bench configs/thesis.ron --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=64,128,256 \
             --axis voxelizer=raster,tessellated --rounds 3 --frames 20 ;;
-        default) bench "${threads[@]}" --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=160,256 --rounds 3 ;;
-        pixels) bench configs/default.ron --scene "$sponza" --sizes 1920x1080,3840x2160 --set voxel_dim=256 --rounds 3 ;;
-        cells) bench configs/default.ron --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=256,512 \
+        rays) bench "${threads[@]}" --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=160,256 --rounds 3 ;;
+        pixels) bench configs/rays.ron --scene "$sponza" --sizes 1920x1080,3840x2160 --set voxel_dim=256 --rounds 3 ;;
+        cells) bench configs/rays.ron --scene "$sponza" --sizes 1920x1080 --axis voxel_dim=256,512 \
             --set voxel_capacity=1750000 --set fragment_capacity=2850000 --rounds 3 ;;
-        rooms) bench configs/default.ron --sizes 1920x1080 \
+        rooms) bench configs/rays.ron --sizes 1920x1080 \
             --axis "scene=\"cornell\",\"atrium\",\"$sponza\",\"configs/scenes/living-room.ron\",\"street\",\"emitters\",\"foliage\"" --rounds 3 ;;
         moving)
-            local way=(render configs/default.ron --scene "$sponza" --size 1920x1080 --set voxel_dim=256 --redo changed
+            local way=(render configs/rays.ron --scene "$sponza" --size 1920x1080 --set voxel_dim=256 --redo changed
                 --path configs/paths/sponza.ron --step 0.0166667 --warmup 600 --frames 300)
             run "${way[@]}" --json "$work/moving.json" -o "$work/moving.png"
             keep_json moving "$work/moving.json" "${way[@]}"
@@ -71,7 +71,7 @@ record() {
             cp "$work"/sponza/report/total-relmse*.svg docs/sponza.svg
             ;;
         voxels)
-            local ways=(voxels configs/default.ron --scene "$sponza" --set voxel_dim=128 --all)
+            local ways=(voxels configs/rays.ron --scene "$sponza" --set voxel_dim=128 --all)
             run "${ways[@]}" --json "$work/voxels.json"
             keep_json voxels "$work/voxels.json" "${ways[@]}"
             ;;
@@ -79,5 +79,5 @@ record() {
     esac
 }
 
-[[ $# -gt 0 ]] || set -- thesis default pixels cells rooms moving scenes lamps sponza voxels
+[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms moving scenes lamps sponza voxels
 for name; do record "$name"; done

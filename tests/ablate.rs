@@ -11,8 +11,8 @@ use std::time::SystemTime;
 /// Cornell in 64x36 pixels and 32 voxels.
 fn ablate(home: &Path, more: &[&str]) -> Command {
     let mut command = conelab(home);
-    command.args(["ablate", "configs/default.ron", "--size", "64x36", "--spp", "32"]);
-    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256", "--set", "trace=interleaved"]).args(more);
+    command.args(["ablate", "configs/cones.ron", "--size", "64x36", "--spp", "32"]);
+    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256"]).args(more);
     command
 }
 
@@ -24,7 +24,7 @@ fn each_parameter_is_changed_alone_and_finished_points_stay() {
     let folder = home.path().join("worth");
     let run = || {
         let mut command = ablate(home.path(), &SHORT);
-        succeeds(command.args(["--only", "specular_cone,mips", "-o"]).arg(&folder))
+        succeeds(command.args(["--only", "specular_steps,mips", "-o"]).arg(&folder))
     };
     let said = run();
     assert!(said.contains("| mips          | anisotropic | isotropic |"), "{said}");
@@ -39,11 +39,11 @@ fn each_parameter_is_changed_alone_and_finished_points_stay() {
     assert_eq!(rows.len(), 2 * (2 + 4 * 2));
     // The specular cone has no part in the diffuse light, and takes no memory.
     for metric in ["relmse", "flip", "structure", "energy_ratio"] {
-        assert_eq!(of("specular_cone", "diffuse", metric, "change"), 0.0, "{metric}");
-        assert!(of("specular_cone", "total", metric, "change") != 0.0, "{metric}");
-        assert!(of("specular_cone", "total", metric, "unchanged") > 0.0, "{metric}");
+        assert_eq!(of("specular_steps", "diffuse", metric, "change"), 0.0, "{metric}");
+        assert!(of("specular_steps", "total", metric, "change") != 0.0, "{metric}");
+        assert!(of("specular_steps", "total", metric, "unchanged") > 0.0, "{metric}");
     }
-    assert_eq!(of("specular_cone", "", "bytes", "change"), 0.0);
+    assert_eq!(of("specular_steps", "", "bytes", "change"), 0.0);
     assert!(of("mips", "", "bytes", "change") < -0.01, "five of six directions of the filtered levels are gone");
     assert!(of("mips", "diffuse", "structure", "noise") > 0.01, "32 samples are noisy");
 

@@ -41,17 +41,17 @@ impl Out {
     }
 }
 
-/// `conelab render configs/default.ron`, small, of a built-in scene.
+/// `conelab render configs/rays.ron`, small, of a built-in scene.
 fn render(scene: &str, output: &Path) -> Command {
     let mut command = conelab(root());
-    command.args(["render", "configs/default.ron", "--scene", scene]).args(SMALL).arg("-o").arg(output);
+    command.args(["render", "configs/rays.ron", "--scene", scene]).args(SMALL).arg("-o").arg(output);
     command
 }
 
 /// The same with nothing set.
 fn plain(output: &Path) -> Command {
     let mut command = conelab(root());
-    command.args(["render", "configs/default.ron", "-o"]).arg(output);
+    command.args(["render", "configs/rays.ron", "-o"]).arg(output);
     command
 }
 
@@ -114,7 +114,7 @@ fn render_writes_a_png_and_its_measurements() {
     assert_eq!(stats["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(
         (&stats["experiment"], &stats["graph"], &stats["scene"]),
-        (&"default".into(), &"vct".into(), &"cornell".into())
+        (&"rays".into(), &"rays".into(), &"cornell".into())
     );
     assert_eq!(stats["size"], serde_json::json!([96, 64]));
     assert_eq!(stats["warmup"], 1);
@@ -123,7 +123,7 @@ fn render_writes_a_png_and_its_measurements() {
     assert!(["name", "driver", "api"].iter().all(|f| stats["device"][f].as_str().is_some_and(|s| !s.is_empty())));
     // Every parameter is there, in its own JSON type.
     assert_eq!(stats["params"]["voxel_dim"], 32);
-    assert_eq!(stats["params"]["specular_cone"], true);
+    assert_eq!(stats["params"]["volume_ahead"], 0.25);
     assert_eq!(stats["params"]["voxelizer"], "auto");
     assert_eq!(stats["params"]["volume_size"], serde_json::json!([32.0, 32.0, 32.0]));
     for pass in stats["passes"].as_array().unwrap() {
@@ -187,7 +187,9 @@ fn what_splitting_would_take_is_told_before_it_is_done() {
 fn resources_come_as_they_are() {
     let out = Out::new();
     // Slices of a volume lie below one another: mip 2 of 32^3 is 8 wide and 8 * 8 high.
-    succeeds(render("cornell", &out.path("mip.exr")).args([
+    let mut mip = conelab(root());
+    mip.args(["render", "configs/cones.ron", "--scene", "cornell"]).args(SMALL).arg("-o").arg(out.path("mip.exr"));
+    succeeds(mip.args([
         "--resource",
         "voxelRadiance:2",
         "--set",
@@ -239,13 +241,13 @@ fn files_that_are_missing_or_broken() {
     let experiment = |path: &Path| out.tidy(&fails(conelab(root()).arg("render").arg(path).arg("-o").arg(&png)));
     assert_snapshot!(experiment(&out.path("missing.ron")), @r"
     OUT/missing.ron: error: cannot read it: No such file or directory (os error 2)
-        = help: give the path of an experiment, for example configs/default.ron
+        = help: give the path of an experiment, for example configs/rays.ron
     ");
     assert_snapshot!(experiment(&out.write("empty.ron", "")), @"OUT/empty.ron:1:1: error: Expected opening `(` for struct `ExperimentFile`");
-    assert_snapshot!(experiment(&out.write("other.ron", "(graph: \"vtc.ron\", scene: \"cornell\")")), @r#"
-    OUT/other.ron:1:9: error: graph 'passes/vtc.ron': cannot read it: No such file or directory (os error 2)
-        | (graph: "vtc.ron", scene: "cornell")
-        = help: did you mean 'vct.ron'?
+    assert_snapshot!(experiment(&out.write("other.ron", "(graph: \"rasy.ron\", scene: \"cornell\")")), @r#"
+    OUT/other.ron:1:9: error: graph 'passes/rasy.ron': cannot read it: No such file or directory (os error 2)
+        | (graph: "rasy.ron", scene: "cornell")
+        = help: did you mean 'rays.ron'?
     "#);
     let scene = |name: &str, content: &[u8]| {
         let path = out.write(name, content);
@@ -256,7 +258,7 @@ fn files_that_are_missing_or_broken() {
     assert_snapshot!(scene("broken.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 7\n"), @"error: cannot load the model OUT/broken.obj: line 3: a face names vertex 7 of 2. Export it again");
     assert_snapshot!(scene("picture.bmp", b"BM"), @"error: no scene 'OUT/picture.bmp': the file's extension must be .ron, .obj, .gltf, .glb or .fbx; convert other formats to glTF");
     let mut home = conelab(root());
-    home.env("CONELAB_HOME", out.0.path()).args(["render", "configs/default.ron", "-o"]).arg(&png);
+    home.env("CONELAB_HOME", out.0.path()).args(["render", "configs/rays.ron", "-o"]).arg(&png);
     assert_snapshot!(out.tidy(&fails(&mut home)).replace(out.0.path().to_str().unwrap(), "OUT"), @"error: CONELAB_HOME is 'OUT', which has no passes and shaders folders");
     assert!(!png.exists());
 }
@@ -279,7 +281,7 @@ fn outputs_that_cannot_be_written() {
 
 #[test]
 fn what_is_wrong_is_told_before_what_is_missing() {
-    let without = |more: &[&str]| fails(conelab(root()).args(["render", "configs/default.ron"]).args(SMALL).args(more));
+    let without = |more: &[&str]| fails(conelab(root()).args(["render", "configs/rays.ron"]).args(SMALL).args(more));
     assert_snapshot!(without(&["--scene", "cornell", "--set", "bais=1"]), @"--set bais=1: error: no parameter 'bais' (did you mean 'bias'?)");
     assert_snapshot!(without(&["--scene", "gone.obj"]), @"error: cannot read gone.obj: No such file or directory (os error 2). Check the path and its permissions");
     assert_snapshot!(without(&["--scene", "cornell"]), @"error: nothing to write: name the picture with --output, for example -o picture.png");
@@ -287,9 +289,9 @@ fn what_is_wrong_is_told_before_what_is_missing() {
 
 #[test]
 fn standard_output_is_json_alone_or_an_error_when_full() {
-    let graph = ["graph", "passes/vct.ron", "--size", "64x48", "--json", "-"];
+    let graph = ["graph", "passes/rays.ron", "--size", "64x48", "--json", "-"];
     let outline: serde_json::Value = serde_json::from_str(&succeeds(conelab(root()).args(graph))).unwrap();
-    assert_eq!((&outline["schema"], &outline["graph"]), (&"conelab-graph-1".into(), &"vct".into()));
+    assert_eq!((&outline["schema"], &outline["graph"]), (&"conelab-graph-1".into(), &"rays".into()));
     assert_eq!(outline["params"]["voxel_dim"], 160);
     let list = |name: &str| outline[name].as_array().unwrap().clone();
     let picture = list("textures").into_iter().find(|t| t["name"] == "display").unwrap();
@@ -322,7 +324,7 @@ fn files_are_for_whom_the_umask_says() {
     for (mask, mode) in [("022", 0o644), ("027", 0o640), ("077", 0o600)] {
         let file = out.path(&format!("{mask}.json"));
         let graph = format!(
-            "umask {mask}; exec '{}' graph passes/vct.ron --json '{}'",
+            "umask {mask}; exec '{}' graph passes/rays.ron --json '{}'",
             env!("CARGO_BIN_EXE_conelab"),
             file.display()
         );
@@ -338,12 +340,12 @@ fn files_of_the_program_are_found_from_anywhere() {
     let out = Out::new();
     let from_elsewhere = |args: &[&str]| succeeds(conelab(root()).current_dir(out.0.path()).args(args));
     assert!(
-        from_elsewhere(&["check", "configs/default.ron", "passes/vct.ron"]).starts_with("checked 2 files, 0 errors")
+        from_elsewhere(&["check", "configs/rays.ron", "passes/rays.ron"]).starts_with("checked 2 files, 0 errors")
     );
-    assert!(from_elsewhere(&["graph", "passes/vct.ron"]).starts_with("graph vct: "));
+    assert!(from_elsewhere(&["graph", "passes/rays.ron"]).starts_with("graph rays: "));
     assert!(from_elsewhere(&["graph", "configs/thesis.ron"]).starts_with("graph thesis: "));
     let mut render = conelab(root());
-    render.current_dir(out.0.path()).args(["render", "configs/default.ron", "--scene", "cornell", "-o", "x.exr"]);
+    render.current_dir(out.0.path()).args(["render", "configs/rays.ron", "--scene", "cornell", "-o", "x.exr"]);
     let output = render.args(SMALL).args(["--frames", "1", "--set", "view=direct"]).output().unwrap();
     let (said, told) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
     assert!(said.ends_with("wrote x.exr ('radiance', linear)\n"), "{said}");
@@ -368,8 +370,9 @@ fn voxels_of_512_across_fit_into_700_mib() {
     let threads = ["voxelizer", "shadow_map", "gbuffer"].map(|name| set(name, "compute"));
     let sizes = [("voxel_dim", "512"), ("voxel_capacity", "1700000"), ("fragment_capacity", "3000000")];
     let sizes = sizes.map(|(name, value)| set(name, value));
-    let args = ["graph", "configs/default.ron", "--size", "1920x1080", "--barriers"];
-    let text = succeeds(conelab(root()).args(args).args([threads, sizes].as_flattened().as_flattened()));
+    let args = ["graph", "configs/rays.ron", "--size", "1920x1080", "--barriers"];
+    let settings = threads.iter().chain(&sizes).flatten();
+    let text = succeeds(conelab(root()).args(args).args(settings));
     let mib = |what: &str| -> f64 {
         let line = text.lines().find(|l| l.starts_with(what)).unwrap_or_else(|| panic!("no '{what}' in\n{text}"));
         line.split_whitespace().last().unwrap().parse().unwrap()
@@ -382,29 +385,29 @@ fn voxels_of_512_across_fit_into_700_mib() {
 fn graph_explains_itself() {
     let graph = |args: &[&str]| succeeds(conelab(root()).arg("graph").args(args));
     // What runs fits on two screens; all of it, with barriers, does not.
-    for (name, stages) in [("vct", 11), ("thesis", 7), ("warps", 11), ("temporal", 11)] {
+    for (name, stages) in [("rays", 11), ("cones", 11), ("thesis", 7), ("warps", 11), ("temporal", 11)] {
         let text = graph(&[&format!("passes/{name}.ron")]);
         assert!(text.starts_with(&format!("graph {name}: ")) && text.lines().count() < 160, "{text}");
         assert!(text.lines().filter(|l| !l.is_empty() && !l.starts_with(' ')).count() >= stages, "{text}");
         assert!(!text.contains("COMPUTE_SHADER"), "{text}");
     }
-    let layers = graph(&["passes/vct.ron", "--set", "mips=isotropic"]);
+    let layers = graph(&["passes/cones.ron", "--set", "mips=isotropic"]);
     assert!(layers.contains("filter directions: radiance_faces == 6 is false"), "{layers}");
 
-    let text = graph(&["passes/vct.ron", "--size", "64x48", "--barriers"]);
-    assert!(text.starts_with("graph vct: "), "{text}");
+    let text = graph(&["passes/rays.ron", "--size", "64x48", "--barriers"]);
+    assert!(text.starts_with("graph rays: "), "{text}");
     for part in ["\norder\n", "  shading\n", "reads voxelPlanes", "\nresources ", "voxelColor", "\nleft out\n"] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
     assert!(text.contains("voxelize tessellated: tessellates == 1 is false"), "{text}");
-    let other = graph(&["configs/default.ron", "--set", "voxelizer=tessellated"]);
+    let other = graph(&["configs/rays.ron", "--set", "voxelizer=tessellated"]);
     assert!(!other.contains("voxelize tessellated: tessellates == 1 is false"), "{other}");
 
-    let dot = graph(&["passes/vct.ron", "--dot"]);
+    let dot = graph(&["passes/rays.ron", "--dot"]);
     assert!(dot.starts_with("digraph ") && dot.ends_with("}\n"), "{dot}");
     assert!(dot.contains("\"pass inject\" -> \"sideRadiance\";"), "{dot}");
 
-    let params = graph(&["passes/vct.ron", "--params"]);
+    let params = graph(&["passes/rays.ron", "--params"]);
     assert!(
         params.contains("  voxel_dim = 160 voxels  (a whole number, 16 to 512; plain: 128)\n      Edge of the volume"),
         "{params}"
@@ -418,12 +421,12 @@ fn graph_explains_itself() {
     assert!(values.contains("\n  warp_slope = 1.25  (select("), "{values}");
 
     let out = Out::new();
-    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "vtc.ron"]))), @r"
-    passes/vtc.ron: error: cannot read it: No such file or directory (os error 2)
-        = help: did you mean 'vct.ron'?
+    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "rasy.ron"]))), @r"
+    passes/rasy.ron: error: cannot read it: No such file or directory (os error 2)
+        = help: did you mean 'rays.ron'?
     ");
-    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/vct.ron", "--set", "bais=1"]))), @"error: no parameter 'bais' (did you mean 'bias'?)");
-    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/vct.ron", "--want", "depht"]))), @"error: no resource 'depht' (did you mean 'depth'?)");
+    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/cones.ron", "--set", "bais=1"]))), @"error: no parameter 'bais' (did you mean 'bias'?)");
+    assert_snapshot!(out.tidy(&fails(conelab(root()).args(["graph", "passes/rays.ron", "--want", "depht"]))), @"error: no resource 'depht' (did you mean 'depth'?)");
 }
 
 #[test]
@@ -433,9 +436,9 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
         let mut command = conelab(root());
         command.args([
             "check",
-            "passes/vct.ron",
+            "passes/rays.ron",
             "passes/preview.ron",
-            "configs/default.ron",
+            "configs/rays.ron",
             "configs/thesis.ron",
             "configs/scenes/workshop.ron",
         ]);
@@ -462,11 +465,11 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
         |     params: { "voxel_dim": 8 },
     checked 5 files, 1 errors
     "#);
-    edit("shaders/cones/cone.glsl", "vec4", "vec5");
+    edit("shaders/cones/near.glsl", "vec4", "vec5");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(said.contains("shaders/cones/cone.glsl:") && said.contains("vec5"), "{said}");
+    assert!(said.contains("shaders/cones/near.glsl:") && said.contains("vec5"), "{said}");
 }
 
 #[test]

@@ -129,23 +129,23 @@ const COARSE: [&str; 4] = ["--set", "voxel_dim=32", "--set", "shadow_dim=256"];
 fn experiments_are_compared_by_part_with_each_other_or_with_the_cached_reference() {
     let home = home();
     let run = |args: &[&str]| succeeds(conelab(home.path()).args(args).args(CORNELL));
-    let pair = ["compare", "configs/default.ron", "configs/thesis.ron", "--json", "c.json"];
+    let pair = ["compare", "configs/rays.ron", "configs/thesis.ron", "--json", "c.json"];
     let pair = [&pair[..], &COARSE].concat();
     // Without a reference: the second is it.
     run(&pair);
     let alone = json(&home.path().join("c.json"));
-    assert_eq!(alone["pictures"], serde_json::json!(["configs/default.ron"]));
+    assert_eq!(alone["pictures"], serde_json::json!(["configs/rays.ron"]));
     let names: Vec<&str> = alone["parts"].as_array().unwrap().iter().map(|p| p["part"].as_str().unwrap()).collect();
     assert_eq!(names, ["total", "direct", "diffuse", "specular", "occlusion"]);
     // The same picture twice gives the same numbers, bit by bit.
     let before = std::fs::read(home.path().join("c.json")).unwrap();
     run(&pair);
     assert_eq!(std::fs::read(home.path().join("c.json")).unwrap(), before);
-    let more = ["compare", "configs/default.ron", "configs/thesis.ron", "--bounces", "64"];
+    let more = ["compare", "configs/rays.ron", "configs/thesis.ron", "--bounces", "64"];
     let said = fails(conelab(home.path()).args(more).args(COARSE).args(CORNELL));
     assert!(said.contains("no cached reference of 64 bounces"), "{said}");
     // With one: both against it.
-    run(&["reference", "configs/default.ron", "--spp", "128"]);
+    run(&["reference", "configs/rays.ron", "--spp", "128"]);
     let said = run(&pair);
     assert!(said.contains("reference: path traced, 128 samples a pixel, bounces 64"), "{said}");
     let both = json(&home.path().join("c.json"));
@@ -162,9 +162,9 @@ fn experiments_are_compared_by_part_with_each_other_or_with_the_cached_reference
 #[test]
 fn a_capture_is_the_picture_that_it_holds() {
     let home = home();
-    let capture = [&["capture", "configs/default.ron", "--name", "kept", "--resource", "direct"][..], &COARSE].concat();
+    let capture = [&["capture", "configs/rays.ron", "--name", "kept", "--resource", "direct"][..], &COARSE].concat();
     succeeds(conelab(home.path()).args(capture).args(CORNELL));
-    let args = [&["compare", "captures/kept", "configs/default.ron", "--json", "c.json"][..], &COARSE].concat();
+    let args = [&["compare", "captures/kept", "configs/rays.ron", "--json", "c.json"][..], &COARSE].concat();
     succeeds(conelab(home.path()).args(args).args(CORNELL));
     let json = json(&home.path().join("c.json"));
     let parts = json["parts"].as_array().unwrap();

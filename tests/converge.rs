@@ -25,8 +25,8 @@ const BOUND: f64 = 0.005;
 
 /// Parameters that change how light is gathered, each with one or two values.
 const OPTIONS: [(&str, &[&str]); 10] = [
-    ("trace", &["rays", "interleaved", "cones", "cone_rays", "lobe_rays"]),
-    ("bounces", &["two", "one"]),
+    ("trace", &["cone_rays", "lobe_rays"]),
+    ("bounces", &["one"]),
     ("bounce_trace", &["rays", "cones"]),
     ("bounce_frames", &["1", "5", "64"]),
     ("bounce_emitter_rays", &["0"]),
@@ -60,8 +60,8 @@ fn presets() -> Vec<Experiment> {
     files.iter().map(small).collect()
 }
 
-/// Each preset alone, and the graphs under the options that they have: `vct.ron` under all, the graph with a temporal filter
-/// under those that pass through it. `warps.ron` gathers with the passes of `vct.ron`.
+/// Each preset alone, and the graphs under the options that they have; the graph with a temporal filter under those that
+/// pass through it. `warps.ron` gathers with the passes of `cones.ron`.
 fn cases() -> Vec<Experiment> {
     let home = Workspace { root: root().to_path_buf(), cache: None };
     let (mut cases, mut graphs) = (presets(), Vec::new());
@@ -163,7 +163,7 @@ fn equal_settings_of_a_and_b_differ_in_no_bit() {
     let mut lit = LightState::of(&scene("cornell"));
     lit.lights[0].color *= 0.5;
     let mut number = 0;
-    for case in presets().into_iter().chain(["cones", "cone_rays", "interleaved"].map(|trace| {
+    for case in presets().into_iter().chain(["cones", "cone_rays", "lobe_rays"].map(|trace| {
         let small = [("voxel_dim", "16"), ("shadow_dim", "256"), ("exact_rays", "4"), ("trace", trace)];
         let name = format!("trace {trace}");
         Experiment { name, ..with(Experiment { params: Vec::new(), ..presets().remove(0) }, &small) }
@@ -202,7 +202,7 @@ fn a_point_of_a_sweep_lands_on_its_dot_in_the_chart() {
     let home = common::home();
     let lab = lab(home.path());
     let cornell = scene("cornell");
-    let settings = [("voxel_dim", "16"), ("shadow_dim", "256"), ("trace", "cones")];
+    let settings = [("voxel_dim", "16"), ("shadow_dim", "256")];
     let case = with(Experiment { params: Vec::new(), ..presets().remove(0) }, &settings);
     let go_on = &mut |_| ControlFlow::Continue(());
     let reference = Arc::new(gather(&lab, &case, &cornell, 64, Goal::Samples(32), go_on).unwrap());

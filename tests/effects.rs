@@ -28,43 +28,47 @@ fn found(graph: &str, params: &str) -> (BTreeMap<String, Reason>, Option<f64>) {
         Res::Buffer(b, _) => loaded.graph.buffers[b].0.as_str(),
     });
     let running = Running { set: &set, linked: &loaded.linked, passes: &passes, written: written.collect() };
-    let aperture = params.list.iter().find(|p| p.name == "diffuse_aperture").unwrap();
-    let taken = effective(&set, aperture);
+    let aperture = params.list.iter().find(|p| p.name == "diffuse_aperture");
+    let taken = aperture.and_then(|a| effective(&set, a));
     (idle(&running, &ShaderCompiler::new(&home.folders().shaders, home.cache.as_deref())), taken)
 }
 
 #[test]
 fn what_changes_nothing_is_told_with_the_choice_that_it_waits_for() {
-    let (idle, taken) = found("vct.ron", "");
-    let needs = |name: &str| idle.get(name).map_or(Vec::new(), |r| r.needs.clone());
+    // What was asked for counts with the graph's defaults.
+    let (idle, taken) = found("cones.ron", "");
     println!("{idle:#?}");
-    for name in ["cone_count", "diffuse_aperture", "diffuse_steps", "bias", "lod_offset"] {
-        assert!(needs(name).contains(&("trace".into(), "cones".into())), "{name}: {:?}", idle.get(name));
-    }
-    assert_eq!(idle["volume_center"].text, "where volume == box");
-    assert_eq!(idle["shadow_format"].text, "where shadow_map is raster");
-    for name in ["exposure", "voxel_dim", "trace", "pixel_cones", "volume", "tone_map", "bounces"] {
+    for name in ["cone_count", "diffuse_aperture", "diffuse_steps", "bias", "lod_offset", "warp", "warp_alpha"] {
         assert!(!idle.contains_key(name), "{name}: {:?}", idle.get(name));
     }
-    assert_eq!(taken, None, "rays have no aperture");
-
-    let (idle, taken) = found("vct.ron", "\"trace\": cones, \"volume\": box");
-    for name in ["cone_count", "diffuse_aperture", "diffuse_steps", "bias", "lod_offset", "volume_center"] {
+    assert_eq!(idle["volume_center"].text, "where volume == box");
+    for name in ["exposure", "voxel_dim", "trace", "volume", "tone_map", "bounces"] {
         assert!(!idle.contains_key(name), "{name}: {:?}", idle.get(name));
     }
     assert_eq!(taken, Some(78.0));
 
-    let (idle, taken) = found("vct.ron", "\"trace\": cones, \"cone_set\": six60");
+    let (idle, _) = found("cones.ron", "\"trace\": lobe_rays, \"volume\": box");
+    let needs = |name: &str| idle.get(name).map_or(Vec::new(), |r| r.needs.clone());
+    for name in ["cone_count", "diffuse_aperture"] {
+        assert!(needs(name).contains(&("trace".into(), "cones".into())), "{name}: {:?}", idle.get(name));
+    }
+    assert!(!idle.contains_key("volume_center"));
+
+    let (idle, taken) = found("cones.ron", "\"cone_set\": six60");
     assert_eq!(idle["cone_count"].text, "where cone_set is wide or fitted");
     assert_eq!(taken, Some(60.0));
+
+    let (idle, _) = found("rays.ron", "");
+    for name in ["pixel_rays", "gather_frames", "bounce_directions", "bounce_frames"] {
+        assert!(!idle.contains_key(name), "{name}: {:?}", idle.get(name));
+    }
 }
 
 #[test]
 fn a_warps_parameters_wait_for_the_warp() {
-    let (idle, _) = found("warps.ron", "");
+    let (idle, _) = found("cones.ron", "\"warp\": none");
     println!("{idle:#?}");
-    assert_eq!(idle["warp_alpha"].needs, [("warp".to_string(), "spline".to_string())]);
-    assert_eq!(idle["warp_steepness"].text, "where warp is logistic");
+    assert!(idle["warp_alpha"].needs.contains(&("warp".to_string(), "spline".to_string())));
     assert_eq!(idle["warp_near"].text, "where warp == perspective || warp == spherical");
     assert!(!idle.contains_key("warp"));
     let (idle, _) = found("warps.ron", "\"warp\": spline");
@@ -72,14 +76,75 @@ fn a_warps_parameters_wait_for_the_warp() {
 }
 
 #[test]
-fn the_default_graphs_pin_what_was_asked_for_in_that_order() {
+fn the_graph_that_opens_first_pins_what_was_asked_for_in_that_order() {
     let home = Workspace { root: common::root().to_path_buf(), cache: None };
-    let asked =
-        ["trace", "cone_count", "diffuse_aperture", "diffuse_steps", "bias", "lod_offset", "warp_alpha", "warp"];
-    for graph in ["vct.ron", "warps.ron", "temporal.ron"] {
+    let first = Experiment::read(&home.root.join("configs/cones.ron")).unwrap();
+    let asked = [
+        ("cone_count", "Cone count"),
+        ("diffuse_aperture", "Aperture"),
+        ("diffuse_steps", "Steps"),
+        ("bias", "Bias"),
+        ("lod_offset", "LOD offset"),
+        ("warp", "Warp"),
+        ("warp_alpha", "Warp alpha"),
+    ];
+    for graph in [first.graph.as_str(), "warps.ron", "temporal.ron"] {
         let graph = conelab::graph::load::load(&home.graph_path(graph), &home.folders()).unwrap();
-        assert_eq!(graph.pinned.iter().map(|p| p.0.as_str()).collect::<Vec<_>>(), asked);
-        let titles: Vec<&str> = graph.pinned.iter().map(|p| p.1.as_str()).collect();
-        assert_eq!(titles[..4], ["Light by", "Cone count", "Aperture", "Steps"]);
+        let pinned: Vec<_> = graph.pinned.iter().map(|p| (p.0.as_str(), p.1.as_str())).collect();
+        assert_eq!(pinned, asked);
     }
+}
+
+/// Each control that is shown first, turned alone in the graph's own defaults, makes another picture.
+#[test]
+fn every_pinned_parameter_changes_the_picture() {
+    let lab = common::lab(common::root());
+    let home = Workspace { root: common::root().to_path_buf(), cache: None };
+    for (graph, turned) in [
+        (
+            "cones.ron",
+            &[
+                ("cone_count", "5"),
+                ("diffuse_aperture", "50"),
+                ("diffuse_steps", "4"),
+                ("bias", "2"),
+                ("lod_offset", "-1"),
+                ("warp", "perspective"),
+                ("warp_alpha", "0.25"),
+            ][..],
+        ),
+        (
+            "rays.ron",
+            &[
+                ("voxel_dim", "48"),
+                ("pixel_rays", "4"),
+                ("gather_frames", "2"),
+                ("bounce_directions", "4"),
+            ],
+        ),
+        (
+            "thesis.ron",
+            &[("diffuse_aperture", "60"), ("diffuse_steps", "4"), ("bias", "2"), ("lod_offset", "-1")],
+        ),
+    ] {
+        let pinned = conelab::graph::load::load(&home.graph_path(graph), &home.folders()).unwrap().pinned;
+        let names: Vec<&str> = pinned.iter().map(|p| p.0.as_str()).collect();
+        assert_eq!(names, turned.iter().map(|t| t.0).collect::<Vec<_>>());
+        let picture = |set: &[(&str, &str)]| {
+            let small = [("voxel_dim", "32"), ("shadow_dim", "256")];
+            let mut experiment = common::experiment("cornell", (48, 36), &[&small[..], set].concat());
+            experiment.graph = graph.into();
+            let mut session = common::prepare(&lab, &experiment, &["display"]);
+            for _ in 0..3 {
+                session.frame(0.0).unwrap();
+            }
+            session.finish().unwrap();
+            session.texels("display", 0, 0).unwrap().bytes
+        };
+        let unturned = picture(&[]);
+        for (name, value) in turned {
+            assert!(picture(&[(name, value)]) != unturned, "{graph}: {name} = {value} shows the same picture");
+        }
+    }
+    common::assert_clean(&lab);
 }

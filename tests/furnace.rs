@@ -112,7 +112,7 @@ fn white_balls_vanish_under_a_white_sky() {
     let e: Experiment = experiment(
         "cornell",
         size,
-        &settings(&[("gather_frames", "1"), ("bounce_frames", "2"), ("pixel_cones", "16")]),
+        &settings(&[("gather_frames", "1"), ("bounce_frames", "2"), ("pixel_rays", "16")]),
     );
     let (mut session, _) = lab.prepare(&e, scene.clone(), |_| Ok(vec!["radiance".into()])).unwrap();
     for _ in 0..24 {
@@ -154,7 +154,7 @@ fn the_lobe_reflects_what_an_independent_integral_says() {
     let size = (192, 96);
     for (i, roughness) in ROUGHNESS.iter().enumerate() {
         let scene = Arc::new(balls(&dir.path().join("ball.ron"), &[(i, 1)]));
-        let picture = traced(&scene, size, &[("multiple_scattering", "false")], 128);
+        let picture = traced(&scene, size, &[("shading_model", "single_scattering")], 128);
         let (value, cosine) = zones(&picture, size, (i, 1))[0];
         let (a, b) = directional_albedo(cosine, *roughness);
         println!("metal of roughness {roughness} at {cosine:.3}: {value:.4} of {:.4}", a + b);

@@ -201,7 +201,7 @@ fn mutated_files_are_read_or_refused() {
     let seeds = seeds::all();
     let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
     let graph = |name: &str| Arc::new(load(&folders.passes.join(name), &folders).unwrap());
-    let graphs = Graphs { method: graph("vct.ron"), reference: graph("reference.ron") };
+    let graphs = Graphs { method: graph("rays.ron"), reference: graph("reference.ron") };
     let whole = tempfile::tempdir().unwrap();
     seeds::write(whole.path());
     for Seed { kind, opened, mutated, .. } in &seeds {

@@ -1317,7 +1317,7 @@ fn experiments() {
     std::fs::remove_file(missing.path("configs/run.ron")).unwrap();
     assert_snapshot!(missing.findings(), @r"
     configs/run.ron: error: cannot read it: No such file or directory (os error 2)
-        = help: give the path of an experiment, for example configs/default.ron
+        = help: give the path of an experiment, for example configs/rays.ron
     ");
 }
 

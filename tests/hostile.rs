@@ -265,8 +265,8 @@ fn messages_quote_a_short_part_of_a_line() {
     let folder = folder();
     let long = "x".repeat(200_000);
     for (name, text) in [
-        ("long.ron", format!("(graph: \"vct.ron\", scene: \"cornell\", {long}: 1)")),
-        ("nul.ron", format!("(graph: \"vct.ron\",\0\0\x1b[31m scene: cornell, {long})")),
+        ("long.ron", format!("(graph: \"rays.ron\", scene: \"cornell\", {long}: 1)")),
+        ("nul.ron", format!("(graph: \"rays.ron\",\0\0\x1b[31m scene: cornell, {long})")),
         ("scene.ron", format!("(models: [], {long}: 1)")),
         ("passes.ron", format!("(textures: {{ \"{long}\": (size: Scren) }}, output: \"{long}\")")),
     ] {
@@ -304,7 +304,7 @@ fn includes_that_grow_with_a_power_or_go_in_a_circle_end_at_once() {
     for (file, pieces) in [
         ("passes/l.ron", &["x0.glsl > x1.glsl > x2.glsl"][..]),
         ("passes/r0.ron", &["32 deep", "r0.ron > ", "r1.ron > "]),
-        ("passes/vct.ron", &["display.ron > tone.ron > display.ron"]),
+        ("passes/rays.ron", &["display.ron > tone.ron > display.ron"]),
     ] {
         let begun = Instant::now();
         let output = conelab(home.path()).args(["check", file]).output().unwrap();
@@ -320,7 +320,7 @@ fn includes_that_grow_with_a_power_or_go_in_a_circle_end_at_once() {
 fn a_damaged_scene_is_one_failed_point_of_a_sweep() {
     let (home, out) = (home(), folder());
     write(&home, "b.gltf", gltf_with_buffer("gone.bin"));
-    let sweep = "(experiments: [\"configs/default.ron\"], warmup: 0, frames: 1, \
+    let sweep = "(experiments: [\"configs/rays.ron\"], warmup: 0, frames: 1, \
                  set: {\"size\": (24, 16), \"voxel_dim\": 16, \"shadow_dim\": 256}, \
                  axes: [List(name: \"scene\", values: [\"b.gltf\", \"cornell\"])])";
     let sweep = write(&home, "s.ron", sweep);
@@ -351,7 +351,7 @@ fn texels_of_the_picture_that_are_no_numbers_are_counted() {
     std::fs::write(&shader, text.replace(store, &format!("{wrong}{store}"))).unwrap();
     let render = |more: &[&str]| {
         let mut command = conelab(home.path());
-        command.args(["render", "configs/default.ron", "--scene", "cornell", "--size", "48x32", "--frames", "1"]);
+        command.args(["render", "configs/rays.ron", "--scene", "cornell", "--size", "48x32", "--frames", "1"]);
         command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=512", "--json", "-"]).args(more).output().unwrap()
     };
     for (output, told) in [

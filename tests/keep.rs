@@ -258,10 +258,10 @@ fn an_edit_keeps_the_comments() {
     write(&Experiment::read(&path).unwrap(), &defaults, &path, true).unwrap();
     assert_eq!(project.text("configs/mine.ron"), new);
     // Settings of the method keep every line.
-    let fine = "(\n    graph: \"vct.ron\", // plain\n    scene: \"atrium\",\n    params: {\n        // Fine.\n        \"voxel_dim\": 256,\n    },\n)\n";
+    let fine = "(\n    graph: \"rays.ron\", // plain\n    scene: \"atrium\",\n    params: {\n        // Fine.\n        \"voxel_dim\": 256,\n    },\n)\n";
     let copy = project.write("configs/fine.ron", fine);
     let folders = Folders { passes: root().join("passes"), shaders: root().join("shaders") };
-    let vct = load(&root().join("passes/vct.ron"), &folders).unwrap().params;
+    let vct = load(&root().join("passes/rays.ron"), &folders).unwrap().params;
     let mut experiment = Experiment::read(&copy).unwrap();
     set(&mut experiment, "voxel_dim", "64");
     write(&experiment, &vct, &copy, true).unwrap();

@@ -11,7 +11,7 @@ use std::sync::Arc;
 fn session(lab: &Lab, scene: &Arc<Scene>) -> Session {
     // Nothing is kept from frame to frame.
     let settings =
-        [("voxel_dim", "32"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_cones", "2")];
+        [("voxel_dim", "32"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_rays", "2")];
     let experiment = experiment(&scene.name, (64, 48), &settings);
     lab.prepare(&experiment, scene.clone(), |_| Ok(vec!["radiance".into()])).unwrap().0
 }

@@ -80,7 +80,7 @@ fn bounces_fill_the_furnace_and_rest() {
     let lab = lab(root());
     let mut wrong = Vec::new();
     for (dim, voxelizer) in [("32", "raster"), ("64", "raster"), ("32", "tessellated")] {
-        let turns = [("bounce_frames", "4"), ("gather_frames", "4"), ("pixel_cones", "4")];
+        let turns = [("bounce_frames", "4"), ("gather_frames", "4"), ("pixel_rays", "4")];
         let settings = [&turns[..], &[("voxel_dim", dim), ("voxelizer", voxelizer), ("reflectance", "base"), QUICK]];
         let e = experiment("furnace", (64, 48), &settings.concat());
         let mut session = prepare(&lab, &e, &["diffuseIndirect", "radiance"]);
@@ -108,7 +108,7 @@ fn bounces_fill_the_furnace_and_rest() {
 #[test]
 fn the_first_frames_have_no_voxels_that_wait() {
     let lab = lab(root());
-    let settings = [("voxel_dim", "32"), ("reflectance", "base"), ("gather_frames", "1"), ("pixel_cones", "2"), QUICK];
+    let settings = [("voxel_dim", "32"), ("reflectance", "base"), ("gather_frames", "1"), ("pixel_rays", "2"), QUICK];
     let mut session = prepare(&lab, &experiment("furnace", (64, 48), &settings), &["diffuseIndirect"]);
     for frame in 0..8 {
         session.frame(0.0).unwrap();

@@ -76,21 +76,19 @@ fn small(opacity: &str) -> Experiment {
             ("voxel_dim", "32"),
             ("shadow_dim", "256"),
             ("bounces", "one"),
-            ("trace", "interleaved"),
-            ("gather_frames", "1"),
-            ("pixel_cones", "2"),
+            ("cone_set", "thesis"),
             ("opacity", opacity),
         ],
     );
-    assert_eq!(experiment.graph, "vct.ron");
+    assert_eq!(experiment.graph, "cones.ron");
     experiment
 }
 
 /// The same on the command line, of the folders of `home`.
 fn command(home: &Path, name: &str) -> Command {
     let mut command = conelab(home);
-    command.args([name, "configs/default.ron", "--scene", "cornell", "--size", "48x36"]);
-    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256", "--set", "trace=interleaved"]);
+    command.args([name, "configs/cones.ron", "--scene", "cornell", "--size", "48x36"]);
+    command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256"]);
     command
 }
 
@@ -131,7 +129,7 @@ fn the_page_names_files_and_settings_that_are_there() {
     let files = [files(&home.path().join("shaders")), files(&home.path().join("passes"))].concat();
     let folders = Workspace { root: home.path().to_path_buf(), cache: None }.folders();
     let graph = |name: &str| load(&folders.passes.join(name), &folders).unwrap().params;
-    let graphs = ["vct.ron", "thesis.ron", "warps.ron", "temporal.ron"].map(graph);
+    let graphs = ["rays.ron", "cones.ron", "thesis.ron", "warps.ron", "temporal.ron"].map(graph);
     let (mut found, mut missing) = (0, Vec::new());
     for word in prose.split('`').skip(1).step_by(2).filter(|w| !w.contains([' ', '(', '*', '>'])) {
         let there = match (word.split_once('='), Path::new(word).extension()) {
@@ -158,7 +156,7 @@ fn a_model_is_one_file_and_one_line() {
     let page = page();
     let home = home_with_model(&page);
     // The page promises the graphs that include the file too.
-    for graph in ["vct.ron", "warps.ron", "temporal.ron"] {
+    for graph in ["rays.ron", "warps.ron", "temporal.ron"] {
         let said = succeeds(conelab(home.path()).arg("check").arg(Path::new("passes").join(graph)));
         assert_eq!(said, "checked 1 files, 0 errors\n", "{graph}");
     }
@@ -187,7 +185,7 @@ fn a_mistake_in_a_model_is_told_and_keeps_nobody_from_rendering_with_another() {
         std::fs::write(home.path().join(file), format!("{text}float broken = ;\n")).unwrap();
         let place = format!("{}:{}: error", home.path().join(file).display(), text.lines().count() + 1);
 
-        let output = conelab(home.path()).args(["check", "passes/vct.ron"]).output().unwrap();
+        let output = conelab(home.path()).args(["check", "passes/cones.ron"]).output().unwrap();
         let said = String::from_utf8_lossy(&output.stdout);
         assert_eq!(output.status.code(), Some(1), "{said}");
         assert_eq!(said.matches(&place).count(), 1, "{place}\n{said}");
@@ -201,7 +199,7 @@ fn a_mistake_in_a_model_is_told_and_keeps_nobody_from_rendering_with_another() {
     }
     // A line for a file that is not there.
     std::fs::remove_file(home.path().join(&page.shader)).unwrap();
-    let output = conelab(home.path()).args(["check", "passes/vct.ron"]).output().unwrap();
+    let output = conelab(home.path()).args(["check", "passes/cones.ron"]).output().unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(1), "{said}");
     let file = page.shader.strip_prefix("shaders").unwrap().to_string_lossy();
@@ -263,7 +261,7 @@ fn a_live_session_builds_only_what_includes_the_model() {
 #[test]
 fn what_is_no_more_says_what_to_write_instead() {
     let folders = Workspace { root: root().to_path_buf(), cache: None }.folders();
-    let graph = load(&folders.passes.join("vct.ron"), &folders).unwrap();
+    let graph = load(&folders.passes.join("rays.ron"), &folders).unwrap();
     let instead = |name: &str| graph.params.retired.iter().find(|r| r.0 == name).unwrap().1.clone();
     let out = tempfile::tempdir().unwrap();
     for (setting, retired, word) in

@@ -9,7 +9,7 @@ use std::time::Duration;
 use window_driver::{CONTROL, PATIENCE, WindowDriver, centre, with};
 
 /// Cones in every pixel, so that the pinned parameters count; small enough for a software device.
-const CONES: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "trace": cones })"#;
+const CONES: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one })"#;
 
 const ESCAPE: u32 = 0xff1b;
 const F12: u32 = 0xffc9;
@@ -63,9 +63,11 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
 
     // What another graph has is a click away.
     let mark = driver.now();
-    driver.click("Button", "use warps.ron for Perspective warp");
+    driver.keys(&[CONTROL, u32::from(b'f')]);
+    driver.text("volume_turn");
+    driver.click("Button", "use warps.ron for volume_turn");
     driver.wait(mark, "the other graph", |e| e["event"] == "built" && e["side"] == 0);
-    driver.texts_until("its parameters", |texts| !has(texts, "use warps.ron for Perspective warp"));
+    driver.texts_until("its parameters", |texts| !has(texts, "use warps.ron for volume_turn"));
     driver.close();
 }
 

@@ -12,13 +12,16 @@ const SIZE: (u32, u32) = (64, 48);
 /// One frame at 64 voxels with what `wanted` names; `at` is the probed pixel.
 #[track_caller]
 fn frame(lab: &Lab, scene: &str, at: Option<[u32; 2]>, settings: &[(&str, &str)], wanted: &[&str]) -> Session {
+    let of_rays = [("gather_frames", "1"), ("pixel_rays", "2"), ("lobe_share", "0"), ("emitter_rays", "0")]; // a single one in the lobe
+    frame_of(lab, scene, at, &[&of_rays, settings].concat(), wanted)
+}
+
+#[track_caller]
+fn frame_of(lab: &Lab, scene: &str, at: Option<[u32; 2]>, settings: &[(&str, &str)], wanted: &[&str]) -> Session {
     let probe = at.map_or(String::from("(-1, -1)"), |[x, y]| format!("({x}.5, {y}.5)"));
     let base = [
         ("voxel_dim", "64"),
         ("shadow_dim", "512"),
-        ("gather_frames", "1"),
-        ("pixel_cones", "2"),
-        ("lobe_share", "0"), // a single one
         ("probe", probe.as_str()),
     ];
     let mut session = prepare(lab, &experiment(scene, SIZE, &[&base[..], settings].concat()), wanted);
@@ -84,15 +87,18 @@ fn samples_add_up_to_what_shading_found() {
         ("furnace", [20, 20], ""),
         ("white-sky", [32, 24], ""),
     ];
-    // The wide set has 0.15 on the normal, the rest shared by the ring of eight. Rays and interleaved cones are alike; what a
-    // pixel's own gather is mixed with its neighbours' afterwards.
+    // The wide set has 0.15 on the normal, the rest shared by the ring of eight. What a pixel's own rays gather is mixed with
+    // its neighbours' afterwards.
     let wide: Vec<f32> = (1..10).map(|n| if n == 1 { 0.15 } else { 0.85 / 8.0 }).collect();
-    let traces = [("rays", vec![1.0 / 2.0; 2]), ("interleaved", vec![1.0 / 2.0; 2]), ("cones", wide)];
+    let traces = [("rays", vec![1.0 / 2.0; 2]), ("cones", wide)];
     for ((name, at, material), (trace, weights)) in cases.into_iter().flat_map(|c| traces.iter().map(move |t| (c, t))) {
         let what = format!("{name} at {at:?}, {trace}");
         let wanted = ["coneSamples", "gatheredDiffuse", "surfaceNormal"];
         // What rays to emitters bring is no radiance that they meet.
-        let mut session = frame(&lab, name, Some(at), &[("trace", trace), ("emitter_rays", "0")], &wanted);
+        let mut session = match *trace {
+            "rays" => frame(&lab, name, Some(at), &[], &wanted),
+            _ => frame_of(&lab, name, Some(at), &[("trace", trace)], &wanted),
+        };
         let pixel = (at[1] * SIZE.0 + at[0]) as usize;
         let normal = Vec3::from_slice(&floats(&mut session, "surfaceNormal", 0)[pixel][..3]) * 2.0 - 1.0;
         match material {

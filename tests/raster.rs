@@ -155,7 +155,7 @@ fn lights_see_the_same_depths() {
             let light = Light { kind, position: middle, shadow: true, ..changed.lights[0].clone() };
             changed.lights = vec![light];
             let changed = Arc::new(changed);
-            let settings = |how| [("shadow_map", how), ("shadow_dim", "256"), ("shadow_format", "d32")];
+            let settings = |how| [("shadow_map", how), ("shadow_dim", "256")];
             let mut drawn = session(&lab, &changed, &settings("raster"), &["shadowMap"]);
             let mut threads = session(&lab, &changed, &settings("compute"), &["shadowWords"]);
             run(&lab, &mut drawn, None);

@@ -151,7 +151,7 @@ fn another_renderers_own_materials_give_the_same_light() {
     let home = common::home();
     let lab = lab(home.path());
     let path = root().join("tests/common/own/scene.ron").to_string_lossy().into_owned();
-    let own = experiment(&path, (48, 36), &[("pixel", "box"), ("multiple_scattering", "false")]);
+    let own = experiment(&path, (48, 36), &[("pixel", "box"), ("shading_model", "single_scattering")]);
     let found = mean(&trace(&lab, &own, &scene(&path), 64, 128), "total");
     println!("{found:.6} of 0.189308");
     assert!((found / 0.189308 - 1.0).abs() < 0.01, "{found}");
@@ -298,7 +298,7 @@ fn a_killed_run_loses_no_kept_sample() {
     let (home, calm) = (common::home(), common::home());
     let run = |home: &Path, samples: &str| {
         let mut command = conelab(home);
-        command.args(["reference", "configs/default.ron", "--scene", "cornell", "--size", "32x24", "--spp", samples]);
+        command.args(["reference", "configs/rays.ron", "--scene", "cornell", "--size", "32x24", "--spp", samples]);
         command
     };
     succeeds(&mut run(home.path(), "64"));
@@ -352,7 +352,7 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
         let same = experiment("cornell", (16, 12), &[(name, value)]);
         assert!(found(&lab.home, &same, &cornell, 1).is_some(), "{name}");
     }
-    for (name, value) in [("ggx_alpha", "roughness"), ("shading_model", "blinn_phong"), ("seed", "2"), ("pixel", "box")]
+    for (name, value) in [("shading_model", "cook_torrance"), ("shading_model", "blinn_phong"), ("seed", "2"), ("pixel", "box")]
     {
         let other = experiment("cornell", (16, 12), &[(name, value)]);
         assert_eq!(found(&lab.home, &other, &cornell, 1), None, "{name}");
@@ -425,7 +425,7 @@ fn damaged_references_are_told_and_not_trusted() {
     let said = {
         std::fs::write(&sums, &flipped).unwrap();
         let mut command = conelab(home.path());
-        command.args(["reference", "configs/default.ron", "--scene", "cornell", "--size", "16x12"]);
+        command.args(["reference", "configs/rays.ron", "--scene", "cornell", "--size", "16x12"]);
         command.args(["--spp", "64", "--bounces", "1"]);
         fails(&mut command)
     };

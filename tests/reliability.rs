@@ -131,7 +131,7 @@ fn references_of_one_picture_do_not_delete_each_others_sums() {
     let home = home();
     let reference = |samples: &str| {
         let mut command = conelab(home.path());
-        command.args(["reference", "configs/default.ron"]).args(&SMALL[..4]).args(["--spp", samples]);
+        command.args(["reference", "configs/rays.ron"]).args(&SMALL[..4]).args(["--spp", samples]);
         command
     };
     succeeds(&mut reference("32"));
@@ -195,7 +195,7 @@ fn paths_that_are_not_utf8_are_opened() {
     has(&succeeds(conelab(home.path()).arg("scene").arg(&model)), &["triangles  1"]);
     let render = |scene: &Path| {
         let mut command = conelab(home.path());
-        command.args(["render", "configs/default.ron", "--size", "8x8", "-o", "x.png", "--set", "voxel_dim=16"]);
+        command.args(["render", "configs/rays.ron", "--size", "8x8", "-o", "x.png", "--set", "voxel_dim=16"]);
         succeeds(command.arg("--scene").arg(scene));
     };
     render(&model);

@@ -151,7 +151,7 @@ fn scenes() -> String {
         let lines = record.lines.iter().filter(|l| l["outcome"] == "done" && l["experiment"] == experiment);
         lines.map(|l| (l["scene"].clone(), l)).collect()
     };
-    let (default, thesis) = (done("default"), done("thesis"));
+    let (default, thesis) = (done("rays"), done("thesis"));
     let mut names: Vec<&String> = default.keys().collect();
     names.sort_by(|a, b| number(default[*b], "total flip").total_cmp(&number(default[*a], "total flip")));
     let columns: [(&str, usize); 6] = [
@@ -240,7 +240,7 @@ fn voxels() -> String {
 fn presets() -> String {
     let home = Workspace { root: root().to_path_buf(), cache: None };
     let params = |graph: &str| load(&home.graph_path(graph), &home.folders()).unwrap().params.list;
-    let (ours, thesis) = (params("vct.ron"), params("thesis.ron"));
+    let (ours, thesis) = (params("rays.ron"), params("thesis.ron"));
     let mut lines = Vec::new();
     for p in &ours {
         if let Some(t) = thesis.iter().find(|t| t.name == p.name && t.default != p.default) {
@@ -252,8 +252,8 @@ fn presets() -> String {
         names.collect::<Vec<_>>().join(", ")
     };
     format!(
-        "{}\nOnly `vct.ron` has {}; only `thesis.ron` has {}.\n",
-        table(&["parameter", "`vct.ron`", "`thesis.ron`"], &lines),
+        "{}\nOnly `rays.ron` has {}; only `thesis.ron` has {}.\n",
+        table(&["parameter", "`rays.ron`", "`thesis.ron`"], &lines),
         alone(&ours, &thesis),
         alone(&thesis, &ours)
     )
@@ -274,7 +274,7 @@ fn block(name: &str) -> String {
 fn lamps_off_by() -> (f64, f64) {
     const LAMPS: [&str; 5] = ["small-quad", "ceiling-panel", "neon-tube", "lampshade", "emitters"];
     let record = record("scenes");
-    let default = record.lines.iter().filter(|l| l["experiment"] == "default" && LAMPS.contains(&l["scene"].as_str()));
+    let default = record.lines.iter().filter(|l| l["experiment"] == "rays" && LAMPS.contains(&l["scene"].as_str()));
     let off: Vec<f64> = default.map(|l| 100.0 * (number(l, "total energy_ratio") - 1.0)).collect();
     assert_eq!(off.len(), LAMPS.len());
     (off.iter().copied().fold(f64::INFINITY, f64::min), off.into_iter().fold(f64::NEG_INFINITY, f64::max))
@@ -284,10 +284,10 @@ fn lamps_off_by() -> (f64, f64) {
 fn figures_of_the_readme_are_those_recorded() {
     let text = std::fs::read_to_string(root().join("README.md")).unwrap();
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let bench = record("default");
+    let bench = record("rays");
     let of = |name: &str| {
         let is = |l: &&BTreeMap<String, String>| {
-            l["experiment"] == "default" && l["voxel_dim"] == "160" && l["name"] == name && l["kind"] != "pass"
+            l["experiment"] == "rays" && l["voxel_dim"] == "160" && l["name"] == name && l["kind"] != "pass"
         };
         number(bench.lines.iter().find(is).unwrap(), "median ms")
     };

@@ -239,7 +239,7 @@ fn small_lamps_shine_as_bright_as_they_are() {
         for cells in [0.7, 1.5, 3.0] {
             let scene = lamps(mesh, cells * CELL / across);
             let experiment = |voxelizer| {
-                let settings = [("voxel_dim", "64"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_cones", "32")];
+                let settings = [("voxel_dim", "64"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_rays", "32")];
                 experiment("emitters", (64, 36), &[&settings[..], &[("voxelizer", voxelizer)]].concat())
             };
             let keep_on = &mut |_| ControlFlow::Continue(());

@@ -18,7 +18,7 @@ use mutate::Random;
 /// Where nobody says how many.
 const SETTINGS: usize = 10;
 
-const GRAPHS: [&str; 4] = ["vct.ron", "warps.ron", "temporal.ron", "thesis.ron"];
+const GRAPHS: [&str; 5] = ["rays.ron", "cones.ron", "warps.ron", "temporal.ron", "thesis.ron"];
 const SCENES: [&str; 4] = ["cornell", "furnace", "configs/scenes/workshop.ron", "atrium"];
 
 /// A picture's light, and its parts.
@@ -29,7 +29,7 @@ fn most(name: &str, highest: f64) -> f64 {
     highest.min(match name {
         "voxel_dim" => 64.0,
         "shadow_dim" => 512.0,
-        "exact_rays" | "bounce_cones" | "pixel_cones" => 16.0,
+        "exact_rays" | "bounce_directions" | "pixel_rays" => 16.0,
         "diffuse_steps" | "specular_steps" => 128.0,
         "fragment_capacity" => 4e6,
         "voxel_capacity" => 1e6,

@@ -71,7 +71,7 @@ fn floor(folder: &TempDir, boxed: bool) -> String {
 /// Of the method, where nothing is kept from frame to frame.
 fn session(lab: &Lab, scene: &Arc<Scene>) -> Session {
     let settings =
-        [("voxel_dim", "32"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_cones", "4")];
+        [("voxel_dim", "32"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "1"), ("pixel_rays", "4")];
     let wanted = ["radiance", "direct"].map(String::from).to_vec();
     lab.prepare(&experiment(&scene.name, (48, 36), &settings), scene.clone(), |_| Ok(wanted)).unwrap().0
 }
@@ -265,7 +265,7 @@ fn experiments_change_the_picture_and_are_written_with_it() {
     save(&folder.path().join("sky.exr"), &patches);
     let path = folder.path().join("run.ron");
     let read = |more: &str| {
-        Experiment::from_text(&path, &format!("(graph: \"vct.ron\", scene: \"white-sky\",\n    {more}\n)"))
+        Experiment::from_text(&path, &format!("(graph: \"rays.ron\", scene: \"white-sky\",\n    {more}\n)"))
     };
     let changed = read("sky: (1, 2, 3), environment: (file: \"sky.exr\", rotation: -90, intensity: 2),").unwrap();
     let lit = changed.adapted(scene("white-sky")).unwrap();
@@ -281,7 +281,7 @@ fn experiments_change_the_picture_and_are_written_with_it() {
     assert!(hashes[0] != hashes[1] && hashes[0] != hashes[2]);
     // Written, also to another folder, and read back.
     let defaults =
-        conelab::lab::Workspace { root: root().to_path_buf(), cache: None }.read("vct.ron").unwrap().params.clone();
+        conelab::lab::Workspace { root: root().to_path_buf(), cache: None }.read("rays.ron").unwrap().params.clone();
     for to in [folder.path().join("again.ron"), folder.path().join("deep/again.ron")] {
         write(&changed, &defaults, &to, false).unwrap();
         let found = Experiment::read(&to).unwrap();

@@ -80,8 +80,8 @@ fn step_response() {
 fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
     let path = home.join("small.ron");
     let text = format!(
-        "(experiment: \"configs/default.ron\", warmup: 3, frames: 4, samples: 32,\n\
-         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\", \"gather_frames\": 1, \"pixel_cones\": 2 }},\n\
+        "(experiment: \"configs/rays.ron\", warmup: 3, frames: 4, samples: 32,\n\
+         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\", \"gather_frames\": 1, \"pixel_rays\": 2 }},\n\
          methods: {{\n{methods}\n}},\ncases: {{\n{cases}\n}})"
     );
     std::fs::write(&path, text).unwrap();
@@ -291,7 +291,7 @@ fn a_parameter_moves() {
 #[test]
 fn a_parameter_that_references_have_too() {
     let home = home();
-    let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"ggx_alpha\", values: [\"squared\", \"roughness\", \"roughness\"]))";
+    let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"shading_model\", values: [\"gltf\", \"cook_torrance\", \"cook_torrance\"]))";
     let file = suite(home.path(), "\"a\": { \"scene\": \"configs/stability/scenes/metal-rough.ron\" }", cases);
     succeeds(&mut stability(home.path(), &file, "out", &[]));
     let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
@@ -450,11 +450,11 @@ fn shipped_suites() {
         succeeds(conelab(home.path()).arg("check").arg(path));
     }
     let small = ["--size", "24x18", "--frames", "2", "--spp", "32", "--set", "voxel_dim=24", "--set", "shadow_dim=256"];
-    let small = [&small[..], &["--set", "bounces=one", "--set", "gather_frames=1", "--set", "pixel_cones=4"]].concat();
+    let small = [&small[..], &["--set", "bounces=one", "--set", "gather_frames=1", "--set", "pixel_rays=4"]].concat();
     // All rays in each frame: only the temporal filter, which must rest where nothing moves, needs many before those measured.
     let all = |suite: &str, more: &[&str]| {
         let text = std::fs::read_to_string(root().join(format!("configs/stability/{suite}.ron"))).unwrap();
-        let text = text.replace("../default.ron", &root().join("configs/default.ron").to_string_lossy());
+        let text = text.replace("../rays.ron", &root().join("configs/rays.ron").to_string_lossy());
         let (head, cases) = text.split_once("cases: {").unwrap();
         let head = ["warmup: 32,", "warmup: 40,"].iter().fold(head.to_string(), |t, w| t.replace(w, "warmup: 2,"));
         let file = home.path().join(format!("{suite}.ron"));

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 fn sweep_file(home: &Path, axes: &str) -> PathBuf {
     let path = home.join("small.ron");
     let text = format!(
-        "(experiments: [\"configs/default.ron\"], warmup: 1, frames: 3,\n\
+        "(experiments: [\"configs/cones.ron\"], warmup: 1, frames: 3,\n\
          set: {{ \"scene\": \"cornell\", \"size\": (64, 48), \"shadow_dim\": 256, \"voxel_dim\": 16, \"bounces\": \"one\" }},\naxes: [\n{axes}\n])"
     );
     std::fs::write(&path, text).unwrap();
@@ -88,10 +88,10 @@ fn a_search_that_is_killed_goes_on_and_ends_at_the_cheapest_of_what_it_tried() {
     let bound = 0.2;
     let fit = |limit: &str| {
         let mut command = conelab(home.path());
-        let fixed = "fit configs/default.ron --scene cornell --size 64x48 --spp 16 --frames 3 --warmup 1 -o found.ron";
-        let set = "--set shadow_dim=256 --set bounces=one --set voxelizer=raster --set conservative=msaa";
-        // No device has 3 samples.
-        let vary = "--vary voxel_dim=16,24,32,48 --vary ray_pixels=all,quarter --vary voxel_samples=4,3";
+        let fixed = "fit configs/cones.ron --scene cornell --size 64x48 --spp 16 --frames 3 --warmup 1 -o found.ron";
+        let set = "--set shadow_dim=256 --set bounces=one --set voxelizer=raster --set warp_near=40";
+        // A frustum that ends before it begins is refused.
+        let vary = "--vary voxel_dim=16,24,32,48 --vary opacity=layers,coverage --vary warp=spline,perspective";
         command.args(format!("{fixed} {set} {vary} {limit}").split(' ')).current_dir(home.path());
         command
     };
@@ -113,8 +113,8 @@ fn a_search_that_is_killed_goes_on_and_ends_at_the_cheapest_of_what_it_tried() {
     let rows = table_with_times(&folder.join("sweep.csv"));
     assert!(said.contains(&format!("{} of 16 settings tried", rows.len())), "{said}");
     let failed = rows.iter().filter(|r| r["outcome"] == "failed");
-    assert!(failed.clone().count() > 0 && failed.clone().all(|r| r["voxel_samples"] == "3"), "{said}");
-    assert!(said.contains("cannot be run: ") && said.contains("voxel_samples=3"), "{said}");
+    assert!(failed.clone().count() > 0 && failed.clone().all(|r| r["warp"] == "perspective"), "{said}");
+    assert!(said.contains("cannot be run: ") && said.contains("warp=perspective"), "{said}");
 
     // Of two goals each has the best of what it tried, and the second measures nothing again.
     let number = |row: &BTreeMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
@@ -139,26 +139,26 @@ fn a_search_that_is_killed_goes_on_and_ends_at_the_cheapest_of_what_it_tried() {
 #[test]
 fn points_that_fail_or_warn_are_recorded_and_the_rest_goes_on() {
     let home = home();
-    // No device has 3 samples; 10000 fragments are too few for 64 voxels.
-    let axes = "Settings(name: \"case\", values: { \"no device\": { \"voxelizer\": \"raster\", \"conservative\": \"msaa\", \"voxel_samples\": 3 }, \"good\": {}, \
+    // A frustum that ends before it begins is refused; room for 10000 fragments is too little for 64 voxels.
+    let axes = "Settings(name: \"case\", values: { \"refused\": { \"warp\": \"perspective\", \"warp_near\": 40 }, \"good\": {}, \
                 \"overflow\": { \"voxel_dim\": 64, \"fragment_capacity\": 10000 } })";
     let file = sweep_file(home.path(), axes);
     let folder = home.path().join("out");
     let said = fails(&mut sweep(home.path(), &file, &folder, &[]));
-    assert!(said.contains("no rasterisation with 3 samples"), "{said}");
+    assert!(said.contains("must be above warp_near"), "{said}");
     let rows = table(&folder.join("sweep.csv"));
     let column = |name: &str| rows.iter().map(|r| r[name].as_str()).collect::<Vec<_>>();
-    assert_eq!(column("case"), ["no device", "good", "overflow"]);
+    assert_eq!(column("case"), ["refused", "good", "overflow"]);
     assert_eq!(column("outcome"), ["failed", "done", "done"]);
-    assert!(rows[0]["error"].contains("no rasterisation with 3 samples"), "{:?}", rows[0]);
+    assert!(rows[0]["error"].contains("must be above warp_near"), "{:?}", rows[0]);
     assert_eq!(rows[1]["warnings"], "");
     assert!(rows[2]["warnings"].contains("voxels were dropped"), "{:?}", rows[2]);
     // What has failed is not tried again unless that is asked for.
     let before = files(&folder.join("points"));
-    assert!(!fails(&mut sweep(home.path(), &file, &folder, &[])).contains("no rasterisation"));
+    assert!(!fails(&mut sweep(home.path(), &file, &folder, &[])).contains("must be above warp_near"));
     assert!(files(&folder.join("points")) == before, "finished points were measured again");
     let said = fails(&mut sweep(home.path(), &file, &folder, &["--again"]));
-    assert!(said.contains("no rasterisation"), "{said}");
+    assert!(said.contains("must be above warp_near"), "{said}");
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn a_report_of_several_scenes_has_them_in_a_table_worst_first() {
     let home = home();
     std::fs::write(home.path().join("gone.ron"), "(models: [(file: \"nowhere/gone.obj\")])").unwrap();
     let path = home.path().join("scenes.ron");
-    let text = "(experiments: [\"configs/default.ron\", \"configs/thesis.ron\"], warmup: 1, frames: 1, bounces: [4, 1],\n\
+    let text = "(experiments: [\"configs/rays.ron\", \"configs/thesis.ron\"], warmup: 1, frames: 1, bounces: [4, 1],\n\
                 set: { \"size\": (64, 36), \"shadow_dim\": 256, \"voxel_dim\": 16 },\n\
                 axes: [List(name: \"scene\", values: [\"white-sky\", \"gone.ron\", \"cornell\"])])";
     std::fs::write(&path, text).unwrap();
@@ -196,9 +196,9 @@ fn a_report_of_several_scenes_has_them_in_a_table_worst_first() {
     let rows = table(&folder.join("report/scenes.csv"));
     let told: Vec<[&str; 3]> = rows.iter().map(|r| ["scene", "method", "bounces"].map(|c| r[c].as_str())).collect();
     let expected = ["cornell", "white-sky"].into_iter().flat_map(|scene| {
-        [("default", "4"), ("default", "1"), ("thesis", "4"), ("thesis", "1")].map(|(method, b)| [scene, method, b])
+        [("rays", "4"), ("rays", "1"), ("thesis", "4"), ("thesis", "1")].map(|(method, b)| [scene, method, b])
     });
-    let gone = [["gone", "default", ""], ["gone", "thesis", ""]];
+    let gone = [["gone", "rays", ""], ["gone", "thesis", ""]];
     assert_eq!(told, expected.chain(gone).collect::<Vec<_>>());
     // The scores are those of the sweep's table, each against its own reference.
     let all = table(&folder.join("sweep.csv"));
@@ -284,13 +284,13 @@ fn axes_are_walked_in_the_order_of_the_file() {
     let home = home();
     let file = sweep_file(
         home.path(),
-        "Together({ \"bias\": [1, 2], \"cone_height\": [3, 4] }),\n\
+        "Together({ \"bias\": [1, 2], \"near_cells\": [3, 4] }),\n\
          Range(name: \"voxel_dim\", from: 16, to: 64, count: 3, scale: log),\n\
          Sample(count: 4, seed: 7, of: { \"lod_offset\": Uniform(-2, 0), \"cone_count\": Whole(4, 7) })",
     );
     let sweep = Sweep::read(&file).unwrap();
     assert_eq!(sweep.len(), 2 * 3 * 4);
-    assert_eq!(sweep.names, ["bias", "cone_height", "voxel_dim", "lod_offset", "cone_count"]);
+    assert_eq!(sweep.names, ["bias", "near_cells", "voxel_dim", "lod_offset", "cone_count"]);
     let values = |index: usize| -> Vec<String> { sweep.point(index).unwrap().1.into_iter().map(|l| l.1).collect() };
     assert_eq!(values(0)[..3], ["1", "3", "16"]);
     assert_eq!(values(4)[..3], ["1", "3", "32"]);
@@ -331,7 +331,7 @@ fn mistakes_of_a_sweep_are_told_with_their_place_before_anything_is_measured() {
             "Range(name: \"bias\", from: 0, to: 1, count: 900000)",
             "small.ron:4:44: error: a range has 1 to 20000 values",
         ),
-        ("Together({ \"bias\": [1], \"cone_height\": [1, 2] })", "they are walked together"),
+        ("Together({ \"bias\": [1], \"near_cells\": [1, 2] })", "they are walked together"),
         (
             "Sample(count: 3, of: { \"bias\": Log(0, 1) })",
             "small.ron:4:32: error: 'bias': nothing can be drawn from this",
@@ -356,7 +356,7 @@ fn a_benchmark_prints_stages_by_grid_and_totals_by_size() {
     let home = home();
     let out = home.path().join("bench");
     let mut command = conelab(home.path());
-    command.args(["bench", "configs/default.ron", "--scene", "cornell", "--sizes", "48x32,64x48"]);
+    command.args(["bench", "configs/rays.ron", "--scene", "cornell", "--sizes", "48x32,64x48"]);
     command.args(["--axis", "voxel_dim=16,32", "--axis", "voxelizer=raster,tessellated", "--set", "shadow_dim=256"]);
     // Else where there is a GPU threads draw, in other stages.
     command.args(["--set", "shadow_map=raster", "--set", "gbuffer=raster"]);
@@ -405,7 +405,7 @@ fn a_benchmark_prints_stages_by_grid_and_totals_by_size() {
 /// Records times of two small configurations, and reads them back as JSON.
 fn recorded(home: &Path) -> (PathBuf, serde_json::Value) {
     let mut command = conelab(home);
-    command.args(["bench", "configs/default.ron", "configs/thesis.ron", "--scene", "cornell", "--sizes", "64x48"]);
+    command.args(["bench", "configs/rays.ron", "configs/thesis.ron", "--scene", "cornell", "--sizes", "64x48"]);
     command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256", "--rounds", "2", "--frames", "2"]);
     command.args(["--warmup", "1", "-o", "out", "--record", "times"]);
     let said = succeeds(&mut command);
@@ -439,7 +439,7 @@ fn recorded_times_are_measured_again_and_what_became_slower_fails() {
 
     // A program beside itself: a folder finds the device's file; the tolerance is for machines that do other things.
     let said = succeeds(&mut against(home.path(), &home.path().join("times"), &["--tolerance", "20"]));
-    for title in ["default", "thesis"] {
+    for title in ["rays", "thesis"] {
         assert!(said.contains(&format!("\n{title}, cornell, 64x48, voxel_dim 32, shadow_dim 256\n")), "{said}");
     }
     assert_eq!(said.lines().filter(|l| l.starts_with("total ")).count(), 2, "{said}");
@@ -465,9 +465,9 @@ fn recorded_times_are_measured_again_and_what_became_slower_fails() {
     let said = fails(&mut against(home.path(), &edited, &["--tolerance", "20"]));
     let expected = "error: more than 2000 % slower than recorded: final shading ";
     assert!(said.starts_with(expected) && said.contains("(thesis, cornell"), "{said}");
-    assert!(!said.contains("total") && !said.contains("default"), "{said}");
+    assert!(!said.contains("total") && !said.contains("rays"), "{said}");
     // Only the experiment that is named is measured.
-    succeeds(&mut against(home.path(), &edited, &["configs/default.ron", "--tolerance", "20"]));
+    succeeds(&mut against(home.path(), &edited, &["configs/rays.ron", "--tolerance", "20"]));
     let said = fails(&mut against(home.path(), &edited, &["configs/nothing.ron"]));
     assert!(said.contains("the record has no times of 'configs/nothing.ron'"), "{said}");
 
@@ -556,6 +556,6 @@ fn a_record_that_does_not_fit_says_why() {
     std::fs::write(&edited, missing.to_string()).unwrap();
     let said = succeeds(&mut against(home.path(), &edited, &["--tolerance", "20"]));
     assert!(said.contains("skipped: default, missing, 64x48") && said.contains("set CONELAB_SCENES"), "{said}");
-    let said = fails(&mut against(home.path(), &edited, &["configs/default.ron"]));
+    let said = fails(&mut against(home.path(), &edited, &["configs/rays.ron"]));
     assert!(said.contains("nothing of '"), "{said}");
 }

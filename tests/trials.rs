@@ -332,15 +332,15 @@ fn edge() {
     };
     let mut rows = Vec::new();
     let sets: [(&str, &[(&str, &str)]); 4] = [
-        ("default", &[]),
+        ("rays", &[]),
         ("whole lobe", &[("trace", "lobe_rays")]),
-        ("interleaved cones", &[("trace", "interleaved")]),
-        ("thesis set", &[("trace", "cones"), ("cone_set", "thesis")]),
+        ("cones", &[("trace", "cones")]),
+        ("thesis set", &[("cone_set", "thesis")]),
     ];
     for (cones, set) in sets {
         let settings = [&[("voxel_dim", "64"), QUICK, ONE_BOUNCE], set].concat();
         let (parts, reference) = run(&lab, &experiment(&file, (width, height), &settings), 512);
-        if cones == "default" {
+        if cones == "rays" {
             rows.push(row(
                 "reference, 512 samples",
                 "RMS of openness",

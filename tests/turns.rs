@@ -19,7 +19,7 @@ fn session(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Session 
         ("shadow_dim", "512"),
         ("bounces", "one"),
         ("gather_frames", "8"),
-        ("pixel_cones", "16"),
+        ("pixel_rays", "16"),
         ("ray_pixels", "all"),
     ];
     let base: Vec<_> = base.into_iter().filter(|(name, _)| settings.iter().all(|(n, _)| n != name)).collect();
@@ -59,7 +59,7 @@ fn turns_add_up_to_all_rays_and_settle_to_the_bit() {
     let mut turns = session(&lab, &cornell, &[]);
     let first = gathered(&lab, &mut turns, 1);
     let after = gathered(&lab, &mut turns, TURNS - 1);
-    let few = [("gather_frames", "1"), ("pixel_cones", "4"), ("emitter_rays", "1")];
+    let few = [("gather_frames", "1"), ("pixel_rays", "4"), ("emitter_rays", "1")];
     let few = gathered(&lab, &mut session(&lab, &cornell, &few), 1);
     let all = gathered(&lab, &mut session(&lab, &cornell, &[("gather_frames", "1")]), 1);
     // In the first frame an eighth has all rays and the others a few, later every pixel has all.
@@ -126,10 +126,10 @@ fn few_pixels_gather_for_all() {
             gathered(&lab, &mut s, frames);
             (radiance(&mut s), floats(&mut s, "radiance", 0), s)
         };
-        let (_, truth, _) = settled(&[("gather_frames", "1"), ("pixel_cones", "64")], 1);
+        let (_, truth, _) = settled(&[("gather_frames", "1"), ("pixel_rays", "64")], 1);
         let (_, all, _) = settled(&[], TURNS);
         for (pixels, rays) in [("quarter", "64"), ("sixteenth", "64")] {
-            let few = [("ray_pixels", pixels), ("pixel_cones", rays)];
+            let few = [("ray_pixels", pixels), ("pixel_rays", rays)];
             let (bits, picture, mut live) = settled(&few, 2 * TURNS);
             let (energy, noise) = (light(&picture) / light(&truth), [&picture, &all].map(|p| error(p, &truth)));
             println!("{name}, {pixels}: energy {energy:.4}, errors {noise:.5?}");
@@ -216,9 +216,9 @@ fn a_moving_camera_keeps_light_where_it_belongs() {
     // frames and pixels then gather four times more rarely.
     for (turns, cones, bounce_frames) in [(TURNS, "16", "16"), (1, "2", "16"), (4, "8", "16"), (TURNS, "16", "1")] {
         let frames = turns.to_string();
-        let settings = [("gather_frames", frames.as_str()), ("pixel_cones", cones), ("bounce_frames", bounce_frames)];
+        let settings = [("gather_frames", frames.as_str()), ("pixel_rays", cones), ("bounce_frames", bounce_frames)];
         let mut live = session(&lab, &before, &settings);
-        let mut truth = session(&lab, &before, &[("gather_frames", "1"), ("pixel_cones", "64")]);
+        let mut truth = session(&lab, &before, &[("gather_frames", "1"), ("pixel_rays", "64")]);
         let kept = follow(&mut live, &mut truth, 0..48, 2 * TURNS, turns);
         for session in [&mut live, &mut truth] {
             assert!(session.set_lights(&after.lights, after.sky));

@@ -42,7 +42,7 @@ fn run(session: &mut Session, count: usize) {
 /// With a graph whose volume can be moved under the picture.
 fn moved(mut e: Experiment) -> Experiment {
     e.graph = match e.graph.as_str() {
-        "vct.ron" => common::graph_with(&[("volume_offset", "")]),
+        "rays.ron" => common::graph_with(&[("volume_offset", "")]),
         "temporal.ron" => common::graph_with(&[("volume_offset", ""), ("temporal_cut", "")]),
         other => other.into(),
     };
@@ -320,7 +320,7 @@ fn scrolling_sees_every_change() {
     // The first settings, then the second, over the base; frames of the second.
     let cases: [(&str, &Settings, &Settings, usize); 6] = [
         ("capacity", &[], &[("voxel_capacity", "1400000")], 1),
-        ("reflectance", &[], &[("reflectance", "base")], 1),
+        ("reflection", &[], &[("shading_model", "cook_torrance")], 1),
         ("slope", &[("warp", "spline")], &[("warp", "spline"), ("warp_alpha", "0.6")], 1),
         ("warped box", &[("warp", "spline")], &[("warp", "spline"), ("volume_offset", "(-0.5, 0, -0.5)")], 1),
         ("far", &[], &[("volume_offset", "(-0.5, 0, -0.5)")], 1),
@@ -368,7 +368,7 @@ fn a_snapped_volume_stands_still() {
     let jump = |settings: &[(&str, &str)], from: f64| {
         // Frames until what voxels reflect to each other has settled.
         let settle = if settings.contains(&NO_BOUNCES) { 0 } else { 320 };
-        let set = [settings, &[("voxel_dim", "48"), ("gather_frames", "1"), ("pixel_cones", "2"), QUICK]].concat();
+        let set = [settings, &[("voxel_dim", "48"), ("gather_frames", "1"), ("pixel_rays", "2"), QUICK]].concat();
         let e = inside(experiment("cornell", (48, 36), &set));
         let mut session = prepare(&lab, &e, &["radiance"]);
         offset(&lab, &mut session, &e, [from, 0.0, 0.0]);

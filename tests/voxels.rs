@@ -343,7 +343,7 @@ fn the_command_tells_every_mode() {
     let folder = tempfile::tempdir().unwrap();
     let (json, cubes) = (folder.path().join("voxels.json"), folder.path().join("cubes"));
     let mut command = conelab(root());
-    command.args(["voxels", "configs/default.ron", "--scene", "triangles", "--set", "voxel_dim=32", "--size", "64x48"]);
+    command.args(["voxels", "configs/rays.ron", "--scene", "triangles", "--set", "voxel_dim=32", "--size", "64x48"]);
     command.args(["--all", "--json"]).arg(&json).arg("-o").arg(&cubes);
     let out = succeeds(&mut command);
     println!("{out}");
@@ -381,6 +381,6 @@ fn what_cannot_be_compared_is_told() {
         .unwrap();
     let frusta = run(warps.to_str().unwrap(), &["--set", "voxel_dim=32", "--set", "fallback=false"]);
     assert!(frusta.contains("the cells are curved, no boxes"), "{frusta}");
-    let nothing = run("configs/default.ron", &["--set", "voxelizer=points"]);
+    let nothing = run("configs/rays.ron", &["--set", "voxelizer=points"]);
     assert!(nothing.contains("raster") && nothing.contains("points"), "{nothing}");
 }

@@ -3,9 +3,9 @@
 mod common;
 
 use common::closed_meshes::{placed, torus};
-use common::{assert_clean, experiment, floats, lab, prepare, root, scene};
+use common::{assert_clean, floats, lab, prepare, root, scene};
 use conelab::diagnostics::{At, Loc};
-use conelab::experiment::PlacedCamera;
+use conelab::experiment::{Experiment, PlacedCamera};
 use conelab::graph::table::{Cell, decode};
 use conelab::lab::{Lab, Session};
 use conelab::measure::oracle::{Score, Surfaces, compare, exact, read, triangles_of};
@@ -13,6 +13,12 @@ use conelab::scene::{Material, Scene};
 use glam::{DMat3, DVec3, Quat, Vec3};
 use std::sync::Arc;
 use tempfile::TempDir;
+
+/// An experiment of the graph that measures warps.
+fn experiment(scene: &str, size: (u32, u32), settings: &[(&str, &str)]) -> Experiment {
+    let graph = common::graph_with(&[settings, &[("volume_offset", "")]].concat());
+    Experiment { graph, ..common::experiment(scene, size, settings) }
+}
 
 /// What is known of a warp besides its shader.
 enum Shape {
@@ -470,9 +476,7 @@ fn cones_go_by_the_cells_around_them() {
         ("warp", "spline"),
         ("warp_alpha", "0.25"),
         // Levels alone, by the cone alone, and cones so thin that they stay fine for long.
-        ("trace", "cones"),
         ("near_cells", "0"),
-        ("lod_clearance", "false"),
         ("diffuse_aperture", "4.0"),
         ("probe", "(32.5, 44.5)"),
     ];
@@ -549,7 +553,7 @@ fn curved_cells_that_end_before_they_begin_are_refused() {
         let settings = [("warp", warp), ("warp_near", "5"), ("warp_far", "5"), ("voxel_dim", "16")];
         let experiment = experiment("cornell", (16, 16), &settings);
         let error = lab.prepare(&experiment, scene("cornell"), |_| Ok(Vec::new())).err().map(|e| e.to_string());
-        let told = error.as_deref().is_some_and(|e| e.contains("passes/warps.ron:") && e.contains("above warp_near"));
+        let told = error.as_deref().is_some_and(|e| e.contains("passes/parts/warp.ron:") && e.contains("above warp_near"));
         assert_eq!(told, refused, "{warp}: {error:?}");
         assert!(refused || error.is_none(), "{warp}: {error:?}");
     }

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use window_driver::{CONTROL, F1, PATIENCE, SHIFT, WINDOW, WindowDriver, centre, with};
 
 /// Small enough for a software device to draw several a second.
-const SMALL: &str = r#"(graph: "vct.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "trace": interleaved, "gather_frames": 1, "pixel_cones": 2 })"#;
+const SMALL: &str = r#"(graph: "rays.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "pixel_rays": 2 })"#;
 
 /// The test that measures how fast the program is runs without the others, which share the cores.
 static ALONE: RwLock<()> = RwLock::new(());

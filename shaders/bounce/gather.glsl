@@ -23,7 +23,7 @@ EmitterPlace bestPlace(vec3 p, vec3 n, uint number, vec4 shift, float drawn, out
         EmitterPlace place = drawEmitter(p, evenPoint4(number * uint(CANDIDATES) + k, shift));
         float cosine = dot(n, place.direction) / PI, found = drawn * place.by_area * place.distance * place.distance;
         if (cosine <= 0.0 || place.cosine == 0.0) continue;
-        vec3 brings = place.radiance * place.cosine * cosine / (found + float(params.bounce_cones) * cosine);
+        vec3 brings = place.radiance * place.cosine * cosine / (found + float(params.bounce_directions) * cosine);
         float weight = luminance(brings);
         sum += weight;
         float chance = weight / sum;
@@ -45,7 +45,7 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
     ConeOrigin o = coneOrigin(p, n, n);
     mat3 frame = frameOf(n);
     vec3 sum = vec3(0.0);
-    int rays = params.bounce_cones, drawn = BOUNCE_DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? params.bounce_emitter_rays : 0;
+    int rays = params.bounce_directions, drawn = BOUNCE_DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? params.bounce_emitter_rays : 0;
     float candidates = float(drawn * CANDIDATES), own = lamp && drawn > 0 ? OWN_LAMP * 2.0 * o.reach : 0.0;
     for (int i = first; i < rays + drawn; i += of) {
         RayUse use = MEETS_ALL;

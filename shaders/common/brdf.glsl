@@ -35,11 +35,10 @@ vec3 fresnel(Surface s, float cosine) {
     return s.f0 + (s.f90 - s.f0) * pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0);
 }
 
-// Trowbridge-Reitz. The thesis writes alpha = roughness; Burley and Unreal Engine 4 alpha = roughness^2.
-float ggxAlpha(float roughness) {
-    return params.ggx_alpha == GGX_ALPHA_SQUARED ? roughness * roughness : roughness;
-}
+// Width of the lobe; the shading model says it.
+float ggxAlpha(float roughness);
 
+// Trowbridge-Reitz.
 float distribution(float n_h, float roughness) {
     float alpha = ggxAlpha(roughness);
     float a2 = alpha * alpha;

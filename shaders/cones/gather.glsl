@@ -33,6 +33,6 @@ vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
 // Diffuse and specular cones are traced in two places: the compiler makes two loops of them, each the faster for it.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     Gathered sum = Gathered(gatherDiffuse(o, s.normal), vec3(0.0));
-    if (params.specular_cone) sum.specular = gatherSpecular(o, s, face, v);
+    if (params.specular_steps > 0) sum.specular = gatherSpecular(o, s, face, v);
     return sum;
 }

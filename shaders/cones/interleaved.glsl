@@ -25,10 +25,8 @@ vec2 blockPoint(int i) {
     return fract(pixelPoint(i) + evenPoint(blockNumber()));
 }
 
-// A cone has the share of the hemisphere that it has among those of 4x4 pixels, unless diffuse_aperture says otherwise: narrower
-// ones would take more steps and tell no more.
+// A cone has the share of the hemisphere that it has among those of 4x4 pixels: narrower ones would take more steps and tell no more.
 float tanOfShare(int cones) {
-    if (params.diffuse_aperture > 0.0) return tan(radians(0.5 * params.diffuse_aperture));
     float cosine = 1.0 - 1.0 / float(16 * cones);
     return sqrt(1.0 - cosine * cosine) / cosine;
 }
@@ -94,8 +92,8 @@ EmitterPlace bestPlace(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, f
 // all: what traces them is large, and in the program once.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     mat3 frame = frameOf(s.normal);
-    float tan_half = tanOfShare(params.pixel_cones), tan_lobe = 0.5 * ggxAlpha(s.roughness);
-    int rays = gatherShare.rays, lobe = params.specular_cone ? specularRays(s, v) : 0;
+    float tan_half = tanOfShare(params.pixel_rays), tan_lobe = 0.5 * ggxAlpha(s.roughness);
+    int rays = gatherShare.rays, lobe = specularRays(s, v);
     int drawn = DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
     float candidates = float(drawn * CANDIDATES);
     // What each of them stands for.

@@ -19,7 +19,7 @@ vec3 toneMap(vec3 c) {
 }
 
 vec3 encode(vec3 c) {
-    if (params.encoding == ENCODING_GAMMA22) return pow(c, vec3(1.0 / 2.2)); // thesis, Algorithm 3
+    if (params.gamma22 != 0) return pow(c, vec3(1.0 / 2.2)); // thesis, Algorithm 3
     return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
 }
 

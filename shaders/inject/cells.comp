@@ -17,7 +17,7 @@ uniform writeonly image3D injected;
 float opacityTo(Side s, vec3 d) {
     vec3 a = abs(s.normal);
     float steepest = max(a.x, max(a.y, a.z));
-    return steepest > 0.0 ? mix(1.0, abs(dot(s.normal, d)) / steepest, params.face_opacity * s.agreement) : 1.0;
+    return steepest > 0.0 ? mix(1.0, abs(dot(s.normal, d)) / steepest, s.agreement) : 1.0;
 }
 
 void main() {

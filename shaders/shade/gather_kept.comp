@@ -54,21 +54,18 @@ bool ages(GBufferSurface seen, uint number, bool of_few) {
     // By then each pixel has gathered what has settled.
     bool settled = camera.still_frames > uint(SETTLED_ROUNDS * params.bounce_frames + params.turns);
     if (of_few || !settled || camera.view_projection == camera.previous_view_projection) return true;
-    uint rarer = uint(params.gather_rest);
-    if (params.specular_cone) {
-        float turned = distance(seen.to_viewer, normalize(camera.previous_position - seen.position)) * float(params.turns);
-        rarer = uint(clamp(ggxAlpha(seen.surface.roughness) / max(turned, 1e-6), 1.0, float(rarer)));
-    }
+    float turned = distance(seen.to_viewer, normalize(camera.previous_position - seen.position)) * float(params.turns);
+    uint rarer = uint(clamp(ggxAlpha(seen.surface.roughness) / max(turned, 1e-6), 1.0, float(params.gather_rest)));
     return (camera.frame + number) % rarer == 0;
 }
 
 // Keeps what there is, and says how the pixel must gather, if it must.
 bool gathers(ivec2 pixel, uint number, out uint how) {
     GBufferSurface seen = gbufferAt(pixel);
-    Own own = Own(isOfLattice(number), params.specular_cone);
+    Own own = Own(isOfLattice(number), true);
     if (seen.any && !own.diffuse) {
         own.diffuse = isAlone(pixel, seen);
-        own.specular = params.specular_cone && (own.diffuse || blurs(seen) < 1.0);
+        own.specular = own.diffuse || blurs(seen) < 1.0;
     }
     how = GATHER_ALL;
     if (!seen.any || !own.diffuse && !own.specular) {
@@ -93,7 +90,7 @@ bool gathers(ivec2 pixel, uint number, out uint how) {
     if (!own.diffuse) imageStore(gatheredDiffuse, pixel, vec4(0.0, 0.0, 0.0, NOT_GATHERED));
     else if (takes) imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
     imageStore(gatheredSpecular, pixel, vec4(takes ? texelFetch(lastSpecular, at, 0).rgb : vec3(0.0), age));
-    return !takes || params.specular_cone && seen.surface.roughness < KEPT_ROUGHNESS;
+    return !takes || seen.surface.roughness < KEPT_ROUGHNESS;
 }
 
 // Sums up how many are of the kinds before each.

@@ -3,7 +3,8 @@
 #define VOXEL_RASTER_GLSL
 #include "common/volume.glsl"
 
-const bool EVEN = !WARPED || CURVED; // but for warp functions, whose cells are drawn before warping
+// Triangles are drawn before a warp function bends the cells.
+#define EVEN (!WARPED || CURVED)
 
 const uint SLIVER = 4u; // flag beside the axis: drawn as its bounding rectangle
 

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// An experiment, and what is different this time.
 #[derive(Debug, Args)]
 pub struct ExperimentArgs {
-    /// Experiment file, for example configs/default.ron.
+    /// Experiment file, for example configs/rays.ron.
     experiment: PathBuf,
     #[command(flatten)]
     changes: Changes,

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 /// Arguments of `graph`.
 #[derive(Debug, Args)]
 pub struct GraphArgs {
-    /// Graph file (passes/vct.ron) or experiment (configs/default.ron).
+    /// Graph file (passes/rays.ron) or experiment (configs/rays.ron).
     #[arg(value_parser = super::spec())]
     file: String,
     /// The scene whose counts decide repetitions.

@@ -14,7 +14,7 @@ use std::time::Duration;
 /// Arguments of `screenshot`.
 #[derive(Debug, Args)]
 pub struct ScreenshotArgs {
-    /// Experiment file; configs/default.ron when absent.
+    /// Experiment file; configs/cones.ron when absent.
     experiment: Option<PathBuf>,
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long)]
@@ -95,7 +95,7 @@ pub fn run(args: &ScreenshotArgs) -> Result<(), LabError> {
         }),
         patience: Duration::from_secs(args.patience),
     };
-    let experiment = args.experiment.as_deref().map_or_else(|| home.root.join("configs/default.ron"), super::found);
+    let experiment = args.experiment.as_deref().map_or_else(|| home.root.join("configs/cones.ron"), super::found);
     let size = args.size.as_deref().map(parse_size).transpose()?;
     let (scene, events) = (args.scene.clone(), args.events.clone());
     let options = Options { home, gpu: gpu.clone(), experiment, scene, size, redo: Redo::All, events };

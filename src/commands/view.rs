@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Arguments of `view`.
 #[derive(Debug, Parser)]
 pub struct ViewArgs {
-    /// Experiment file; configs/default.ron when absent.
+    /// Experiment file; configs/cones.ron when absent.
     experiment: Option<PathBuf>,
     /// Another scene: a built-in name, a scene RON, or a model file.
     #[arg(long)]
@@ -45,7 +45,7 @@ pub fn run(args: &ViewArgs) -> Result<(), LabError> {
         gpu: GpuOptions { device: args.window_device.clone().or(gpu.device.clone()), ..gpu.clone() },
         size: super::adapt::parse_size(&args.window)?,
     };
-    let experiment = args.experiment.as_deref().map_or_else(|| home.root.join("configs/default.ron"), super::found);
+    let experiment = args.experiment.as_deref().map_or_else(|| home.root.join("configs/cones.ron"), super::found);
     let (scene, events) = (args.scene.clone(), args.events.clone());
     let options = Options { home, gpu, experiment, scene, size, redo: args.redo, events };
     window::run(options, window)

@@ -444,7 +444,7 @@ mod tests {
     fn instructions_do_what_the_qualifiers_of_every_shader_say() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let folders = Folders { passes: root.join("passes"), shaders: root.join("shaders") };
-        let graph = load(&folders.passes.join("vct.ron"), &folders).unwrap();
+        let graph = load(&folders.passes.join("rays.ron"), &folders).unwrap();
         let generated = crate::graph::link::generated(&graph, &graph.params);
         let mut files: Vec<&String> = graph.passes.iter().flat_map(|p| &p.value.shaders.0).map(|s| &s.value).collect();
         files.sort();

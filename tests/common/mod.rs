@@ -93,14 +93,16 @@ pub fn graph_with(params: &[(&str, &str)]) -> String {
         let graph = conelab::graph::load::load(&home.graph_path(name), &home.folders()).unwrap();
         params.iter().all(|(name, _)| graph.params.index(name).is_some())
     };
-    let both = root().join("tests/common/warps_temporal.ron").to_string_lossy().into_owned();
-    let graphs = ["vct.ron", "warps.ron", "temporal.ron", "thesis.ron", "reference.ron", &both].map(String::from);
+    let own = |name: &str| root().join("tests/common").join(name).to_string_lossy().into_owned();
+    let (base, both) = (own("base_color.ron"), own("warps_temporal.ron"));
+    let graphs =
+        ["rays.ron", "cones.ron", "warps.ron", "temporal.ron", "thesis.ron", "reference.ron", &base, &both].map(String::from);
     graphs.into_iter().find(has_all).unwrap_or_else(|| panic!("no graph has all of {params:?}"))
 }
 
 /// An experiment of the repository's method: scene, size and what differs from the defaults.
 pub fn experiment(scene: &str, size: (u32, u32), params: &[(&str, &str)]) -> Experiment {
-    let mut experiment = Experiment::read(&root().join("configs/default.ron")).unwrap();
+    let mut experiment = Experiment::read(&root().join("configs/rays.ron")).unwrap();
     experiment.graph = graph_with(params);
     experiment.scene = scene.into();
     experiment.size = size;

@@ -73,7 +73,7 @@ const FILES: [(Kind, &str, &str); 51] = [
     (Kind::Scene, "sky.ron", "sky.ron"),
     (Kind::Scene, "sky.ron", "sky.hdr"),
     (Kind::Scene, "sky2.ron", "sky.exr"),
-    (Kind::Graph, "vct.ron", "vct.ron"),
+    (Kind::Graph, "rays.ron", "rays.ron"),
     (Kind::Graph, "thesis.ron", "thesis.ron"),
     (Kind::Graph, "reference.ron", "reference.ron"),
     (Kind::Graph, "warps.ron", "warps.ron"),
@@ -142,11 +142,11 @@ pub fn write(folder: &Path) {
         b"(models: [(builtin: \"cornell\")], environment: (file: \"sky.exr\", rotation: 30, intensity: 2))",
     );
     for (name, from) in [
-        ("vct.ron", "passes/vct.ron"),
+        ("rays.ron", "passes/rays.ron"),
         ("thesis.ron", "passes/thesis.ron"),
         ("reference.ron", "passes/reference.ron"),
         ("warps.ron", "passes/warps.ron"),
-        ("default.ron", "configs/default.ron"),
+        ("default.ron", "configs/rays.ron"),
         ("cones.ron", "configs/sweeps/cones.ron"),
         ("motion.ron", "configs/stability/motion.ron"),
         ("atrium.ron", "configs/paths/atrium.ron"),

@@ -2,7 +2,7 @@
 #include "modules/lookup.glsl"
 #include "cones/rays.glsl"
 
-const bool BOUNCE_DRAWS_EMITTERS = !CURVED;
+#define BOUNCE_DRAWS_EMITTERS (!WARPED && !CURVED) // others know no emitters
 
 vec4 traceBounce(ConeOrigin o, vec3 d, RayUse use) {
     return traceVoxels(o, d, use);

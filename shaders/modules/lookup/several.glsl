@@ -36,7 +36,7 @@ ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
         reach = mix(cellReach(volume.maps[cascade + 1], p, geometric), reach, weight);
     }
     float height = 2.0 * params.bias * reach;
-    return ConeOrigin(p + height * geometric, geometric, height, reach, cascade, p + 2.0 * params.near_bias * reach * geometric, weight);
+    return ConeOrigin(p + height * geometric, geometric, height, reach, cascade, p + 2.0 * params.ray_bias * reach * geometric, weight);
 }
 
 Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {

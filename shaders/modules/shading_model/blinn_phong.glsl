@@ -1,5 +1,10 @@
 // Blinn and Phong's lobe, its exponent matched to GGX's width, normalised to conserve energy.
 
+// Width of the GGX lobe that this one matches.
+float ggxAlpha(float roughness) {
+    return roughness * roughness;
+}
+
 // As the thesis has it: the base is not dimmed by the lobe above it, and light that is scattered twice is lost.
 Surface layered(Surface s, vec3 v) {
     return s;

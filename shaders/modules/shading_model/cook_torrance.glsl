@@ -1,5 +1,10 @@
 // GGX microfacets (thesis, Section 4.5.1; Karis 2013).
 
+// The thesis takes the roughness itself (Equation for D, Section 4.5.1); Burley 2012 squares it.
+float ggxAlpha(float roughness) {
+    return roughness;
+}
+
 // As the thesis has it: the base is not dimmed by the lobe above it, and light that is scattered twice is lost.
 Surface layered(Surface s, vec3 v) {
     return s;
@@ -20,10 +25,9 @@ vec3 lobeWeight(Surface s, mat3 frame, vec3 v, vec3 l, vec3 half_way, float g1) 
     return fresnel(s, dot(v, half_way)) * visibility(l.z, v.z, s.roughness) * 4.0 * l.z * v.z / g1;
 }
 
-// Mean over all directions of light: the base, and f0 a + f90 b, fitted for alpha = roughness^2 over roughness within
-// 0.005: 1.7 % (rough) to 5.4 % (smooth) for f0 = 0.04.
+// Mean over all directions of light: the base, and f0 a + f90 b, fitted to the integral over roughness within 0.003.
 vec3 sphericalAlbedo(vec3 base, vec3 f0, float f90, float roughness) {
     float r = clamp(roughness, 0.0, 1.0);
-    float a = 0.811 + r * (-0.027 + r * (-0.622 + r * 0.209)), b = 0.0235 + r * (-0.0294 + r * (-0.0061 + r * 0.0143));
+    float a = 0.8287 + r * (-0.3363 + r * (-0.3395 + r * 0.2235)), b = 0.023 + r * (-0.062 + r * (0.0689 - r * 0.0282));
     return min(base + f0 * a + b * f90, 1.0);
 }

@@ -5,11 +5,22 @@
 // The price is reciprocity: the weight depends on the viewer and not on the light.
 #include "common/lobe_albedo.glsl"
 
+#ifndef SINGLE_SCATTERING
+const bool MULTIPLE_SCATTERING = true;
+#else
+const bool MULTIPLE_SCATTERING = false;
+#endif
+
+// Width of the lobe (Burley 2012).
+float ggxAlpha(float roughness) {
+    return roughness * roughness;
+}
+
 // Adds light that is scattered more than once between the facets (Turquin 2019, "Practical multiple scattering
 // compensation for microfacet models", Equation 16), then puts the lobe over the base.
 Surface layered(Surface s, vec3 v) {
     vec2 albedo = lobeAlbedo(dot(s.normal, v), s.roughness);
-    if (bool(params.multiple_scattering)) s.multiple = 1.0 + s.f0 * (1.0 / (albedo.x + albedo.y) - 1.0);
+    if (MULTIPLE_SCATTERING) s.multiple = 1.0 + s.f0 * (1.0 / (albedo.x + albedo.y) - 1.0);
     s.albedo *= max(1.0 - lobeReflectance(s, v), 0.0);
     return s;
 }
@@ -45,6 +56,6 @@ vec3 sphericalAlbedo(vec3 base, vec3 f0, float f90, float roughness) {
     float a = 0.9535 + r * (-0.0685 + r * (0.7963 + r * (-2.8194 + r * 1.5467)));
     float b = 0.0462 + r * (0.0513 + r * (-0.4493 + r * (0.596 - r * 0.2419)));
     vec3 lobe = f0 * a + f90 * b;
-    if (bool(params.multiple_scattering)) lobe += f0 * f0 * (1.0 - a - b);
+    if (MULTIPLE_SCATTERING) lobe += f0 * f0 * (1.0 - a - b);
     return min(base * (1.0 - lobe) + lobe, 1.0);
 }

@@ -2,7 +2,7 @@
 #include "modules/lookup.glsl"
 #include "cones/rays.glsl"
 
-const bool DRAWS_EMITTERS = !CURVED;
+#define DRAWS_EMITTERS (!WARPED && !CURVED) // others know no emitters
 
 vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     return traceVoxels(o, d, use);

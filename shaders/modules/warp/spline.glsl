@@ -1,5 +1,6 @@
 // Denser cells in the middle: a cubic whose slope is warp_alpha at the borders (thesis, Section 4.6.1).
-const bool WARPED = true;
+// At 1 cells are uniform.
+#define WARPED (params.warp_alpha < 1.0)
 
 vec3 warp(vec3 x) {
     float a = params.warp_alpha;
@@ -13,6 +14,7 @@ vec3 warpSlope(vec3 x) {
 
 // Newton on the convex lower half from its upper end: monotonic, no overshoot.
 vec3 unwarp(vec3 y) {
+    if (!WARPED) return y;
     vec3 folded = 0.5 - abs(y - 0.5);
     vec3 x = vec3(0.5);
     for (int i = 0; i < 10; i++) x -= (warp(x) - folded) / warpSlope(x);

@@ -1,0 +1,10 @@
+// Volumes follow the camera, and curved cells look where it looks.
+#include "volume/aim.glsl"
+
+vec3 followedPosition() {
+    return camera.position;
+}
+
+void aimCurved(inout VolumeMap map) {
+    aimAlong(map, camera.direction);
+}
