@@ -91,7 +91,7 @@ fn a_search_that_is_killed_goes_on_and_ends_at_the_cheapest_of_what_it_tried() {
         let fixed = "fit configs/default.ron --scene cornell --size 64x48 --spp 16 --frames 3 --warmup 1 -o found.ron";
         let set = "--set shadow_dim=256 --set bounces=one --set voxelizer=raster --set conservative=msaa";
         // No device has 3 samples.
-        let vary = "--vary voxel_dim=16,24,32,48 --vary ray_pixels=all,quarter --vary voxel_samples=4,3";
+        let vary = "--vary voxel_dim=16,24,32,48 --vary gather_frames=1,8 --vary voxel_samples=4,3";
         command.args(format!("{fixed} {set} {vary} {limit}").split(' ')).current_dir(home.path());
         command
     };

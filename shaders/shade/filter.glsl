@@ -43,17 +43,4 @@ float blurs(GBufferSurface seen) {
     return smoothstep(0.05, 0.25, seen.surface.roughness);
 }
 
-// The nearest pixels of the lattice are this one, and those one step to the right, one down, and both.
-ivec2 latticeBefore(ivec2 pixel) {
-    return pixel & -params.ray_step;
-}
-
-// Whether they say nothing of the surface that a pixel sees.
-bool isAlone(ivec2 pixel, GBufferSurface seen) {
-    Likeness like = likenessOf(seen);
-    float weights = 0.0;
-    for (int i = 0; i < 4; i++) weights += likeness(latticeBefore(pixel) + params.ray_step * ivec2(i & 1, i >> 1), like);
-    return weights < 0.25;
-}
-
 #endif

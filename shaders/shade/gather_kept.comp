@@ -5,7 +5,6 @@
 #include "params.glsl"
 #include "shade/turns.glsl"
 #include "shade/kept.glsl"
-#include "shade/filter.glsl"
 #include "common/ggx.glsl"
 
 // Of a group: what it lists it sorts, so that rays of one kind which go the same ways are traced together.
@@ -27,19 +26,6 @@ const uint KINDS = 256; // a way to gather, and a number in the block
 shared uint listed[EACH * THREADS]; // kind, and above it which of that kind
 shared uint starts[KINDS];
 shared uint first;
-
-// What a pixel gathers for itself.
-struct Own {
-    bool diffuse;
-    bool specular;
-};
-
-// Where there is something to keep: in this pixel's own place, or in the lattice around.
-bool findKept(ivec2 pixel, GBufferSurface seen, bool of_lattice, Own own, out ivec2 at) {
-    if (!of_lattice && seenBefore(pixel, seen, 1, at) && texelFetch(lastSpecular, at, 0).a >= 0.0
-        && (!own.diffuse || texelFetch(lastDiffuse, at, 0).a >= 0.0)) return true;
-    return seenBefore(pixel, seen, params.ray_step, at);
-}
 
 // What has gathered with few rays alone is not as old as what ages by whole frames, by so much.
 const float OF_FEW = 0.5;
@@ -65,19 +51,14 @@ bool ages(GBufferSurface seen, uint number, bool of_few) {
 // Keeps what there is, and says how the pixel must gather, if it must.
 bool gathers(ivec2 pixel, uint number, out uint how) {
     GBufferSurface seen = gbufferAt(pixel);
-    Own own = Own(isOfLattice(number), params.specular_cone);
-    if (seen.any && !own.diffuse) {
-        own.diffuse = isAlone(pixel, seen);
-        own.specular = params.specular_cone && (own.diffuse || blurs(seen) < 1.0);
-    }
     how = GATHER_ALL;
-    if (!seen.any || !own.diffuse && !own.specular) {
-        imageStore(gatheredDiffuse, pixel, vec4(0.0, 0.0, 0.0, seen.any ? NOT_GATHERED : 1.0));
-        imageStore(gatheredSpecular, pixel, vec4(0.0, 0.0, 0.0, seen.any ? NOT_GATHERED : 0.0));
+    if (!seen.any) {
+        imageStore(gatheredDiffuse, pixel, vec4(0.0, 0.0, 0.0, 1.0));
+        imageStore(gatheredSpecular, pixel, vec4(0.0));
         return false;
     }
     ivec2 at;
-    bool kept = findKept(pixel, seen, isOfLattice(number), own, at);
+    bool kept = seenBefore(seen, at);
     // Whichever pixels a surface moves through, it gathers once in all turns: no light is older, and no ray is wasted.
     float turns = float(params.turns), in_turn = ageInTurn(number), age = in_turn + OF_FEW;
     if (kept) {
@@ -88,10 +69,8 @@ bool gathers(ivec2 pixel, uint number, out uint how) {
     // Where the picture grows, one pixel's heirs would all be due at once: those a little behind their own turn go back to it.
     if (due) age = in_turn <= 0.25 * turns ? in_turn : 0.0;
     if (!due) how = kept ? GATHER_MIRRORED : GATHER_FEW;
-    if (!own.diffuse && (due || !kept)) how = GATHER_LOBE;
     bool takes = kept && !due;
-    if (!own.diffuse) imageStore(gatheredDiffuse, pixel, vec4(0.0, 0.0, 0.0, NOT_GATHERED));
-    else if (takes) imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
+    if (takes) imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
     imageStore(gatheredSpecular, pixel, vec4(takes ? texelFetch(lastSpecular, at, 0).rgb : vec3(0.0), age));
     return !takes || params.specular_cone && seen.surface.roughness < KEPT_ROUGHNESS;
 }

@@ -10,14 +10,10 @@ uniform sampler2D lastDistance;
 const uint GATHER_FEW = 0; // nothing is known of it: FEW_RAYS, until its turn comes
 const uint GATHER_ALL = 1; // as in its turn, which it has missed
 const uint GATHER_MIRRORED = 2; // its reflection alone, not in its turn
-const uint GATHER_LOBE = 3; // its reflection alone, all of it
 const int FEW_RAYS = 4;
 
-// Of what a pixel has not gathered for itself, as opacity or age.
-const float NOT_GATHERED = -1.0;
-
-// The pixel of last frame's picture that saw a surface, of those that lie so many pixels apart.
-bool seenBefore(ivec2 pixel, GBufferSurface seen, int apart, out ivec2 at) {
+// The pixel of last frame's picture that saw a surface.
+bool seenBefore(GBufferSurface seen, out ivec2 at) {
     vec4 clip = camera.previous_view_projection * vec4(seen.position, 1.0);
     if (clip.w <= 0.0) return false;
     // To the nearest pixel, as the point lies between them and the frame's share decides: what is kept neither blurs nor sticks to the
@@ -25,7 +21,7 @@ bool seenBefore(ivec2 pixel, GBufferSurface seen, int apart, out ivec2 at) {
     // sequence, Roberts 2018), so that what is kept never strays by more than a pixel or so.
     vec2 chance = fract(float(camera.frame % 4096u) * vec2(0.7548776662, 0.5698402910)) - 0.5;
     vec2 middle = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) - 0.5;
-    at = apart * ivec2(floor(middle / float(apart) + 0.5 + 0.98 * chance));
+    at = ivec2(floor(middle + 0.5 + 0.98 * chance));
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(camera.size)))) return false;
     // As far away as it was then, but for what a surface seen at a slant goes on in a pixel or two.
     float range = distance(seen.position, camera.previous_position), before = texelFetch(lastDistance, at, 0).r;
