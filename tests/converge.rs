@@ -26,7 +26,7 @@ const BOUND: f64 = 0.005;
 /// Parameters that change how light is gathered, each with one or two values.
 const OPTIONS: [(&str, &[&str]); 9] = [
     ("trace", &["rays", "interleaved", "cones", "cone_rays", "lobe_rays"]),
-    ("bounces", &["two", "one"]),
+    ("bounces", &["one"]),
     ("bounce_trace", &["rays", "cones"]),
     ("bounce_frames", &["1", "5", "64"]),
     ("bounce_emitter_rays", &["0"]),
