@@ -163,7 +163,7 @@ fn pictures_are_the_same_whatever_is_edited() {
     let home = common::home();
     // So that what gathers rests now and then between two edits.
     settles(home.path(), "bounces", "32 * bounce_frames", "5");
-    settles(home.path(), "shade", "turns + 1", "3");
+    settles(home.path(), "shade", "phases + 1", "3");
     let lab = lab(home.path());
     let mut seed = 1;
     for path in [BY_THREADS, BY_RASTER] {

@@ -2,7 +2,7 @@
 // different pixels.
 #include "params.glsl"
 #define READS_AGE
-#include "shade/kept.glsl"
+#include "shade/list.glsl"
 #include "shade/gathered.glsl"
 #include "shade/demodulate.glsl"
 
@@ -22,8 +22,8 @@ vec2 pixelCentre() {
 
 // All threads of a group come here.
 void gatherListed(uint word, bool gathers) {
-    uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x, how = word >> 30;
-    gathering = ivec2(word & 0x7fffu, word >> 15 & 0x7fffu);
+    uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x, how = queuedMode(word);
+    gathering = queuedPixel(word);
     // Over the hemisphere: none where what it has gathered of that stays.
     int rays = how == GATHER_ALL ? params.pixel_cones : how == GATHER_FEW ? min(params.pixel_cones, FEW_RAYS) : 0;
     int emitters = how == GATHER_MIRRORED ? 0 : how == GATHER_FEW ? min(params.emitter_rays, 1) : params.emitter_rays;
