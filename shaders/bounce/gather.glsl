@@ -51,7 +51,7 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
         RayUse use = MEETS_ALL;
         vec3 d, light;
         if (i < rays) {
-            d = frame * cosineSample(evenPoint(uint(i) * 64u + pattern));
+            d = frame * cosineSample(r2(uint(i) * 64u + pattern));
             if (drawn > 0) use = RayUse(1e30, lamp ? LEAVES_ALL : float(rays) * dot(d, n) / PI, candidates, 1e30);
         } else {
             EmitterPlace place = bestPlace(o.surface, n, uint(i - rays) * 64u + pattern, vec4(0.5), candidates, light);

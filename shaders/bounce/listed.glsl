@@ -17,7 +17,7 @@ layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
 #include "modules/bounce_trace.glsl"
 #include "cones/near.glsl"
 #include "bounce/gather.glsl"
-#include "bounce/list.glsl"
+#include "bounce/queue.glsl"
 #include "bounce/placed.glsl"
 
 const uint BOUNCE_THREADS = 4;
@@ -32,7 +32,7 @@ void main() {
         vec3 light = vec3(0.0);
         uint number = 0;
         if (start + lane < count) {
-            uint i = bounceList.sides[start + lane], slot = i / SIDES, side = i % SIDES;
+            uint i = bounceQueue.items[start + lane], slot = i / SIDES, side = i % SIDES;
             ivec3 cell = cellOfSlot(slot);
             uint axis = uint(axisOfSlot(slot)), base = planeBase(slot);
             Side s = sideOfSlot(slot, side);

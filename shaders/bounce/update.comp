@@ -4,7 +4,8 @@
 // gather again.
 #include "params.glsl"
 #include "bounce/reproject.glsl"
-#include "bounce/list.glsl"
+#define QUEUE_WRITES
+#include "bounce/queue.glsl"
 #include "bounce/placed.glsl"
 
 layout(local_size_x = 128) in;
@@ -43,13 +44,9 @@ void enqueue(bool due, uint i) {
     barrier();
     if (due) place = atomicAdd(queued_here, 1);
     barrier();
-    if (gl_LocalInvocationIndex == 0 && queued_here > 0) {
-        first = atomicAdd(bounceCounter.count, queued_here);
-        uint groups = (first + queued_here + BOUNCE_SIDES - 1) / BOUNCE_SIDES;
-        atomicMax(bounceCounter.groups.x, min(groups, 65535u));
-    }
+    if (gl_LocalInvocationIndex == 0 && queued_here > 0) first = reserve(queued_here);
     barrier();
-    if (due) bounceList.sides[first + place] = i;
+    if (due) bounceQueue.items[first + place] = i;
 }
 
 void main() {

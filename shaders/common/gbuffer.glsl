@@ -4,18 +4,14 @@
 #ifndef GBUFFER_GLSL
 #define GBUFFER_GLSL
 
-// Octahedral map of the unit sphere to [0,1]^2 (Cigolle et al. 2014).
+#include "common/math.glsl"
+
 vec2 packNormal(vec3 n) {
-    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
-    if (n.z < 0.0) p = (1.0 - abs(p.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
-    return p * 0.5 + 0.5;
+    return octahedral(n) * 0.5 + 0.5;
 }
 
 vec3 unpackNormal(vec2 p) {
-    p = p * 2.0 - 1.0;
-    vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(n.xy, vec2(0.0)));
-    return normalize(n);
+    return fromOctahedral(p * 2.0 - 1.0);
 }
 
 // Metallic, and the number of the dielectric that the rest is, in the bits of a 16-bit float. Of number 0 it is metallic itself; of another

@@ -4,6 +4,7 @@
 #ifndef VOXELS_GLSL
 #define VOXELS_GLSL
 
+#include "common/math.glsl"
 #include "modules/sides.glsl"
 
 // Sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10.
@@ -50,24 +51,17 @@ vec3 unpackColor(uint w) {
     return vec3(w & 2047u, w >> 11 & 2047u, w >> 22) / vec3(2047.0, 2047.0, 1023.0);
 }
 
-// Octahedral (Cigolle et al. 2014), twelve bits a coordinate; 0 is no normal.
+// Octahedral, twelve bits a coordinate; 0 is no normal.
 uint packDirection(vec3 n) {
-    float sum = abs(n.x) + abs(n.y) + abs(n.z);
-    if (sum == 0.0) return 0;
-    n /= sum;
-    vec2 fold = (1.0 - abs(n.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(n.xy, vec2(0.0)));
-    vec2 o = n.z >= 0.0 ? n.xy : fold;
-    uvec2 v = uvec2(o * 2047.0 + 2048.5);
+    if (n == vec3(0.0)) return 0;
+    uvec2 v = uvec2(octahedral(n) * 2047.0 + 2048.5);
     return v.x | v.y << 12;
 }
 
 vec3 unpackDirection(uint w) {
     w &= 0xffffffu;
     if (w == 0) return vec3(0.0);
-    vec2 o = (vec2(w & 0xfffu, w >> 12) - 2048.0) / 2047.0;
-    vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
-    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(n.xy, vec2(0.0)));
-    return normalize(n);
+    return fromOctahedral((vec2(w & 0xfffu, w >> 12) - 2048.0) / 2047.0);
 }
 
 // Where in its cell a surface is along the axis that it faces, from the middle, in cells: eight bits above the normal's.

@@ -12,7 +12,7 @@ uint pixelPointNumber(int i) {
 }
 
 vec2 pixelPoint(int i) {
-    return evenPoint(pixelPointNumber(i));
+    return r2(pixelPointNumber(i));
 }
 
 // Other points in each block: what few directions cannot tell becomes noise and not a bias.
@@ -22,7 +22,7 @@ uint blockNumber() {
 }
 
 vec2 blockPoint(int i) {
-    return fract(pixelPoint(i) + evenPoint(blockNumber()));
+    return fract(pixelPoint(i) + r2(blockNumber()));
 }
 
 // A cone has the share of the hemisphere that it has among those of 4x4 pixels, unless diffuse_aperture says otherwise: narrower

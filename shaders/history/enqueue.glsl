@@ -3,12 +3,15 @@
 // directions.
 #ifndef HISTORY_ENQUEUE_GLSL
 #define HISTORY_ENQUEUE_GLSL
-#include "shade/list.glsl"
+#define QUEUE_WRITES
+#include "shade/queue.glsl"
 
 const ivec2 REGION = ivec2(64, 32);
 const uint REGION_PIXELS = REGION.x * REGION.y;
 const uint REGION_THREADS = 256;
-const uint KINDS = 256; // GATHER_ mode and index in 8x8
+const uint KINDS = 256; // GATHER_ mode and index in 8x8: one a thread
+#define SCAN_THREADS KINDS
+#include "common/scan.glsl"
 
 layout(local_size_x = REGION_THREADS) in;
 
@@ -24,20 +27,9 @@ ivec2 regionPixel(uint i) {
 
 // Sums up the counts of the kinds before each, and reserves room in the queue.
 void reserveRegion() {
-    uint kind = gl_LocalInvocationIndex, count = kind_starts[kind];
-    for (uint offset = 1; offset < KINDS; offset *= 2) {
-        uint before = kind >= offset ? kind_starts[kind - offset] : 0;
-        barrier();
-        kind_starts[kind] += before;
-        barrier();
-    }
-    uint sum = kind_starts[kind];
-    barrier();
+    uint kind = gl_LocalInvocationIndex, count = kind_starts[kind], sum = inclusiveSum(count);
     kind_starts[kind] = sum - count;
-    if (kind == KINDS - 1 && sum > 0) {
-        region_start = atomicAdd(gatherCounter.count, sum);
-        atomicMax(gatherCounter.groups.x, min((region_start + sum + 31) / 32, 65535u));
-    }
+    if (kind == KINDS - 1 && sum > 0) region_start = reserve(sum);
 }
 
 void beginRegion() {
@@ -61,7 +53,7 @@ void endRegion() {
         uint word = region_pixels[i], kind = word & 255;
         if (word == NOT_QUEUED) continue;
         uint place = region_start + kind_starts[kind] + (word >> 8);
-        gatherList.pixels[place] = packQueued(uvec2(regionPixel(i)), kind >> 6);
+        gatherQueue.items[place] = packQueued(uvec2(regionPixel(i)), kind >> 6);
     }
 }
 

@@ -2,6 +2,7 @@
 #ifndef HISTORY_REPROJECT_GLSL
 #define HISTORY_REPROJECT_GLSL
 #include "common/gbuffer_read.glsl"
+#include "common/pattern.glsl"
 
 uniform sampler2D lastDiffuse;
 uniform sampler2D lastSpecular; // a: age [frames]
@@ -16,7 +17,7 @@ uniform sampler2D lastDistance;
 bool reproject(GBufferSurface seen, out ivec2 at) {
     vec4 clip = camera.previous_view_projection * vec4(seen.position, 1.0);
     if (clip.w <= 0.0) return false;
-    vec2 offset = fract(float(camera.frame % 4096u) * vec2(0.7548776662, 0.5698402910)) - 0.5;
+    vec2 offset = r2(camera.frame % 4096u, vec2(0.0)) - 0.5;
     vec2 middle = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) - 0.5;
     at = ivec2(floor(middle + 0.5 + 0.98 * offset));
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(camera.size)))) return false;

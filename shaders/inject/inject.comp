@@ -3,6 +3,7 @@
 // Radiance leaving each side of a voxel: albedo / pi * E * max(0, n.l) * visibility, summed over all lights, plus albedo times the
 // mean radiance that the side has gathered, plus emission. Runs over the voxel list, so each surface is lit once.
 #include "params.glsl"
+#include "common/math.glsl"
 #include "common/volume.glsl"
 #include "common/sides.glsl"
 #include "common/planes.glsl"
@@ -13,7 +14,6 @@
 
 layout(local_size_x = 128) in;
 
-const float PI = 3.14159265359;
 // Surfaces that lie nearer to each other are one [cells].
 const float LAYER = 0.12;
 

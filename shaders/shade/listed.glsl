@@ -2,11 +2,10 @@
 // different pixels.
 #include "params.glsl"
 #define READS_AGE
-#include "shade/list.glsl"
+#include "shade/queue.glsl"
 #include "shade/gathered.glsl"
 #include "shade/demodulate.glsl"
 
-const uint GATHER_PIXELS = 32; // of a group
 const uint GATHER_THREADS = 4; // of a pixel
 
 layout(local_size_x = GATHER_PIXELS, local_size_y = GATHER_THREADS) in;
@@ -51,7 +50,7 @@ void main() {
     uint count = gatherCounter.count;
     for (uint start = gl_WorkGroupID.x * GATHER_PIXELS; start < count; start += gl_NumWorkGroups.x * GATHER_PIXELS) {
         uint i = start + gl_LocalInvocationID.x;
-        gatherListed(i < count ? gatherList.pixels[i] : 0, i < count);
+        gatherListed(i < count ? gatherQueue.items[i] : 0, i < count);
         barrier();
     }
 }

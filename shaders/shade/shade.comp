@@ -24,10 +24,6 @@ uniform writeonly image2D specularIndirect;
 uniform writeonly image2D occlusion; // 1: open
 uniform writeonly image2D surfaceNormal; // * .5 + .5
 
-float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
-    return shadowVisibility(light, p, face, to_light);
-}
-
 Filtered unfiltered(ivec2 pixel) {
     return Filtered(texelFetch(gatheredDiffuse, pixel, 0), texelFetch(gatheredSpecular, pixel, 0).rgb);
 }

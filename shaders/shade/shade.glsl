@@ -14,10 +14,6 @@ struct Shading {
     float open; // share of the hemisphere that is, cosine-weighted
 };
 
-float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
-    return shadowVisibility(light, p, face, to_light);
-}
-
 // face: the geometric normal, v: to the viewer; both on one side.
 Shading shade(Surface s, vec3 p, vec3 face, vec3 v) {
     vec3 direct = directLight(s, p, face, v);

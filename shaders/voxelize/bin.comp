@@ -23,7 +23,7 @@ void main() {
         CellRange r = rangeOf(map, p);
         ivec3 first = r.from >> 2, many = (r.to >> 2) - first + 1;
         vec3 face = cross(p.b - p.a, p.c - p.a), steep = abs(face);
-        int k = !isFlat(map) ? 2 : steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
+        int k = isFlat(map) ? int(dominantAxis(face)) : 2;
         int x = k == 0 ? 1 : 0, y = k == 2 ? 1 : 2;
         bool has_plane = isFlat(map) && face[k] != 0.0;
         float least = min(p.a[k], min(p.b[k], p.c[k])), most = max(p.a[k], max(p.b[k], p.c[k]));

@@ -11,29 +11,8 @@ const uint CHUNK_WORDS = CHUNK_THREADS * THREAD_WORDS;
 
 #ifdef SUMS_CHUNKS
 layout(local_size_x = CHUNK_THREADS) in;
-
-shared uint sums[CHUNK_THREADS];
-
-// The sum over the threads of a group up to this one. All of them come here.
-uint sumUpTo(uint thread, uint sum) {
-    for (uint distance = 1; distance < CHUNK_THREADS; distance *= 2) {
-        sums[thread] = sum;
-        barrier();
-        if (thread >= distance) sum += sums[thread - distance];
-        barrier();
-    }
-    return sum;
-}
-
-// The sum over all threads of a group.
-uint sumOfAll(uint thread, uint sum) {
-    sum = sumUpTo(thread, sum);
-    if (thread == CHUNK_THREADS - 1) sums[0] = sum;
-    barrier();
-    sum = sums[0];
-    barrier();
-    return sum;
-}
+#define SCAN_THREADS CHUNK_THREADS
+#include "common/scan.glsl"
 #endif
 
 #endif

@@ -15,7 +15,7 @@ void main() {
         sum += bitCount(word.x) + bitCount(word.y) + bitCount(word.z);
     }
     uint own = sum;
-    sum = sumUpTo(thread, own);
+    sum = inclusiveSum(own);
     for (uint i = 0; i < THREAD_WORDS; i++)
         if (first + i < words) voxelBricks.words[first + i].w = sum - own + before[i];
     if (thread == CHUNK_THREADS - 1) voxelChunks.slots[gl_WorkGroupID.x] = sum;

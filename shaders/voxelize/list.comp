@@ -11,7 +11,7 @@ void main() {
     uint chunks = voxelCounter.chunk_groups.x, thread = gl_LocalInvocationIndex, share = (chunks + CHUNK_THREADS - 1) / CHUNK_THREADS;
     uint first = min(thread * share, chunks), end = min(first + share, chunks), own = 0;
     for (uint i = first; i < end; i++) own += voxelChunks.slots[i];
-    uint sum = sumUpTo(thread, own), before = sum - own;
+    uint sum = inclusiveSum(own), before = sum - own;
     for (uint i = first; i < end; i++) {
         voxelStarts.slots[i] = before;
         before += voxelChunks.slots[i];

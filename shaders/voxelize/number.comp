@@ -31,9 +31,9 @@ void main() {
     uint chunk = gl_WorkGroupID.x * CHUNK_BLOCKS, thread = gl_LocalInvocationIndex, before = 0;
     // Each group counts all before its chunk anew: few blocks, and nobody waits for another pass.
     for (uint block = thread; block < chunk; block += CHUNK_THREADS) before += bricksOf(block);
-    uint start = sumOfAll(thread, before), own = 0;
+    uint start = groupSum(before), own = 0;
     for (uint i = 0; i < 4; i++) own += bricksOf(chunk + 4 * thread + i);
-    uint sum = sumUpTo(thread, own), first = start + sum - own;
+    uint sum = inclusiveSum(own), first = start + sum - own;
     for (uint i = 0; i < 4; i++) {
         uint block = chunk + 4 * thread + i, many = bricksOf(block);
         if (many > 0) number(block, first);

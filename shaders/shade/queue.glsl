@@ -1,12 +1,12 @@
 // Queue of the pixels that gather in this frame.
-#ifndef SHADE_LIST_GLSL
-#define SHADE_LIST_GLSL
+#ifndef SHADE_QUEUE_GLSL
+#define SHADE_QUEUE_GLSL
 
-layout(std430) buffer GatherList { uint pixels[]; } gatherList; // packQueued
-layout(std430) buffer GatherCounter {
-    uint count;
-    uvec3 groups; // indirect dispatch over the list
-} gatherCounter;
+const uint GATHER_PIXELS = 32; // of a group
+#define QUEUE_LIST gatherQueue
+#define QUEUE_COUNTER gatherCounter
+#define QUEUE_GROUP GATHER_PIXELS
+#include "common/queue.glsl"
 
 // How a pixel gathers.
 const uint GATHER_FEW = 0; // FEW_RAYS: a disoccluded pixel before its phase
