@@ -197,7 +197,7 @@ fn what_nothing_has_changed_sleeps() {
         (BY_THREADS, &["shadow clear", "shadow triangles", "shadow bins", "shadow tiles"][..], "visibility tiles"),
         (BY_RASTER, &["shadow map"][..], "G-buffer"),
     ] {
-        let voxels = ["volume", "voxel slots clear", "voxel list", "voxel slots", "voxel merge", "voxel planes"];
+        let voxels = ["volume", "surfel sums clear", "surfel scan", "surfel assign", "voxel merge", "surfel planes"];
         // A lamp of one shadow map: layers are drawn one by one, and a clear of one leaves the others.
         let mut pair = Pair::new(&lab, "cornell", &path);
         let slept = pair.frame("the first");

@@ -65,8 +65,8 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
     return sum;
 }
 
-// Where the surfaces of a side of a slot are.
-vec3 slotPosition(VolumeMap map, ivec3 cell, uint base, uint side, uint axis) {
+// Where the surfaces of a side of a surfel are.
+vec3 surfelPosition(VolumeMap map, ivec3 cell, uint base, uint side, uint axis) {
     vec3 center = volumeToWorld(map, cellCentre(cell));
     return center + cellAxes(map, center) * planeMiddle(base, side, axis);
 }

@@ -5,12 +5,12 @@
 #include "common/voxels.glsl"
 #include "common/volume.glsl"
 
-layout(std430) readonly buffer LastPlanes { uvec4 quads[]; } lastPlanes;
+layout(std430) readonly buffer LastSurfels { uvec4 quads[]; } lastSurfels;
 layout(std430) readonly buffer LastRadiance { uvec2 list[]; } lastRadiance;
 layout(std430) readonly buffer LastBricks { uvec4 words[]; } lastBricks;
 layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
 
-#define MET_PLANES lastPlanes
+#define MET_PLANES lastSurfels
 #define MET_RADIANCE lastRadiance
 #define MET_BRICKS lastBricks
 #define MET_BLOCKS lastBlocks
@@ -32,13 +32,13 @@ void main() {
         vec3 light = vec3(0.0);
         uint number = 0;
         if (start + lane < count) {
-            uint i = bounceQueue.items[start + lane], slot = i / SIDES, side = i % SIDES;
-            ivec3 cell = cellOfSlot(slot);
-            uint axis = uint(axisOfSlot(slot)), base = planeBase(slot);
-            Side s = sideOfSlot(slot, side);
-            number = sideNumber(slot, side);
+            uint i = bounceQueue.items[start + lane], surfel = i / SIDES, side = i % SIDES;
+            ivec3 cell = cellOfSurfel(surfel);
+            uint axis = uint(axisOfSurfel(surfel)), base = surfelBase(surfel);
+            Side s = sideOfSurfel(surfel, side);
+            number = sideNumber(surfel, side);
             if (s.normal != vec3(0.0))
-                light = gatherAt(slotPosition(placed.maps[cascadeOf(cell)], cell, base, side, axis), s.normal, emits(slot, side), patternOf(uvec3(cell)), int(part), int(BOUNCE_THREADS));
+                light = gatherAt(surfelPosition(placed.maps[cascadeOf(cell)], cell, base, side, axis), s.normal, emits(surfel, side), patternOf(uvec3(cell)), int(part), int(BOUNCE_THREADS));
         }
         shared_light[part][lane] = light;
         barrier();

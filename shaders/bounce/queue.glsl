@@ -1,4 +1,4 @@
-// Queue of the voxel sides that gather in this frame: slot * SIDES + side.
+// Queue of the voxel sides that gather in this frame: surfel * SIDES + side.
 const uint BOUNCE_SIDES = 32; // of a group
 #define QUEUE_LIST bounceQueue
 #define QUEUE_COUNTER bounceCounter

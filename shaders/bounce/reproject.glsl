@@ -3,7 +3,7 @@
 #define BOUNCE_REPROJECT_GLSL
 #include "common/scene.glsl"
 #include "common/sides.glsl"
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 #include "common/bricks.glsl"
 
 layout(std430) readonly buffer LastGathered { uvec2 list[]; } lastGathered;
@@ -16,7 +16,7 @@ uvec2 reprojected(vec3 p, int cascade, uint axis, uint side) {
     ivec3 cell = min(ivec3(u * float(params.voxel_dim)), ivec3(params.voxel_dim - 1));
     uint found = foundAt(cell, cascade);
     if ((found >> axis & 1u) == 0) return uvec2(0);
-    return lastGathered.list[sideNumber(slotOf(found, axis), side)];
+    return lastGathered.list[sideNumber(surfelOf(found, axis), side)];
 }
 
 #endif

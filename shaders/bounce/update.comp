@@ -20,17 +20,17 @@ uint phaseOf(uvec3 brick) {
 
 // Stores a side's history, and returns whether the side gathers: in its phase, and in every frame until it
 // has gathered in as many frames as there are phases, so that the first pictures have light.
-bool updateHistory(uint slot, uint side, bool has_history) {
-    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return false;
-    uint number = sideNumber(slot, side), phases = uint(params.bounce_frames);
+bool updateHistory(uint surfel, uint side, bool has_history) {
+    if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return false;
+    uint number = sideNumber(surfel, side), phases = uint(params.bounce_frames);
     if (!has_history) {
         sideGathered.list[number] = uvec2(0);
         return false;
     }
-    ivec3 cell = cellOfSlot(slot);
+    ivec3 cell = cellOfSurfel(surfel);
     int cascade = cascadeOf(cell);
     vec3 p = volumeToWorld(placed.maps[cascade], cellCentre(cell));
-    uvec2 last = reprojected(p, cascade, uint(axisOfSlot(slot)), side);
+    uvec2 last = reprojected(p, cascade, uint(axisOfSurfel(surfel)), side);
     float updates = timesOf(last);
     bool due = updates < float(phases) || phaseOf(uvec3(cell) >> 2) == camera.frame % phases;
     sideGathered.list[number] = due ? packLight(vec3(0.0), min(updates + 1.0, float(phases))) : last;

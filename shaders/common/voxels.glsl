@@ -1,6 +1,5 @@
-// The sparse list of voxels. A slot holds the sums of what fell into a cell and faces along one axis, for its two sides apart
-// (modules/sides). The sums are integers, so their order does not matter and runs agree to the bit. Which slots a cell has is found
-// in common/bricks.glsl.
+// The list of surfels. A surfel is the surface of a cell along one axis; it has two sides (modules/sides). Fragments add to its sums,
+// which are integers: their order does not matter, and runs agree to the bit. common/bricks.glsl finds the surfels of a cell.
 #ifndef VOXELS_GLSL
 #define VOXELS_GLSL
 
@@ -10,8 +9,8 @@
 // Sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10.
 const uint SIDE_WORDS = 11;
 const uint SIDE_OFFSET = 10;
-const uint SLOT_CELL = SIDES * SIDE_WORDS; // cell, and above it the axis + 1; 0: no slot
-const uint SLOT_WORDS = SLOT_CELL + 1;
+const uint SURFEL_CELL = SIDES * SIDE_WORDS; // cell, and above it the axis + 1; 0: no surfel
+const uint SURFEL_SUM_WORDS = SURFEL_CELL + 1;
 
 // Fixed point, times weights. Colour and normal do not overflow before a cell is covered a thousand times; emission before
 // 2.6e5 / radiance times.
@@ -20,10 +19,10 @@ const float NORMAL_SCALE = 2047.0;
 const float EMISSION_SCALE = 16.0;
 const float EMISSION_MAX = 1024.0;
 
-layout(std430) buffer VoxelSlots { uint words[]; } voxelSlots;
+layout(std430) buffer SurfelSums { uint words[]; } surfelSums;
 layout(std430) buffer VoxelCounter {
     uint overflow; // fragments that were lost: a list of voxels, bricks or fragments was full
-    uint count; // slots in the list
+    uint count; // surfels in the list
     uint fragments; // asked for
     uint bricks; // with a surface
     uint pieces; // of triangles, queued
@@ -31,7 +30,7 @@ layout(std430) buffer VoxelCounter {
     uvec3 fragment_groups; // indirect dispatch over the fragments
     uvec3 chunk_groups; // over the words of bricks, a chunk a group (voxelize/chunks.glsl)
     uvec3 word_groups; // over the words of bricks, 4 a group
-    uvec3 list_groups; // over the slots
+    uvec3 list_groups; // over the surfels
     uvec3 side_groups; // over their sides
 } voxelCounter;
 
@@ -138,36 +137,36 @@ ivec3 unpackCell(uint word) {
     return ivec3(word & 511u, word >> 9 & 511u, word >> 18 & 4095u);
 }
 
-ivec3 cellOfSlot(uint slot) {
-    return unpackCell(voxelSlots.words[slot * SLOT_WORDS + SLOT_CELL]);
+ivec3 cellOfSurfel(uint surfel) {
+    return unpackCell(surfelSums.words[surfel * SURFEL_SUM_WORDS + SURFEL_CELL]);
 }
 
-// Which axis a slot's surfaces face along; -1: the slot is not in use, because the list was full.
-int axisOfSlot(uint slot) {
-    return int(voxelSlots.words[slot * SLOT_WORDS + SLOT_CELL] >> 30) - 1;
+// Which axis a surfel's surfaces face along; -1: the surfel is not in use, because the list was full.
+int axisOfSurfel(uint surfel) {
+    return int(surfelSums.words[surfel * SURFEL_SUM_WORDS + SURFEL_CELL] >> 30) - 1;
 }
 
-// Of what is found in a cell: how many slots the cell has, the first of them, and that of an axis.
-uint slotsOf(uint texel) {
+// Of what is found in a cell: how many surfels the cell has, the first of them, and that of an axis.
+uint surfelCount(uint texel) {
     return bitCount(texel & 7u);
 }
 
-uint firstSlot(uint texel) {
+uint firstSurfel(uint texel) {
     return texel >> 3;
 }
 
-uint slotOf(uint texel, uint axis) {
-    return firstSlot(texel) + bitCount(texel & ((1u << axis) - 1u));
+uint surfelOf(uint texel, uint axis) {
+    return firstSurfel(texel) + bitCount(texel & ((1u << axis) - 1u));
 }
 
 // The first word of one side.
-uint sideBase(uint slot, uint side) {
-    return slot * SLOT_WORDS + side * SIDE_WORDS;
+uint sideBase(uint surfel, uint side) {
+    return surfel * SURFEL_SUM_WORDS + side * SIDE_WORDS;
 }
 
 vec3 meanEmission(uint base) {
-    float weight = float(max(voxelSlots.words[base + 3], 1u));
-    return vec3(voxelSlots.words[base + 7], voxelSlots.words[base + 8], voxelSlots.words[base + 9]) / (EMISSION_SCALE * weight);
+    float weight = float(max(surfelSums.words[base + 3], 1u));
+    return vec3(surfelSums.words[base + 7], surfelSums.words[base + 8], surfelSums.words[base + 9]) / (EMISSION_SCALE * weight);
 }
 
 #endif

@@ -6,7 +6,7 @@
 #include "common/math.glsl"
 #include "common/volume.glsl"
 #include "common/sides.glsl"
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 #include "common/shadow_layers.glsl"
 #include "common/scene.glsl"
 #include "common/emitters.glsl"
@@ -17,7 +17,7 @@ layout(local_size_x = 128) in;
 // Surfaces that lie nearer to each other are one [cells].
 const float LAYER = 0.12;
 
-// Places on a slot's surfaces in each quarter of the cell that they cover, from the cell's middle [cells]: on their mean, and as far
+// Places on a surfel's surfaces in each quarter of the cell that they cover, from the cell's middle [cells]: on their mean, and as far
 // out as its outermost surface lies. Of two layers in one cell the outer one is lit, and the mean lies in its shadow.
 struct Taps {
     vec3 middle;
@@ -28,9 +28,9 @@ struct Taps {
     int count;
 };
 
-Taps tapsOf(uint slot, uint side, uint base, uint axis) {
+Taps tapsOf(uint surfel, uint side, uint base, uint axis) {
     uvec2 parts = partsOf(base, side);
-    uint outermost = planeData(outermostWord(base, side));
+    uint outermost = surfelData(outermostWord(base, side));
     float mean = planeOf(base, side, axis).offset;
     Taps taps;
     taps.count = 0;
@@ -88,16 +88,16 @@ vec3 radianceOf(Side s, vec3 gathered, vec3 center, Taps taps, mat3 axes) {
 
 void main() {
     for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.count * SIDES; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
-        uint slot = i / SIDES, side = i % SIDES;
-        if (axisOfSlot(slot) < 0) continue;
-        ivec3 cell = cellOfSlot(slot);
+        uint surfel = i / SIDES, side = i % SIDES;
+        if (axisOfSurfel(surfel) < 0) continue;
+        ivec3 cell = cellOfSurfel(surfel);
         VolumeMap map = volume.maps[cascadeOf(cell)];
         vec3 center = volumeToWorld(map, cellCentre(cell));
         mat3 axes = cellAxes(map, center);
-        uint axis = uint(axisOfSlot(slot)), base = planeBase(slot);
+        uint axis = uint(axisOfSurfel(surfel)), base = surfelBase(surfel);
         vec3 gathered = lightOf(sideGathered.list[i]);
-        Side s = sideOfSlot(slot, side);
-        vec3 radiance = radianceOf(s, gathered, center, tapsOf(slot, side, base, axis), axes);
+        Side s = sideOfSurfel(surfel, side);
+        vec3 radiance = radianceOf(s, gathered, center, tapsOf(surfel, side, base, axis), axes);
         float emitted = emitters.count > 0 ? luminance(s.emission) / max(luminance(radiance), 1e-20) : 0.0;
         sideRadiance.list[i] = packLight(radiance, emitted);
     }

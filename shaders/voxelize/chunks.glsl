@@ -1,9 +1,9 @@
-// Sums over the words of bricks, in the order of the words: slots lie where they lie in every frame, whoever was first.
+// Prefix sums over the words of bricks: the order of surfels is deterministic.
 #ifndef VOXELIZE_CHUNKS_GLSL
 #define VOXELIZE_CHUNKS_GLSL
 
-layout(std430) buffer VoxelChunks { uint slots[]; } voxelChunks; // of each chunk
-layout(std430) buffer VoxelStarts { uint slots[]; } voxelStarts; // of all before it
+layout(std430) buffer VoxelChunks { uint surfels[]; } voxelChunks; // of each chunk
+layout(std430) buffer VoxelStarts { uint surfels[]; } voxelStarts; // of all before it
 
 const uint CHUNK_THREADS = 256;
 const uint THREAD_WORDS = 4;

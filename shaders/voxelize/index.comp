@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A texture of all cells, for who looks at the voxels: what is found there; in a cell that found no slot all bits are set. Bricks
+// A texture of all cells, for who looks at the voxels: what is found there; in a cell that found no surfel all bits are set. Bricks
 // that found no room are empty.
 #include "params.glsl"
 #include "common/bricks.glsl"
@@ -11,8 +11,8 @@ layout(r32ui) uniform writeonly uimage3D voxelIndex;
 
 // Whether a mask has cut out all that fell into a cell.
 bool isEmpty(uint found) {
-    for (uint i = 0; i < slotsOf(found) * SIDES; i++)
-        if (voxelSlots.words[sideBase(firstSlot(found) + i / SIDES, i % SIDES) + 3] != 0) return false;
+    for (uint i = 0; i < surfelCount(found) * SIDES; i++)
+        if (surfelSums.words[sideBase(firstSurfel(found) + i / SIDES, i % SIDES) + 3] != 0) return false;
     return found != 0;
 }
 

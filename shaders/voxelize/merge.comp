@@ -4,7 +4,7 @@
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/bricks.glsl"
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 #include "common/scene.glsl"
 #include "common/materials.glsl"
 #include "voxelize/parts.glsl"
@@ -27,9 +27,9 @@ void noteOutermost(uint word, uint side, Covered covered) {
         int count = bitCount(quarter.x) + bitCount(quarter.y);
         if (count > 0) mine |= packOutermost(covered.offset, side, count) << 8 * i;
     }
-    uint found = planeData(word);
+    uint found = surfelData(word);
     for (;;) {
-        uint seen = atomicCompSwap(voxelPlanes.quads[word >> 2][word & 3u], found, outerOf(found, mine));
+        uint seen = atomicCompSwap(surfels.quads[word >> 2][word & 3u], found, outerOf(found, mine));
         if (seen == found) return;
         found = seen;
     }
@@ -37,11 +37,11 @@ void noteOutermost(uint word, uint side, Covered covered) {
 
 void merge(uint base, vec3 color, vec3 normal, float offset, uint emission, uint weight) {
     mergeInto(base, color, normal, weight);
-    atomicAdd(voxelSlots.words[base + SIDE_OFFSET], storedOffset(offset) * weight);
-    atomicAdd(voxelSlots.words[base + 3], weight);
+    atomicAdd(surfelSums.words[base + SIDE_OFFSET], storedOffset(offset) * weight);
+    atomicAdd(surfelSums.words[base + 3], weight);
     if (emission != 0) {
         uvec3 e = uvec3(min(unpackRadiance(emission), EMISSION_MAX) * EMISSION_SCALE * float(weight) + 0.5);
-        for (uint i = 0; i < 3; i++) atomicAdd(voxelSlots.words[base + 7 + i], e[i]);
+        for (uint i = 0; i < 3; i++) atomicAdd(surfelSums.words[base + 7 + i], e[i]);
     }
 }
 
@@ -114,14 +114,14 @@ void main() {
         uvec2 triangle = voxelTriangles.list[i];
         Covered covered = coveredBy(triangle, stored, axis, unpackOffset(fragment.z));
         if (covered.weight == 0) continue;
-        uint side = sideOf(normal, axis), slot = slotOf(found, axis), plane = planeBase(slot);
-        merge(sideBase(slot, side), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
+        uint side = sideOf(normal, axis), surfel = surfelOf(found, axis), plane = surfelBase(surfel);
+        merge(sideBase(surfel, side), unpackColor(fragment.y), normal, covered.offset, fragment.w, covered.weight);
         if (SIDES == 1) continue; // only sides have planes
         // Of points and samples nobody knows where their plane passes the cell's middle.
         if (triangle != NO_TRIANGLE) noteOutermost(outermostWord(plane, side), side, covered);
         for (uint k = 0; k < 2; k++) {
             uint word = partsWord(plane, side) + k;
-            if ((planeData(word) & covered.parts[k]) != covered.parts[k]) atomicOr(voxelPlanes.quads[word >> 2][word & 3u], covered.parts[k]);
+            if ((surfelData(word) & covered.parts[k]) != covered.parts[k]) atomicOr(surfels.quads[word >> 2][word & 3u], covered.parts[k]);
         }
     }
 }

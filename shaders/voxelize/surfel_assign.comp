@@ -1,17 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Gives each cell a slot for every axis that its surfaces face along: a thread a bit, 32 a word of a brick.
+// Assigns each cell a surfel for every axis that its surfaces face along. A thread handles a bit, 32 threads
+// a word of a brick.
 #include "params.glsl"
 #include "common/bricks.glsl"
 #include "voxelize/chunks.glsl"
 
 layout(local_size_x = 128) in;
 
-// The slots of a cell say whose they are.
-void nameSlots(uint number, uvec4 word, uint bit) {
+// Writes cell and axis to the surfels of a cell.
+void nameSurfels(uint number, uvec4 word, uint bit) {
     uint packed = packCell(storedCellAt(voxelPlaces.bricks[number / 2], 32 * (number & 1u) + bit)), found = foundIn(word, 1u << bit);
     for (uint axis = 0; axis < 3; axis++)
-        if ((found >> axis & 1u) != 0) voxelSlots.words[slotOf(found, axis) * SLOT_WORDS + SLOT_CELL] = packed | (axis + 1) << 30;
+        if ((found >> axis & 1u) != 0) surfelSums.words[surfelOf(found, axis) * SURFEL_SUM_WORDS + SURFEL_CELL] = packed | (axis + 1) << 30;
 }
 
 void main() {
@@ -21,8 +22,8 @@ void main() {
         bool listed = number < 2 * voxelCounter.bricks;
         uvec4 word = listed ? voxelBricks.words[number] : uvec4(0);
         barrier();
-        word.w += voxelStarts.slots[number / CHUNK_WORDS];
+        word.w += voxelStarts.surfels[number / CHUNK_WORDS];
         if (lane == 0 && listed) voxelBricks.words[number].w = word.w;
-        if ((occupiedCells(word) >> lane & 1u) != 0) nameSlots(number, word, lane);
+        if ((occupiedCells(word) >> lane & 1u) != 0) nameSurfels(number, word, lane);
     }
 }

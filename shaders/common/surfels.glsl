@@ -1,35 +1,34 @@
-// What rays need of a slot: the surfaces of each side as a plane, in cells, and which parts of the cell they cover. A few words, because
-// rays read many. And by side, apart from that because it changes with the light: the radiance that leaves it, and what its cones have
-// gathered.
-#ifndef PLANES_GLSL
-#define PLANES_GLSL
+// Surfels as rays read them: for each side the mean plane of its surfaces and their coverage mask, in few words. Separate buffers hold
+// data of each side that changes with the light: the radiance that leaves it, and the light that it has gathered.
+#ifndef SURFELS_GLSL
+#define SURFELS_GLSL
 #include "common/voxels.glsl"
 #include "common/parts.glsl"
 
-layout(std430) buffer VoxelPlanes { uvec4 quads[]; } voxelPlanes;
+layout(std430) buffer Surfels { uvec4 quads[]; } surfels;
 layout(std430) buffer SideRadiance { uvec2 list[]; } sideRadiance;
 layout(std430) buffer SideGathered { uvec2 list[]; } sideGathered;
 
 // By side: a plane; then by side which parts are covered, two words; then by side what is outermost in each quarter. In fours, because
 // rays wait for every load.
-const uint PLANE_WORDS = 4 * SIDES;
-const uint PLANE_PARTS = SIDES; // the first word of what is merged and not made of sums
+const uint SURFEL_WORDS = 4 * SIDES;
+const uint SURFEL_PARTS = SIDES; // the first word of what is merged and not made of sums
 
 struct Plane {
     vec3 normal; // of side 0; not unit length: 1 along its axis
     float offset; // from the cell's middle, along its axis
 };
 
-uint planeBase(uint slot) {
-    return slot * PLANE_WORDS;
+uint surfelBase(uint surfel) {
+    return surfel * SURFEL_WORDS;
 }
 
-uint planeData(uint word) {
-    return voxelPlanes.quads[word >> 2][word & 3u];
+uint surfelData(uint word) {
+    return surfels.quads[word >> 2][word & 3u];
 }
 
-void keepData(uint word, uint data) {
-    voxelPlanes.quads[word >> 2][word & 3u] = data;
+void storeSurfelData(uint word, uint data) {
+    surfels.quads[word >> 2][word & 3u] = data;
 }
 
 // A unit vector along an axis; and a vector of its part along the axis and the others.
@@ -46,10 +45,10 @@ uint planeWord(uint base, uint side) {
 }
 
 // normal: along its axis positive. own: bit 0, 1: side 0, 1 has surfaces of its own; else it is the back of the other.
-void keepPlane(uint word, vec3 normal, uint axis, float offset, uint own) {
+void storePlane(uint word, vec3 normal, uint axis, float offset, uint own) {
     vec2 beside = besideOf(normal, axis);
     uvec2 s = uvec2(clamp(beside / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
-    keepData(word, s.x | s.y << 10 | storedOffset(offset) << 20 | own << 30);
+    storeSurfelData(word, s.x | s.y << 10 | storedOffset(offset) << 20 | own << 30);
 }
 
 Plane unpackPlane(uint w, uint axis) {
@@ -58,11 +57,11 @@ Plane unpackPlane(uint w, uint axis) {
 }
 
 Plane planeOf(uint base, uint side, uint axis) {
-    return unpackPlane(planeData(planeWord(base, side)), axis);
+    return unpackPlane(surfelData(planeWord(base, side)), axis);
 }
 
 uint partsWord(uint base, uint side) {
-    return base + PLANE_PARTS + 2 * side;
+    return base + SURFEL_PARTS + 2 * side;
 }
 
 uint outermostWord(uint base, uint side) {
@@ -71,10 +70,10 @@ uint outermostWord(uint base, uint side) {
 
 uvec2 partsOf(uint base, uint side) {
     uint word = partsWord(base, side);
-    return uvec2(planeData(word), planeData(word + 1));
+    return uvec2(surfelData(word), surfelData(word + 1));
 }
 
-// A place on a plane of a slot, by the coordinates beside its axis, and the middle of its surfaces; from the cell's middle [cells].
+// A place on a plane of a surfel, by the coordinates beside its axis, and the middle of its surfaces; from the cell's middle [cells].
 vec3 onPlane(uint base, uint side, uint axis, vec2 beside) {
     Plane plane = planeOf(base, side, axis);
     return besideAxis(axis, plane.offset - dot(besideOf(plane.normal, axis), beside), beside);
@@ -85,8 +84,8 @@ vec3 planeMiddle(uint base, uint side, uint axis) {
 }
 
 // Where a side's light is.
-uint sideNumber(uint slot, uint side) {
-    return slot * SIDES + side;
+uint sideNumber(uint surfel, uint side) {
+    return surfel * SIDES + side;
 }
 
 // And how often it was gathered; or, of what leaves a side, the share of it that emitters emit.
