@@ -17,8 +17,8 @@ struct Side {
 // ceiling, in one cell, hides it, and must not be dimmed by the mean of both. Less: the parts of a small lamp are larger than it.
 float areaRatio(uint surfel, uint side) {
     bool measured = !WARPED && params.areas_measured != 0;
-    uvec2 parts = partsOf(surfelBase(surfel), side);
-    float covered = 16.0 * float(bitCount(parts.x) + bitCount(parts.y));
+    uvec2 mask = coverageMaskOf(surfelBase(surfel), side);
+    float covered = 16.0 * float(bitCount(mask.x) + bitCount(mask.y));
     return measured && covered > 0.0 ? float(surfelSums.words[sideBase(surfel, side) + 3]) / covered : 1.0;
 }
 

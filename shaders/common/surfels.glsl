@@ -3,16 +3,16 @@
 #ifndef SURFELS_GLSL
 #define SURFELS_GLSL
 #include "common/voxels.glsl"
-#include "common/parts.glsl"
+#include "common/coverage_mask.glsl"
 
 layout(std430) buffer Surfels { uvec4 quads[]; } surfels;
 layout(std430) buffer SideRadiance { uvec2 list[]; } sideRadiance;
 layout(std430) buffer SideGathered { uvec2 list[]; } sideGathered;
 
-// By side: a plane; then by side which parts are covered, two words; then by side what is outermost in each quarter. In fours, because
-// rays wait for every load.
+// Words of a surfel: a plane for each side; coverage masks, two words for each side; front layers, a word for each side. In groups of
+// four, because rays wait for every load.
 const uint SURFEL_WORDS = 4 * SIDES;
-const uint SURFEL_PARTS = SIDES; // the first word of what is merged and not made of sums
+const uint SURFEL_MASKS = SIDES; // the first word of what is merged and not made of sums
 
 struct Plane {
     vec3 normal; // of side 0; not unit length: 1 along its axis
@@ -60,16 +60,16 @@ Plane planeOf(uint base, uint side, uint axis) {
     return unpackPlane(surfelData(planeWord(base, side)), axis);
 }
 
-uint partsWord(uint base, uint side) {
-    return base + SURFEL_PARTS + 2 * side;
+uint coverageMaskWord(uint base, uint side) {
+    return base + SURFEL_MASKS + 2 * side;
 }
 
-uint outermostWord(uint base, uint side) {
+uint frontLayerWord(uint base, uint side) {
     return base + 3 * SIDES + side;
 }
 
-uvec2 partsOf(uint base, uint side) {
-    uint word = partsWord(base, side);
+uvec2 coverageMaskOf(uint base, uint side) {
+    uint word = coverageMaskWord(base, side);
     return uvec2(surfelData(word), surfelData(word + 1));
 }
 
@@ -80,7 +80,7 @@ vec3 onPlane(uint base, uint side, uint axis, vec2 beside) {
 }
 
 vec3 planeMiddle(uint base, uint side, uint axis) {
-    return onPlane(base, side, axis, middleOf(partsOf(base, side)));
+    return onPlane(base, side, axis, middleOf(coverageMaskOf(base, side)));
 }
 
 // Where a side's light is.

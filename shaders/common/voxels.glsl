@@ -80,27 +80,27 @@ uint storedOffset(float offset) {
     return uint(clamp(offset / OFFSET_REACH, -1.0, 1.0) * 511.0 + 512.5);
 }
 
-// What is outermost of a side in a quarter of its cell: where, five bits that grow outwards, 0 is nothing; and how much of the
-// quarter it covers, in sevenths.
-struct Outermost {
+// Front layer of a side: in each quarter of the cell the surface that lies farthest out. Five bits of offset, growing outwards, 0 for none;
+// three bits of coverage, in sevenths of the quarter.
+struct FrontLayer {
     float offset; // along the axis from the cell's middle [cells]
     float covers; // 0 to 1
 };
 
 // `covered`: of the quarter's 16 parts.
-uint packOutermost(float offset, uint side, int covered) {
+uint packFrontLayer(float offset, uint side, int covered) {
     uint level = uint(clamp(side == 0 ? offset : -offset, -0.5, 0.5) * 30.0 + 16.5);
     return level << 3 | uint(min((covered + 1) / 2, 7));
 }
 
-Outermost outermostOf(uint word, uint side, uint quarter) {
+FrontLayer frontLayerOf(uint word, uint side, uint quarter) {
     uint w = word >> 8 * quarter & 255u;
     float offset = (float(w >> 3) - 16.0) / 30.0;
-    return Outermost(side == 0 ? offset : -offset, float(w & 7u) / 7.0);
+    return FrontLayer(side == 0 ? offset : -offset, float(w & 7u) / 7.0);
 }
 
-// Both of one, for four quarters: who lies farther out, or of the same level all. The order does not matter.
-uint outerOf(uint a, uint b) {
+// Merges four quarters: the outer surface, or the summed coverage of both at the same level. The order does not matter.
+uint frontOf(uint a, uint b) {
     uint both = 0;
     for (uint i = 0; i < 32; i += 8) {
         uint x = a >> i & 255u, y = b >> i & 255u;

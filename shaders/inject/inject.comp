@@ -17,29 +17,29 @@ layout(local_size_x = 128) in;
 // Surfaces that lie nearer to each other are one [cells].
 const float LAYER = 0.12;
 
-// Places on a surfel's surfaces in each quarter of the cell that they cover, from the cell's middle [cells]: on their mean, and as far
-// out as its outermost surface lies. Of two layers in one cell the outer one is lit, and the mean lies in its shadow.
+// Points on a side's surfaces in each covered quarter, relative to the cell's middle [cells]: on the mean plane, and on the front layer. If
+// a cell holds two layers, the front layer is lit and shadows the mean plane.
 struct Taps {
     vec3 middle;
     vec3 places[4];
-    float lift[4]; // of the outermost surface over the mean, along the axis [cells]
-    float share[4]; // of the outermost surface
+    float lift[4]; // of the front layer over the mean, along the axis [cells]
+    float share[4]; // of the front layer
     vec3 outwards;
     int count;
 };
 
 Taps tapsOf(uint surfel, uint side, uint base, uint axis) {
-    uvec2 parts = partsOf(base, side);
-    uint outermost = surfelData(outermostWord(base, side));
+    uvec2 mask = coverageMaskOf(base, side);
+    uint front_layers = surfelData(frontLayerWord(base, side));
     float mean = planeOf(base, side, axis).offset;
     Taps taps;
     taps.count = 0;
     taps.middle = planeMiddle(base, side, axis);
     taps.outwards = (side == 0 ? 1.0 : -1.0) * axisVector(axis);
     for (uint i = 0; i < 4; i++) {
-        uvec2 quarter = quarterOf(parts, i);
+        uvec2 quarter = quarterOf(mask, i);
         if (quarter == uvec2(0)) continue;
-        Outermost o = outermostOf(outermost, side, i);
+        FrontLayer o = frontLayerOf(front_layers, side, i);
         int k = taps.count++;
         taps.places[k] = onPlane(base, side, axis, middleOf(quarter));
         taps.lift[k] = side == 0 ? o.offset - mean : mean - o.offset;

@@ -27,8 +27,8 @@ void main() {
         voxelKept.words[first + SURFEL_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
         for (uint side = 0; side < SIDES; side++) {
             bool own = surfelSums.words[sideBase(i, side) + 3] != 0; // else its parts are those of the other
-            for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_PARTS + 2 * side + k] = own ? surfelData(partsWord(base, side) + k) : 0;
-            voxelKept.words[first + KEPT_PARTS + 2 * SIDES + side] = surfelData(outermostWord(base, side));
+            for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_MASKS + 2 * side + k] = own ? surfelData(coverageMaskWord(base, side) + k) : 0;
+            voxelKept.words[first + KEPT_MASKS + 2 * SIDES + side] = surfelData(frontLayerWord(base, side));
         }
     }
 }

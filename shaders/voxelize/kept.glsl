@@ -5,8 +5,8 @@
 #include "common/surfels.glsl"
 
 // Of each the words of its surfel, and those of its planes that are merged.
-const uint KEPT_PARTS = SURFEL_SUM_WORDS;
-const uint KEPT_WORDS = SURFEL_SUM_WORDS + SURFEL_WORDS - SURFEL_PARTS;
+const uint KEPT_MASKS = SURFEL_SUM_WORDS;
+const uint KEPT_WORDS = SURFEL_SUM_WORDS + SURFEL_WORDS - SURFEL_MASKS;
 
 layout(std430) buffer VoxelKept { uint words[]; } voxelKept;
 layout(std430) buffer KeptCounter {

@@ -18,5 +18,5 @@ void main() {
     }
     uint surfel = surfelOf(found, (packed >> 30) - 1);
     for (uint word = 0; word < SURFEL_CELL; word++) surfelSums.words[surfel * SURFEL_SUM_WORDS + word] = voxelKept.words[first + word];
-    for (uint word = SURFEL_PARTS; word < SURFEL_WORDS; word++) storeSurfelData(surfelBase(surfel) + word, voxelKept.words[first + KEPT_PARTS + word - SURFEL_PARTS]);
+    for (uint word = SURFEL_MASKS; word < SURFEL_WORDS; word++) storeSurfelData(surfelBase(surfel) + word, voxelKept.words[first + KEPT_MASKS + word - SURFEL_MASKS]);
 }

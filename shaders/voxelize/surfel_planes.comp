@@ -24,6 +24,6 @@ void main() {
         mergedMean(sums, color, normal);
         float offset = offsetOfSum(float(surfelSums.words[sums + SIDE_OFFSET]), float(surfelSums.words[sums + 3]));
         storePlane(planeWord(base, side), (seen == 0 ? normal : -normal) * axes, axis, offset, own);
-        for (uint k = 0; seen != side && k < 2; k++) storeSurfelData(partsWord(base, side) + k, surfelData(partsWord(base, seen) + k));
+        for (uint k = 0; seen != side && k < 2; k++) storeSurfelData(coverageMaskWord(base, side) + k, surfelData(coverageMaskWord(base, seen) + k));
     }
 }
