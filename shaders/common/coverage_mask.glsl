@@ -3,9 +3,10 @@
 #ifndef COVERAGE_MASK_GLSL
 #define COVERAGE_MASK_GLSL
 
-// The other two coordinates of a vector, in the order x, y, z from the axis on.
-vec2 besideOf(vec3 v, uint axis) {
-    return axis == 0 ? v.yz : axis == 1 ? v.zx : v.xy;
+// Lateral coordinates of a vector: the two other than the axis, in cyclic order.
+vec2 lateralOf(vec3 v, uint axis) {
+    if (axis == 0) return v.yz;
+    return axis == 1 ? v.zx : v.xy;
 }
 
 // Whether the mask covers a point of the cell, [0,1].

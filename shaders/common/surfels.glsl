@@ -1,5 +1,6 @@
-// Surfels as rays read them: for each side the mean plane of its surfaces and their coverage mask, in few words. Separate buffers hold
-// data of each side that changes with the light: the radiance that leaves it, and the light that it has gathered.
+// Surfels as rays read them: for each side the mean plane of its surfaces and their coverage mask, in few
+// words. Separate buffers hold data of each side that changes with the light: the radiance that leaves it,
+// and the light that it has gathered.
 #ifndef SURFELS_GLSL
 #define SURFELS_GLSL
 #include "common/voxels.glsl"
@@ -9,8 +10,8 @@ layout(std430) buffer Surfels { uvec4 quads[]; } surfels;
 layout(std430) buffer SideRadiance { uvec2 list[]; } sideRadiance;
 layout(std430) buffer SideGathered { uvec2 list[]; } sideGathered;
 
-// Words of a surfel: a plane for each side; coverage masks, two words for each side; front layers, a word for each side. In groups of
-// four, because rays wait for every load.
+// Words of a surfel: a plane for each side; coverage masks, two words for each side; front layers, a word for
+// each side. In groups of four, because rays wait for every load.
 const uint SURFEL_WORDS = 4 * SIDES;
 const uint SURFEL_MASKS = SIDES; // the first word of what is merged and not made of sums
 
@@ -31,29 +32,32 @@ void storeSurfelData(uint word, uint data) {
     surfels.quads[word >> 2][word & 3u] = data;
 }
 
-// A unit vector along an axis; and a vector of its part along the axis and the others.
+// The unit vector of an axis.
 vec3 axisVector(uint axis) {
     return vec3(equal(uvec3(axis), uvec3(0, 1, 2)));
 }
 
-vec3 besideAxis(uint axis, float along, vec2 beside) {
-    return axis == 0 ? vec3(along, beside) : axis == 1 ? vec3(beside.y, along, beside.x) : vec3(beside, along);
+// A vector by its axial and lateral coordinates.
+vec3 axialVector(uint axis, float axial, vec2 lateral) {
+    if (axis == 0) return vec3(axial, lateral);
+    return axis == 1 ? vec3(lateral.y, axial, lateral.x) : vec3(lateral, axial);
 }
 
 uint planeWord(uint base, uint side) {
     return base + side;
 }
 
-// normal: along its axis positive. own: bit 0, 1: side 0, 1 has surfaces of its own; else it is the back of the other.
+// normal: positive along its axis. own: bits 0 and 1, whether side 0 and 1 have surfaces. A side without is
+// the back of the other.
 void storePlane(uint word, vec3 normal, uint axis, float offset, uint own) {
-    vec2 beside = besideOf(normal, axis);
-    uvec2 s = uvec2(clamp(beside / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
+    vec2 lateral = lateralOf(normal, axis);
+    uvec2 s = uvec2(clamp(lateral / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
     storeSurfelData(word, s.x | s.y << 10 | storedOffset(offset) << 20 | own << 30);
 }
 
 Plane unpackPlane(uint w, uint axis) {
-    vec2 beside = (vec2(w & 0x3ffu, w >> 10 & 0x3ffu) - 512.0) / 511.0;
-    return Plane(besideAxis(axis, 1.0, beside), offsetOfSum(float(w >> 20 & 0x3ffu), 1.0));
+    vec2 lateral = (vec2(w & 0x3ffu, w >> 10 & 0x3ffu) - 512.0) / 511.0;
+    return Plane(axialVector(axis, 1.0, lateral), offsetOfSum(float(w >> 20 & 0x3ffu), 1.0));
 }
 
 Plane planeOf(uint base, uint side, uint axis) {
@@ -73,10 +77,11 @@ uvec2 coverageMaskOf(uint base, uint side) {
     return uvec2(surfelData(word), surfelData(word + 1));
 }
 
-// A place on a plane of a surfel, by the coordinates beside its axis, and the middle of its surfaces; from the cell's middle [cells].
-vec3 onPlane(uint base, uint side, uint axis, vec2 beside) {
+// The point of a side's plane at lateral coordinates, and the middle of its surfaces; relative to the cell's
+// middle [cells].
+vec3 onPlane(uint base, uint side, uint axis, vec2 lateral) {
     Plane plane = planeOf(base, side, axis);
-    return besideAxis(axis, plane.offset - dot(besideOf(plane.normal, axis), beside), beside);
+    return axialVector(axis, plane.offset - dot(lateralOf(plane.normal, axis), lateral), lateral);
 }
 
 vec3 planeMiddle(uint base, uint side, uint axis) {

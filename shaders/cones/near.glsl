@@ -39,7 +39,7 @@ float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float ent
             vec3 middle = vec3(cell) + 0.5 + plane.offset * axisVector(axis);
             float slope = dot(plane.normal, dir), t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
             if (t < 0.0 || t < enter - NEAR_MARGIN || t > leave + NEAR_MARGIN || t >= nearest) continue;
-            vec2 place = besideOf(at + t * dir - vec3(cell), axis);
+            vec2 place = lateralOf(at + t * dir - vec3(cell), axis);
             if (!isCovered(SIDES == 1 ? first.yz : side == 0 ? first.zw : MET_PLANES.quads[quad + 1].xy, place)) continue;
             if ((side == 0) == (slope < 0.0)) {
                 nearest = t;

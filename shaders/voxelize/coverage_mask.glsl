@@ -22,7 +22,7 @@ Coverage triangleCoverage(vec3 a, vec3 b, vec3 c, ivec3 cell, uint axis, float o
     vec3 face = cross(b - a, c - a);
     if (abs(face[axis]) < 0.1 * length(face)) return fullCoverage(offset);
     offset = dot(face, a - vec3(cell) - 0.5) / face[axis];
-    vec2 p[3] = vec2[3](8.0 * besideOf(a - vec3(cell), axis), 8.0 * besideOf(b - vec3(cell), axis), 8.0 * besideOf(c - vec3(cell), axis));
+    vec2 p[3] = vec2[3](8.0 * lateralOf(a - vec3(cell), axis), 8.0 * lateralOf(b - vec3(cell), axis), 8.0 * lateralOf(c - vec3(cell), axis));
     vec2 e = p[1] - p[0], f = p[2] - p[0];
     float area = 0.5 * abs(e.x * f.y - e.y * f.x), facing = sign(e.x * f.y - e.y * f.x);
     vec2 low = min(p[0], min(p[1], p[2])) - MASK_REACH, high = max(p[0], max(p[1], p[2])) + MASK_REACH;

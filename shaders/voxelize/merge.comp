@@ -60,7 +60,7 @@ void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverag
     vec2 p[3];
     for (int i = 0; i < 3; i++) {
         v[i] = loadAttributes(indices.indices[triangle.y + i]);
-        p[i] = 8.0 * besideOf(corner[i] - vec3(cell), axis);
+        p[i] = 8.0 * lateralOf(corner[i] - vec3(cell), axis);
     }
     mat2 across = mat2(p[1] - p[0], p[2] - p[0]);
     if (abs(determinant(across)) < 1e-6) return;
