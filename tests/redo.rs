@@ -237,7 +237,7 @@ fn what_gathers_over_frames_rests() {
     let lab = lab(root());
     // Something emits in cornell.
     let (gather, rays) = ("gather from emitters", "rays and emitters");
-    let gathering = ["bounces begin", "kept bounces", gather, "inject"];
+    let gathering = ["bounce queue clear", "bounce history", gather, "inject"];
     for path in [BY_THREADS, BY_RASTER] {
         // Light has gone round 32 times after 64 frames.
         let settings = [("bounce_frames", "2"), ("gather_frames", "4")];

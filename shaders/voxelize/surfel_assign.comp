@@ -19,11 +19,11 @@ void main() {
     uint lane = gl_LocalInvocationIndex & 31u, part = gl_LocalInvocationIndex >> 5;
     for (uint start = gl_WorkGroupID.x * 4; start < 2 * voxelCounter.bricks; start += gl_NumWorkGroups.x * 4) {
         uint number = start + part;
-        bool listed = number < 2 * voxelCounter.bricks;
-        uvec4 word = listed ? voxelBricks.words[number] : uvec4(0);
+        bool valid = number < 2 * voxelCounter.bricks;
+        uvec4 word = valid ? voxelBricks.words[number] : uvec4(0);
         barrier();
         word.w += voxelStarts.surfels[number / CHUNK_WORDS];
-        if (lane == 0 && listed) voxelBricks.words[number].w = word.w;
+        if (lane == 0 && valid) voxelBricks.words[number].w = word.w;
         if ((occupiedCells(word) >> lane & 1u) != 0) nameSurfels(number, word, lane);
     }
 }

@@ -1,5 +1,5 @@
-// The pixels that gather in this frame. A pixel's rays are dealt to several threads; threads beside each other take the same ray of
-// different pixels.
+// Gathers the light of the queued pixels. Several threads share the rays of a pixel; neighbouring threads
+// take the same ray of different pixels.
 #include "params.glsl"
 #define READS_AGE
 #include "shade/queue.glsl"
@@ -19,13 +19,16 @@ vec2 pixelCentre() {
     return vec2(gathering) + 0.5;
 }
 
-// All threads of a group come here.
-void gatherListed(uint word, bool gathers) {
-    uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x, how = queuedMode(word);
+// All threads of a group call this together.
+void gatherQueued(uint word, bool gathers) {
+    uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x, mode = queuedMode(word);
     gathering = queuedPixel(word);
-    // Over the hemisphere: none where what it has gathered of that stays.
-    int rays = how == GATHER_ALL ? params.pixel_cones : how == GATHER_FEW ? min(params.pixel_cones, FEW_RAYS) : 0;
-    int emitters = how == GATHER_MIRRORED ? 0 : how == GATHER_FEW ? min(params.emitter_rays, 1) : params.emitter_rays;
+    int rays = params.pixel_cones, emitters = params.emitter_rays;
+    if (mode == GATHER_FEW) {
+        rays = min(rays, FEW_RAYS);
+        emitters = min(emitters, 1);
+    }
+    if (mode == GATHER_MIRRORED) rays = emitters = 0; // the hemisphere keeps its history
     Gathered light = Gathered(vec4(0.0), vec3(0.0));
     if (gathers) {
         GBufferSurface seen = gbufferAt(gathering);
@@ -50,7 +53,7 @@ void main() {
     uint count = gatherCounter.count;
     for (uint start = gl_WorkGroupID.x * GATHER_PIXELS; start < count; start += gl_NumWorkGroups.x * GATHER_PIXELS) {
         uint i = start + gl_LocalInvocationID.x;
-        gatherListed(i < count ? gatherQueue.items[i] : 0, i < count);
+        gatherQueued(i < count ? gatherQueue.items[i] : 0, i < count);
         barrier();
     }
 }

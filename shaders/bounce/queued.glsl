@@ -1,6 +1,6 @@
-// Light that comes to the voxels from each other: every listed side of a voxel gathers it with a few rays or narrow cones, its
-// neighbours in other directions, several threads a side. Injection reflects it, so that each frame adds a bounce. All that they meet
-// is last frame's, `volume` too; `placed` says where voxels lie now.
+// Gathers the light of the queued voxel sides with a few rays or narrow cones, several threads a side.
+// Neighbours take other directions. Injection reflects the light, so that each frame adds a bounce. All hits
+// read the last frame's data, `volume` too; `placed` is the current volume.
 #include "params.glsl"
 #include "common/voxels.glsl"
 #include "common/volume.glsl"
