@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Final shading of the surfaces that pixels see, a thread a pixel, each contribution to its own picture (thesis, Algorithm 3).
-// Indirect diffuse light is albedo times the mean radiance over the hemisphere, sky included where it is open.
+// Final shading of the surfaces that pixels see, a thread a pixel, each contribution to its own picture
+// (thesis, Algorithm 3). Indirect diffuse light is albedo times the mean radiance over the hemisphere, sky
+// included where it is open.
 #include "params.glsl"
 #include "common/gbuffer_read.glsl"
 #include "common/shadow.glsl"
@@ -32,15 +33,15 @@ Filtered unfiltered(ivec2 pixel) {
 Filtered filtered(ivec2 pixel, GBufferSurface seen) {
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
-    float weights = 0.0, specular_weights = 0.0, lobe = blurs(seen);
-    Likeness like = likenessOf(seen);
+    float weights = 0.0, specular_weights = 0.0, lobe = reflectionBlur(seen);
+    EdgeStop stop = edgeStopOf(seen);
     for (int i = 0; i < 4; i++) {
         ivec2 at = pixel + ivec2(i & 1, i >> 1);
-        bool own = at == pixel;
-        float weight = own ? 1.0 : likeness(at, like);
+        bool self = at == pixel;
+        float weight = self ? 1.0 : edgeStoppingWeight(at, stop);
         diffuse += weight * texelFetch(smoothedDiffuse, at, 0);
         weights += weight;
-        weight *= own ? 1.0 : lobe;
+        weight *= self ? 1.0 : lobe;
         specular += weight * texelFetch(smoothedSpecular, at, 0).rgb;
         specular_weights += weight;
     }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// First half of the filter over gathered light: the mean of every other pixel in 8x8. Shading averages 2x2 of these means. Together
-// they read each pixel of the pattern once, with 20 lookups instead of 64.
+// First half of the filter over gathered light: the mean of every other pixel in 8x8. Shading averages 2x2 of
+// these means. Together they read each pixel of the pattern once, with 20 lookups instead of 64.
 #include "params.glsl"
 #include "common/gbuffer_read.glsl"
 #include "shade/filter.glsl"
@@ -22,17 +22,17 @@ void main() {
         imageStore(smoothedSpecular, pixel, vec4(0.0));
         return;
     }
-    Likeness like = likenessOf(seen);
+    EdgeStop stop = edgeStopOf(seen);
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
-    float weights = 0.0, specular_weights = 0.0, lobe = blurs(seen);
+    float weights = 0.0, specular_weights = 0.0, lobe = reflectionBlur(seen);
     for (int i = 0; i < 16; i++) {
         ivec2 at = pixel + 2 * (ivec2(i & 3, i >> 2) - 2);
-        bool own = at == pixel;
-        float weight = own ? 1.0 : likeness(at, like);
+        bool self = at == pixel;
+        float weight = self ? 1.0 : edgeStoppingWeight(at, stop);
         diffuse += weight * texelFetch(gatheredDiffuse, at, 0);
         weights += weight;
-        weight *= own ? 1.0 : lobe;
+        weight *= self ? 1.0 : lobe;
         specular += weight * texelFetch(gatheredSpecular, at, 0).rgb;
         specular_weights += weight;
     }
