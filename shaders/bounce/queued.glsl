@@ -26,25 +26,30 @@ layout(local_size_x = BOUNCE_SIDES, local_size_y = BOUNCE_THREADS) in;
 
 shared vec3 shared_light[BOUNCE_THREADS][BOUNCE_SIDES];
 
+vec3 gatheredShare(uint surfel, uint side, int part) {
+    Side s = sideOfSurfel(surfel, side);
+    if (s.normal == vec3(0.0)) return vec3(0.0);
+    ivec3 cell = cellOfSurfel(surfel);
+    uint axis = uint(axisOfSurfel(surfel));
+    vec3 p = surfelPosition(placed.maps[cascadeOf(cell)], cell, surfelBase(surfel), side, axis);
+    return gatherAt(p, s.normal, emits(surfel, side), patternOf(uvec3(cell)), part, int(BOUNCE_THREADS));
+}
+
 void main() {
     uint lane = gl_LocalInvocationID.x, part = gl_LocalInvocationID.y, count = bounceCounter.count;
-    for (uint start = gl_WorkGroupID.x * BOUNCE_SIDES; start < count; start += gl_NumWorkGroups.x * BOUNCE_SIDES) {
+    uint stride = gl_NumWorkGroups.x * BOUNCE_SIDES;
+    for (uint start = gl_WorkGroupID.x * BOUNCE_SIDES; start < count; start += stride) {
         vec3 light = vec3(0.0);
-        uint number = 0;
+        uint index = 0;
         if (start + lane < count) {
-            uint i = bounceQueue.items[start + lane], surfel = i / SIDES, side = i % SIDES;
-            ivec3 cell = cellOfSurfel(surfel);
-            uint axis = uint(axisOfSurfel(surfel)), base = surfelBase(surfel);
-            Side s = sideOfSurfel(surfel, side);
-            number = sideNumber(surfel, side);
-            if (s.normal != vec3(0.0))
-                light = gatherAt(surfelPosition(placed.maps[cascadeOf(cell)], cell, base, side, axis), s.normal, emits(surfel, side), patternOf(uvec3(cell)), int(part), int(BOUNCE_THREADS));
+            index = bounceQueue.items[start + lane];
+            light = gatheredShare(index / SIDES, index % SIDES, int(part));
         }
         shared_light[part][lane] = light;
         barrier();
         if (part == 0 && start + lane < count) {
             for (uint k = 1; k < BOUNCE_THREADS; k++) light += shared_light[k][lane];
-            sideGathered.list[number] = packLight(light, timesOf(sideGathered.list[number]));
+            sideGathered.list[index] = packLight(light, timesOf(sideGathered.list[index]));
         }
         barrier();
     }
