@@ -14,13 +14,8 @@ const TURNS: usize = 8;
 
 /// Rays of one bounce: nothing else takes more than a frame to settle.
 fn session(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Session {
-    let base = [
-        ("voxel_dim", "48"),
-        ("shadow_dim", "512"),
-        ("bounces", "one"),
-        ("gather_frames", "8"),
-        ("pixel_cones", "16"),
-    ];
+    let base =
+        [("voxel_dim", "48"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "8"), ("pixel_cones", "16")];
     let base: Vec<_> = base.into_iter().filter(|(name, _)| settings.iter().all(|(n, _)| n != name)).collect();
     let e = experiment(&scene.name, SIZE, &[&base[..], settings].concat());
     lab.prepare(&e, scene.clone(), |_| Ok(vec!["radiance".into(), "gatheredDiffuse".into()])).unwrap().0

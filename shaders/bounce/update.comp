@@ -22,9 +22,9 @@ uint phaseOf(uvec3 brick) {
 // has gathered in as many frames as there are phases, so that the first pictures have light.
 bool updateHistory(uint surfel, uint side, bool has_history) {
     if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return false;
-    uint number = sideNumber(surfel, side), phases = uint(params.bounce_frames);
+    uint index = sideNumber(surfel, side), phases = uint(params.bounce_frames);
     if (!has_history) {
-        sideGathered.list[number] = uvec2(0);
+        sideGathered.list[index] = uvec2(0);
         return false;
     }
     ivec3 cell = cellOfSurfel(surfel);
@@ -33,7 +33,7 @@ bool updateHistory(uint surfel, uint side, bool has_history) {
     uvec2 last = reprojected(p, cascade, uint(axisOfSurfel(surfel)), side);
     float updates = timesOf(last);
     bool due = updates < float(phases) || phaseOf(uvec3(cell) >> 2) == camera.frame % phases;
-    sideGathered.list[number] = due ? packLight(vec3(0.0), min(updates + 1.0, float(phases))) : last;
+    sideGathered.list[index] = due ? packLight(vec3(0.0), min(updates + 1.0, float(phases))) : last;
     return due;
 }
 

@@ -27,11 +27,11 @@ vec2 middleOf(uvec2 mask) {
     float count = 0.0;
     for (int row = 0; row < 8; row++) {
         uint bits = (row < 4 ? mask.x : mask.y) >> 8 * (row & 3) & 255u;
-        float many = float(bitCount(bits));
+        float row_count = float(bitCount(bits));
         // Sum of the places of the bits that are set.
         float columns = float(bitCount(bits & 0xaau) + 2 * bitCount(bits & 0xccu) + 4 * bitCount(bits & 0xf0u));
-        sum += vec2(columns, many * float(row));
-        count += many;
+        sum += vec2(columns, row_count * float(row));
+        count += row_count;
     }
     return count > 0.0 ? (sum / count + 0.5) / 8.0 - 0.5 : vec2(0.0);
 }

@@ -19,16 +19,16 @@ vec3 unpackNormal(vec2 p) {
 const uint HALF_ONE = 0x3c00u;
 const uint MOST_DIELECTRICS = 64u; // with number 0; the largest then is below infinity
 
-float packMetallic(float metallic, uint number) {
-    if (number == 0u) return metallic;
-    return unpackHalf2x16(HALF_ONE + 1u + (min(number, MOST_DIELECTRICS - 1u) - 1u) * 256u + uint(clamp(metallic, 0.0, 1.0) * 255.0 + 0.5)).x;
+float packMetallic(float metallic, uint index) {
+    if (index == 0u) return metallic;
+    return unpackHalf2x16(HALF_ONE + 1u + (min(index, MOST_DIELECTRICS - 1u) - 1u) * 256u + uint(clamp(metallic, 0.0, 1.0) * 255.0 + 0.5)).x;
 }
 
-float unpackMetallic(float code, out uint number) {
-    number = 0u;
+float unpackMetallic(float code, out uint index) {
+    index = 0u;
     if (code <= 1.0) return code;
     uint steps = (packHalf2x16(vec2(code, 0.0)) & 0xffffu) - HALF_ONE - 1u;
-    number = 1u + steps / 256u;
+    index = 1u + steps / 256u;
     return float(steps % 256u) / 255.0;
 }
 

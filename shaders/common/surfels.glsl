@@ -47,12 +47,12 @@ uint planeWord(uint base, uint side) {
     return base + side;
 }
 
-// normal: positive along its axis. own: bits 0 and 1, whether side 0 and 1 have surfaces. A side without is
-// the back of the other.
-void storePlane(uint word, vec3 normal, uint axis, float offset, uint own) {
+// normal: positive along its axis. present: bits 0 and 1, whether side 0 and 1 have surfaces. A side without
+// is the back of the other.
+void storePlane(uint word, vec3 normal, uint axis, float offset, uint present) {
     vec2 lateral = lateralOf(normal, axis);
     uvec2 s = uvec2(clamp(lateral / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
-    storeSurfelData(word, s.x | s.y << 10 | storedOffset(offset) << 20 | own << 30);
+    storeSurfelData(word, s.x | s.y << 10 | storedOffset(offset) << 20 | present << 30);
 }
 
 Plane unpackPlane(uint w, uint axis) {

@@ -83,13 +83,13 @@ float lobeShare(SkyShine shine, float density) {
 
 // Light of one direction drawn from the sky at p; `drawn`: how many directions the diffuse and the specular lobe draw here, on average.
 // Nobody has drawn any at a path's end, where the sun alone counts, as lights do.
-SkyLight skyLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 drawn, bool only_sun, vec4 u) {
+SkyLight skyLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 samples, bool only_sun, vec4 u) {
     vec3 d;
     SkyShine shine = drawSky(u, d);
     float cosine = dot(s.normal, d);
     if (cosine <= 0.0 || dot(face, d) <= 0.0 || shine.density <= 0.0 || only_sun && shine.sun == vec3(0.0)) return NO_SKY_LIGHT;
     if (blocked(Ray(offsetPoint(p, face), d, 1e30))) return NO_SKY_LIGHT;
-    vec2 densities = shine.density + drawn * vec2(diffuseDensity(s, d), specularDensity(s, view, d));
+    vec2 densities = shine.density + samples * vec2(diffuseDensity(s, d), specularDensity(s, view, d));
     vec3 diffuse = diffuseBrdf(s) * cosine / densities.x, specular = specularBrdf(s, view, d) * cosine / densities.y;
     vec3 sky = only_sun ? vec3(0.0) : shine.sky;
     return SkyLight(diffuse * sky, specular * sky, (diffuse + specular) * shine.sun);

@@ -18,12 +18,12 @@ bool isEmpty(uint found) {
 
 void main() {
     uint lane = gl_LocalInvocationIndex & 31u;
-    for (uint number = gl_GlobalInvocationID.x >> 5; number < 2 * voxelCounter.bricks; number += gl_NumWorkGroups.x * 4) {
+    for (uint index = gl_GlobalInvocationID.x >> 5; index < 2 * voxelCounter.bricks; index += gl_NumWorkGroups.x * 4) {
         uint bit = 1u << lane;
-        uvec4 word = voxelBricks.words[number];
+        uvec4 word = voxelBricks.words[index];
         if ((occupiedCells(word) & bit) == 0) continue;
         uint found = foundIn(word, bit);
         if (isEmpty(found)) continue;
-        imageStore(voxelIndex, storedCellAt(voxelPlaces.bricks[number / 2], 32 * (number & 1u) + lane), uvec4(found == 0 ? ~0u : found));
+        imageStore(voxelIndex, storedCellAt(voxelPlaces.bricks[index / 2], 32 * (index & 1u) + lane), uvec4(found == 0 ? ~0u : found));
     }
 }

@@ -26,8 +26,8 @@ void main() {
         for (uint word = 0; word < SURFEL_CELL; word++) voxelKept.words[first + word] = surfelSums.words[i * SURFEL_SUM_WORDS + word];
         voxelKept.words[first + SURFEL_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
         for (uint side = 0; side < SIDES; side++) {
-            bool own = surfelSums.words[sideBase(i, side) + 3] != 0; // else its parts are those of the other
-            for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_MASKS + 2 * side + k] = own ? surfelData(coverageMaskWord(base, side) + k) : 0;
+            bool has_surfaces = surfelSums.words[sideBase(i, side) + 3] != 0; // else its parts are those of the other
+            for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_MASKS + 2 * side + k] = has_surfaces ? surfelData(coverageMaskWord(base, side) + k) : 0;
             voxelKept.words[first + KEPT_MASKS + 2 * SIDES + side] = surfelData(frontLayerWord(base, side));
         }
     }

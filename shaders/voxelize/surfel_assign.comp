@@ -9,8 +9,8 @@
 layout(local_size_x = 128) in;
 
 // Writes cell and axis to the surfels of a cell.
-void nameSurfels(uint number, uvec4 word, uint bit) {
-    uint packed = packCell(storedCellAt(voxelPlaces.bricks[number / 2], 32 * (number & 1u) + bit)), found = foundIn(word, 1u << bit);
+void nameSurfels(uint index, uvec4 word, uint bit) {
+    uint packed = packCell(storedCellAt(voxelPlaces.bricks[index / 2], 32 * (index & 1u) + bit)), found = foundIn(word, 1u << bit);
     for (uint axis = 0; axis < 3; axis++)
         if ((found >> axis & 1u) != 0) surfelSums.words[surfelOf(found, axis) * SURFEL_SUM_WORDS + SURFEL_CELL] = packed | (axis + 1) << 30;
 }
@@ -18,12 +18,12 @@ void nameSurfels(uint number, uvec4 word, uint bit) {
 void main() {
     uint lane = gl_LocalInvocationIndex & 31u, part = gl_LocalInvocationIndex >> 5;
     for (uint start = gl_WorkGroupID.x * 4; start < 2 * voxelCounter.bricks; start += gl_NumWorkGroups.x * 4) {
-        uint number = start + part;
-        bool valid = number < 2 * voxelCounter.bricks;
-        uvec4 word = valid ? voxelBricks.words[number] : uvec4(0);
+        uint index = start + part;
+        bool valid = index < 2 * voxelCounter.bricks;
+        uvec4 word = valid ? voxelBricks.words[index] : uvec4(0);
         barrier();
-        word.w += voxelStarts.surfels[number / CHUNK_WORDS];
-        if (lane == 0 && valid) voxelBricks.words[number].w = word.w;
-        if ((occupiedCells(word) >> lane & 1u) != 0) nameSurfels(number, word, lane);
+        word.w += voxelStarts.surfels[index / CHUNK_WORDS];
+        if (lane == 0 && valid) voxelBricks.words[index].w = word.w;
+        if ((occupiedCells(word) >> lane & 1u) != 0) nameSurfels(index, word, lane);
     }
 }

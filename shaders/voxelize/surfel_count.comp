@@ -14,9 +14,9 @@ void main() {
         before[i] = sum;
         sum += bitCount(word.x) + bitCount(word.y) + bitCount(word.z);
     }
-    uint own = sum;
-    sum = inclusiveSum(own);
+    uint count = sum;
+    sum = inclusiveSum(count);
     for (uint i = 0; i < THREAD_WORDS; i++)
-        if (first + i < words) voxelBricks.words[first + i].w = sum - own + before[i];
+        if (first + i < words) voxelBricks.words[first + i].w = sum - count + before[i];
     if (thread == CHUNK_THREADS - 1) voxelChunks.surfels[gl_WorkGroupID.x] = sum;
 }

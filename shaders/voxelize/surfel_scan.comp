@@ -9,9 +9,9 @@
 
 void main() {
     uint chunks = voxelCounter.chunk_groups.x, thread = gl_LocalInvocationIndex, share = (chunks + CHUNK_THREADS - 1) / CHUNK_THREADS;
-    uint first = min(thread * share, chunks), end = min(first + share, chunks), own = 0;
-    for (uint i = first; i < end; i++) own += voxelChunks.surfels[i];
-    uint sum = inclusiveSum(own), before = sum - own;
+    uint first = min(thread * share, chunks), end = min(first + share, chunks), share_sum = 0;
+    for (uint i = first; i < end; i++) share_sum += voxelChunks.surfels[i];
+    uint sum = inclusiveSum(share_sum), before = sum - share_sum;
     for (uint i = first; i < end; i++) {
         voxelStarts.surfels[i] = before;
         before += voxelChunks.surfels[i];
