@@ -34,7 +34,8 @@ void gatherQueued(uint word, bool gathers) {
         GBufferSurface seen = gbufferAt(gathering);
         seen.surface.multiple = vec3(1.0); // cancels between here and the shading
         gatherShare = RayShare(rays, emitters, int(part), int(GATHER_THREADS));
-        light = gather(coneOrigin(seen.position, seen.face, seen.surface.normal), seen.surface, seen.face, seen.to_viewer);
+        ConeOrigin origin = coneOrigin(seen.position, seen.face, seen.surface.normal);
+        light = gather(origin, seen.surface, seen.face, seen.to_viewer);
         light.specular /= max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);
     }
     shared_hemisphere[part][lane] = light.hemisphere;
@@ -50,8 +51,8 @@ void gatherQueued(uint word, bool gathers) {
 }
 
 void main() {
-    uint count = gatherCounter.count;
-    for (uint start = gl_WorkGroupID.x * GATHER_PIXELS; start < count; start += gl_NumWorkGroups.x * GATHER_PIXELS) {
+    uint count = gatherCounter.count, stride = gl_NumWorkGroups.x * GATHER_PIXELS;
+    for (uint start = gl_WorkGroupID.x * GATHER_PIXELS; start < count; start += stride) {
         uint i = start + gl_LocalInvocationID.x;
         gatherQueued(i < count ? gatherQueue.items[i] : 0, i < count);
         barrier();

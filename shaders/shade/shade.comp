@@ -45,7 +45,8 @@ Filtered filtered(ivec2 pixel, GBufferSurface seen) {
         specular += weight * texelFetch(smoothedSpecular, at, 0).rgb;
         specular_weights += weight;
     }
-    specular *= max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE) / max(specular_weights, 1e-6);
+    vec3 reflectance = max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);
+    specular *= reflectance / max(specular_weights, 1e-6);
     return Filtered(diffuse / max(weights, 1e-6), specular);
 }
 

@@ -1,5 +1,5 @@
-// Final shading (thesis, Algorithm 3). Indirect diffuse light is albedo * sum_c w_c L_c with L_c the mean radiance of a
-// cone, sky included where it escapes.
+// Final shading (thesis, Algorithm 3). Indirect diffuse light is albedo * sum_c w_c L_c with L_c the mean
+// radiance of a cone, sky included where it escapes.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 #include "modules/trace.glsl"

@@ -10,16 +10,21 @@ layout(local_size_x = 128) in;
 
 // Writes cell and axis to the surfels of a cell.
 void nameSurfels(uint index, uvec4 word, uint bit) {
-    uint packed = packCell(storedCellAt(voxelPlaces.bricks[index / 2], 32 * (index & 1u) + bit)), found = foundIn(word, 1u << bit);
-    for (uint axis = 0; axis < 3; axis++)
-        if ((found >> axis & 1u) != 0) surfelSums.words[surfelOf(found, axis) * SURFEL_SUM_WORDS + SURFEL_CELL] = packed | (axis + 1) << 30;
+    ivec3 cell = storedCellAt(voxelPlaces.bricks[index / 2], 32 * (index & 1u) + bit);
+    uint packed = packCell(cell), found = foundIn(word, 1u << bit);
+    for (uint axis = 0; axis < 3; axis++) {
+        if ((found >> axis & 1u) == 0) continue;
+        uint base = surfelOf(found, axis) * SURFEL_SUM_WORDS;
+        surfelSums.words[base + SURFEL_CELL] = packed | (axis + 1) << 30;
+    }
 }
 
 void main() {
     uint lane = gl_LocalInvocationIndex & 31u, part = gl_LocalInvocationIndex >> 5;
-    for (uint start = gl_WorkGroupID.x * 4; start < 2 * voxelCounter.bricks; start += gl_NumWorkGroups.x * 4) {
+    uint words = 2 * voxelCounter.bricks, stride = gl_NumWorkGroups.x * 4;
+    for (uint start = gl_WorkGroupID.x * 4; start < words; start += stride) {
         uint index = start + part;
-        bool valid = index < 2 * voxelCounter.bricks;
+        bool valid = index < words;
         uvec4 word = valid ? voxelBricks.words[index] : uvec4(0);
         barrier();
         word.w += voxelStarts.surfels[index / CHUNK_WORDS];

@@ -17,13 +17,20 @@ void main() {
     VolumeMap map = volume.maps[cascadeOf(cell)];
     mat3 axes = cellAxes(map, volumeToWorld(map, cellCentre(cell)));
     uint present = 0;
-    for (uint side = 0; side < SIDES; side++) present |= uint(surfelSums.words[sideBase(surfel, side) + 3] != 0) << side;
     for (uint side = 0; side < SIDES; side++) {
-        uint seen = SIDES == 1 || (present >> side & 1u) != 0 ? side : 1 - side, sums = sideBase(surfel, seen);
+        uint weight = surfelSums.words[sideBase(surfel, side) + 3];
+        present |= uint(weight != 0) << side;
+    }
+    for (uint side = 0; side < SIDES; side++) {
+        uint seen = SIDES == 1 || (present >> side & 1u) != 0 ? side : 1 - side;
+        uint sums = sideBase(surfel, seen);
         vec3 color, normal;
         mergedMean(sums, color, normal);
-        float offset = offsetOfSum(float(surfelSums.words[sums + SIDE_OFFSET]), float(surfelSums.words[sums + 3]));
+        float sum = float(surfelSums.words[sums + SIDE_OFFSET]), weight = float(surfelSums.words[sums + 3]);
+        float offset = offsetOfSum(sum, weight);
         storePlane(planeWord(base, side), (seen == 0 ? normal : -normal) * axes, axis, offset, present);
-        for (uint k = 0; seen != side && k < 2; k++) storeSurfelData(coverageMaskWord(base, side) + k, surfelData(coverageMaskWord(base, seen) + k));
+        if (seen == side) continue;
+        uint to = coverageMaskWord(base, side), from = coverageMaskWord(base, seen);
+        for (uint k = 0; k < 2; k++) storeSurfelData(to + k, surfelData(from + k));
     }
 }
