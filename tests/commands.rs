@@ -396,7 +396,7 @@ fn graph_explains_itself() {
 
     let text = graph(&["passes/rays.ron", "--size", "64x48", "--barriers"]);
     assert!(text.starts_with("graph rays: "), "{text}");
-    for part in ["\norder\n", "  shading\n", "reads voxelPlanes", "\nresources ", "voxelColor", "\nleft out\n"] {
+    for part in ["\norder\n", "  shading\n", "reads surfels", "\nresources ", "voxelColor", "\nleft out\n"] {
         assert!(text.contains(part), "'{part}' is not in\n{text}");
     }
     assert!(text.contains("voxelize tessellated: tessellates == 1 is false"), "{text}");

@@ -24,14 +24,13 @@ use std::time::{Duration, Instant};
 const BOUND: f64 = 0.005;
 
 /// Parameters that change how light is gathered, each with one or two values.
-const OPTIONS: [(&str, &[&str]); 10] = [
+const OPTIONS: [(&str, &[&str]); 9] = [
     ("trace", &["cone_rays", "lobe_rays"]),
     ("bounces", &["one"]),
     ("bounce_trace", &["rays", "cones"]),
     ("bounce_frames", &["1", "5", "64"]),
     ("bounce_emitter_rays", &["0"]),
     ("gather_frames", &["1", "32"]),
-    ("ray_pixels", &["quarter"]),
     ("emitter_rays", &["0"]),
     ("temporal_factor", &["0.5"]),
     ("mips", &["isotropic"]),

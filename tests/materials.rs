@@ -355,7 +355,7 @@ fn specular_light_is_what_the_formula_says() {
             albedo * (1.0 - (f * single.0 + single.1) * multiple) + lobe * f * multiple
         });
         let mut found = vec![("reference", centre(&reference(&views(&scene, &[], 1), "direct", 4)))];
-        for gbuffer in ["raster", "compute32"] {
+        for gbuffer in ["raster", "compute"] {
             found.push((gbuffer, centre(&method(&views(&scene, &[("gbuffer", gbuffer)], 1), "direct"))));
         }
         for (by, found) in found {

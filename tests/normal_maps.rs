@@ -256,7 +256,7 @@ fn open(path: &Path) -> Scene {
 /// Everything that shades: the rasterised and the computed G-buffer, shading in fragments, the reference.
 const SHADERS: [(&str, How); 4] = [
     ("rasterised G-buffer", How::Method(&[("gbuffer", "raster")])),
-    ("computed G-buffer", How::Method(&[("gbuffer", "compute32")])),
+    ("computed G-buffer", How::Method(&[("gbuffer", "compute")])),
     ("forward shading", How::Method(&[("merge", "average")])),
     ("reference", How::Reference),
 ];

@@ -163,7 +163,7 @@ fn pictures_are_the_same_whatever_is_edited() {
     let home = common::home();
     // So that what gathers rests now and then between two edits.
     settles(home.path(), "bounces", "32 * bounce_frames", "5");
-    settles(home.path(), "shade", "turns + 1", "3");
+    settles(home.path(), "shade", "phases + 1", "3");
     let lab = lab(home.path());
     let mut seed = 1;
     for path in [BY_THREADS, BY_RASTER] {
@@ -197,7 +197,7 @@ fn what_nothing_has_changed_sleeps() {
         (BY_THREADS, &["shadow clear", "shadow triangles", "shadow bins", "shadow tiles"][..], "visibility tiles"),
         (BY_RASTER, &["shadow map"][..], "G-buffer"),
     ] {
-        let voxels = ["volume", "voxel slots clear", "voxel list", "voxel slots", "voxel merge", "voxel planes"];
+        let voxels = ["volume", "surfel sums clear", "surfel scan", "surfel assign", "voxel merge", "surfel planes"];
         // A lamp of one shadow map: layers are drawn one by one, and a clear of one leaves the others.
         let mut pair = Pair::new(&lab, "cornell", &path);
         let slept = pair.frame("the first");
@@ -237,7 +237,7 @@ fn what_gathers_over_frames_rests() {
     let lab = lab(root());
     // Something emits in cornell.
     let (gather, rays) = ("gather from emitters", "rays and emitters");
-    let gathering = ["bounces begin", "kept bounces", gather, "inject"];
+    let gathering = ["bounce queue clear", "bounce history", gather, "inject"];
     for path in [BY_THREADS, BY_RASTER] {
         // Light has gone round 32 times after 64 frames.
         let settings = [("bounce_frames", "2"), ("gather_frames", "4")];

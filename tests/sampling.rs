@@ -229,7 +229,7 @@ enum How {
 /// Everything that shades: G-buffers that are rasterised and computed, shading in fragments, the reference.
 const SHADERS: [(&str, How); 4] = [
     ("rasterised G-buffer", How::Method(&[("gbuffer", "raster")])),
-    ("computed G-buffer", How::Method(&[("gbuffer", "compute32")])),
+    ("computed G-buffer", How::Method(&[("gbuffer", "compute")])),
     ("forward shading", How::Method(&[("merge", "average")])),
     ("reference", How::Reference),
 ];

@@ -14,14 +14,8 @@ const TURNS: usize = 8;
 
 /// Rays of one bounce: nothing else takes more than a frame to settle.
 fn session(lab: &Lab, scene: &Arc<Scene>, settings: &[(&str, &str)]) -> Session {
-    let base = [
-        ("voxel_dim", "48"),
-        ("shadow_dim", "512"),
-        ("bounces", "one"),
-        ("gather_frames", "8"),
-        ("pixel_rays", "16"),
-        ("ray_pixels", "all"),
-    ];
+    let base =
+        [("voxel_dim", "48"), ("shadow_dim", "512"), ("bounces", "one"), ("gather_frames", "8"), ("pixel_rays", "16")];
     let base: Vec<_> = base.into_iter().filter(|(name, _)| settings.iter().all(|(n, _)| n != name)).collect();
     let e = experiment(&scene.name, SIZE, &[&base[..], settings].concat());
     lab.prepare(&e, scene.clone(), |_| Ok(vec!["radiance".into(), "gatheredDiffuse".into()])).unwrap().0
@@ -113,38 +107,6 @@ fn a_cut_takes_no_light_along() {
     let (cut_error, first_error) = (error(&cut, &settled), error(&first, &settled));
     println!("error of the first frame after a cut {cut_error:.4}, of a first frame {first_error:.4}");
     assert!(cut_error < 1.5 * first_error + 1e-6, "the first frame after a cut is worse than a first frame");
-}
-
-/// A quarter or a sixteenth of the pixels trace for the others: the same light to a few percent.
-#[test]
-fn few_pixels_gather_for_all() {
-    let lab = lab(root());
-    for name in ["cornell", "gloss"] {
-        let scene = scene(name);
-        let settled = |settings: &[(&str, &str)], frames: usize| {
-            let mut s = session(&lab, &scene, settings);
-            gathered(&lab, &mut s, frames);
-            (radiance(&mut s), floats(&mut s, "radiance", 0), s)
-        };
-        let (_, truth, _) = settled(&[("gather_frames", "1"), ("pixel_rays", "64")], 1);
-        let (_, all, _) = settled(&[], TURNS);
-        for (pixels, rays) in [("quarter", "64"), ("sixteenth", "64")] {
-            let few = [("ray_pixels", pixels), ("pixel_rays", rays)];
-            let (bits, picture, mut live) = settled(&few, 2 * TURNS);
-            let (energy, noise) = (light(&picture) / light(&truth), [&picture, &all].map(|p| error(p, &truth)));
-            println!("{name}, {pixels}: energy {energy:.4}, errors {noise:.5?}");
-            assert!((energy - 1.0).abs() < 0.03, "{name}, {pixels}: light is lost or made: {energy}");
-            assert!(noise[0] < 0.05, "{name}, {pixels}: {noise:?}");
-            // Turns add up to all rays in one frame, and what stands still rests; mirrors gather in every frame, other rays in their turn.
-            if name == "gloss" {
-                continue;
-            }
-            let at_once = settled(&[few[0], few[1], ("gather_frames", "1")], 2).0;
-            assert!(bits == at_once, "{name}, {pixels}: the turns do not add up");
-            gathered(&lab, &mut live, 3);
-            assert!(radiance(&mut live) == bits, "{name}, {pixels}: a still picture changes");
-        }
-    }
 }
 
 /// A camera that moves by half a pixel a frame: what is kept stays on its surface and grows no older than all turns, and rays are as many as

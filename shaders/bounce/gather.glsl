@@ -1,4 +1,4 @@
-// How a side of a voxel gathers light.
+// Light that a side of a voxel gathers.
 #ifndef BOUNCE_GATHER_GLSL
 #define BOUNCE_GATHER_GLSL
 #include "common/sides.glsl"
@@ -7,66 +7,79 @@
 #include "cones/light.glsl"
 #include "cones/emitters.glsl"
 
-// One of 64 patterns, by the place in a block of 4x4x4 cells.
+// Index of a cell in 4x4x4, of 64 patterns of directions.
 uint patternOf(uvec3 cell) {
     return ((cell.x & 3u | (cell.y & 3u) << 2 | (cell.z & 3u) << 4) * 37u) & 63u;
 }
 
-// A place of some that are drawn by what each brings, and what it brings for all of them if nothing hides it: the mean radiance over the
-// hemisphere.
-EmitterPlace bestPlace(vec3 p, vec3 n, uint number, vec4 shift, float drawn, out vec3 light) {
-    float sum = 0.0, own = 0.0, choice = fract(shift.x + float(number & 0xffffu) * 0.6180339887);
+// Resampled importance sampling (Talbot et al. 2005): picks one of CANDIDATES emitter samples by unshadowed
+// contribution. light: the contribution of all of them to the mean radiance over the hemisphere. samples:
+// emitter samples of the side in all.
+EmitterPlace resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float samples, out vec3 light) {
+    float sum = 0.0, picked = 0.0, xi = fract(shift.x + float(index & 0xffffu) * 0.6180339887);
     EmitterPlace best;
     best.cosine = 0.0;
     light = vec3(0.0);
     for (uint k = 0; k < uint(CANDIDATES); k++) {
-        EmitterPlace place = drawEmitter(p, evenPoint4(number * uint(CANDIDATES) + k, shift));
-        float cosine = dot(n, place.direction) / PI, found = drawn * place.by_area * place.distance * place.distance;
+        EmitterPlace place = drawEmitter(p, evenPoint4(index * uint(CANDIDATES) + k, shift));
+        float cosine = dot(n, place.direction) / PI;
+        float pdf = samples * place.by_area * place.distance * place.distance;
         if (cosine <= 0.0 || place.cosine == 0.0) continue;
-        vec3 brings = place.radiance * place.cosine * cosine / (found + float(params.bounce_directions) * cosine);
-        float weight = luminance(brings);
+        float pdf_sum = pdf + float(params.bounce_directions) * cosine;
+        vec3 unshadowed = place.radiance * place.cosine * cosine / pdf_sum;
+        float weight = luminance(unshadowed);
         sum += weight;
-        float chance = weight / sum;
-        if (choice < chance) {
-            choice /= chance;
+        float probability = weight / sum;
+        if (xi < probability) {
+            xi /= probability;
             best = place;
-            light = brings;
-            own = weight;
+            light = unshadowed;
+            picked = weight;
         } else {
-            choice = (choice - chance) / (1.0 - chance);
+            xi = (xi - probability) / (1.0 - probability);
         }
     }
-    light *= own > 0.0 ? sum / own : 0.0;
+    light *= picked > 0.0 ? sum / picked : 0.0;
     return best;
 }
 
-// What every `of`-th ray or cone gathers, from `first` on, of the mean of all. `lamp`: it is of one.
+int emitterRays() {
+    bool samples_emitters = BOUNCE_DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0;
+    return samples_emitters ? params.bounce_emitter_rays : 0;
+}
+
+// This thread's share (rays first, first + of, ...) of the mean radiance over the hemisphere. lamp: the
+// surface is an emitter.
 vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
     ConeOrigin o = coneOrigin(p, n, n);
     mat3 frame = frameOf(n);
     vec3 sum = vec3(0.0);
-    int rays = params.bounce_directions, drawn = BOUNCE_DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? params.bounce_emitter_rays : 0;
-    float candidates = float(drawn * CANDIDATES), own = lamp && drawn > 0 ? OWN_LAMP * 2.0 * o.reach : 0.0;
-    for (int i = first; i < rays + drawn; i += of) {
+    int rays = params.bounce_directions, samples = emitterRays();
+    float candidates = float(samples * CANDIDATES);
+    float self = lamp && samples > 0 ? OWN_LAMP * 2.0 * o.reach : 0.0;
+    for (int i = first; i < rays + samples; i += of) {
         RayUse use = MEETS_ALL;
         vec3 d, light;
         if (i < rays) {
-            d = frame * cosineSample(evenPoint(uint(i) * 64u + pattern));
-            if (drawn > 0) use = RayUse(1e30, lamp ? LEAVES_ALL : float(rays) * dot(d, n) / PI, candidates, 1e30);
+            d = frame * cosineSample(r2(uint(i) * 64u + pattern));
+            float density = lamp ? LEAVES_ALL : float(rays) * dot(d, n) / PI;
+            if (samples > 0) use = RayUse(1e30, density, candidates, 1e30);
         } else {
-            EmitterPlace place = bestPlace(o.surface, n, uint(i - rays) * 64u + pattern, vec4(0.5), candidates, light);
-            if (place.cosine == 0.0 || place.distance < own) continue;
+            uint index = uint(i - rays) * 64u + pattern;
+            EmitterPlace place = resampleEmitter(o.surface, n, index, vec4(0.5), candidates, light);
+            if (place.cosine == 0.0 || place.distance < self) continue;
             d = place.direction;
             use = rayTo(place, o.surface);
         }
-        vec4 met = traceBounce(o, d, use);
-        sum += i < rays ? coneRadiance(met, d, PI / float(rays)) / float(rays) : (1.0 - met.a) * light;
+        vec4 hit = traceBounce(o, d, use);
+        if (i < rays) sum += coneRadiance(hit, d, PI / float(rays)) / float(rays);
+        else sum += (1.0 - hit.a) * light;
     }
     return sum;
 }
 
-// Where the surfaces of a side of a slot are.
-vec3 slotPosition(VolumeMap map, ivec3 cell, uint base, uint side, uint axis) {
+// Middle of the surfaces of a side, in the world.
+vec3 surfelPosition(VolumeMap map, ivec3 cell, uint base, uint side, uint axis) {
     vec3 center = volumeToWorld(map, cellCentre(cell));
     return center + cellAxes(map, center) * planeMiddle(base, side, axis);
 }

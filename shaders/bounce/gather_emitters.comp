@@ -1,4 +1,4 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // In a scene with emitters.
-#include "bounce/listed.glsl"
+#include "bounce/queued.glsl"

@@ -2,8 +2,7 @@
 // Every function returns the BRDF [1/sr]; irradiance and the cosine are the caller's.
 #ifndef BRDF_GLSL
 #define BRDF_GLSL
-
-const float PI = 3.14159265359;
+#include "common/math.glsl"
 
 struct Surface {
     vec3 normal; // shading normal, facing the viewer

@@ -1,6 +1,6 @@
 // Where surfaces are: cells in bricks of 4x4x4, bricks in blocks of 4x4x4. Only bricks with a surface are stored, in the order of their
 // blocks. A block says which of its bricks those are and the number of the first: rays pass empty space in a cache, 16 bytes for 16^3
-// cells. A brick has two words, 32 cells each: a bit each for facing along x, y and z, and the first of their slots.
+// cells. A brick has two words, 32 cells each: a bit each for facing along x, y and z, and the first of their surfels.
 #ifndef BRICKS_GLSL
 #define BRICKS_GLSL
 #include "common/volume.glsl"
@@ -69,8 +69,8 @@ uint occupiedCells(uvec4 word) {
     return word.x | word.y | word.z;
 }
 
-// What a word says of a cell: along which axes its surfaces face, three bits, and above them the first of as many slots. 0: it has none,
-// or the list of slots had no room left.
+// What a word says of a cell: along which axes its surfaces face, three bits, and above them the first of as many surfels. 0: it has none,
+// or the list of surfels had no room left.
 uint foundIn(uvec4 word, uint bit) {
     uint axes = uint((word.x & bit) != 0) | uint((word.y & bit) != 0) << 1 | uint((word.z & bit) != 0) << 2, before = bit - 1u;
     uint first = word.w + bitCount(word.x & before) + bitCount(word.y & before) + bitCount(word.z & before);

@@ -46,9 +46,9 @@ bool isOuter(uint sides, bool front) {
 
 // u: four numbers in [0, 1). There is an emitter.
 EmitterPlace drawEmitter(vec3 from, vec4 u) {
-    uint number = min(uint(u.x * float(emitters.count)), emitters.count - 1);
-    if (u.y >= emitters.list[number].chance) number = emitters.list[number].other;
-    Emitter e = emitters.list[number];
+    uint index = min(uint(u.x * float(emitters.count)), emitters.count - 1);
+    if (u.y >= emitters.list[index].chance) index = emitters.list[index].other;
+    Emitter e = emitters.list[index];
     float side = sqrt(u.z);
     vec3 to = e.a - from + side * (1.0 - u.w) * e.to_b + side * u.w * e.to_c;
     float distance = length(to);
@@ -67,8 +67,8 @@ float emitterDensity(uint flags, vec2 weights, bool front) {
     vec2 within = at - vec2(part);
     part.x = min(part.x, parts - 1 - part.y);
     uint upper = within.x + within.y > 1.0 && part.x + part.y + 1 < parts ? 1u : 0u;
-    uint number = first - 1 + part.y * (2 * parts - part.y) + 2 * part.x + upper;
-    return isOuter(emitters.list[number].sides, front) ? emitters.list[number].density : 0.0;
+    uint index = first - 1 + part.y * (2 * parts - part.y) + 2 * part.x + upper;
+    return isOuter(emitters.list[index].sides, front) ? emitters.list[index].density : 0.0;
 }
 
 #endif

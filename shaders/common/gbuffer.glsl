@@ -4,18 +4,14 @@
 #ifndef GBUFFER_GLSL
 #define GBUFFER_GLSL
 
-// Octahedral map of the unit sphere to [0,1]^2 (Cigolle et al. 2014).
+#include "common/math.glsl"
+
 vec2 packNormal(vec3 n) {
-    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
-    if (n.z < 0.0) p = (1.0 - abs(p.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
-    return p * 0.5 + 0.5;
+    return octahedral(n) * 0.5 + 0.5;
 }
 
 vec3 unpackNormal(vec2 p) {
-    p = p * 2.0 - 1.0;
-    vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(n.xy, vec2(0.0)));
-    return normalize(n);
+    return fromOctahedral(p * 2.0 - 1.0);
 }
 
 // Metallic, and the number of the dielectric that the rest is, in the bits of a 16-bit float. Of number 0 it is metallic itself; of another
@@ -23,16 +19,16 @@ vec3 unpackNormal(vec2 p) {
 const uint HALF_ONE = 0x3c00u;
 const uint MOST_DIELECTRICS = 64u; // with number 0; the largest then is below infinity
 
-float packMetallic(float metallic, uint number) {
-    if (number == 0u) return metallic;
-    return unpackHalf2x16(HALF_ONE + 1u + (min(number, MOST_DIELECTRICS - 1u) - 1u) * 256u + uint(clamp(metallic, 0.0, 1.0) * 255.0 + 0.5)).x;
+float packMetallic(float metallic, uint index) {
+    if (index == 0u) return metallic;
+    return unpackHalf2x16(HALF_ONE + 1u + (min(index, MOST_DIELECTRICS - 1u) - 1u) * 256u + uint(clamp(metallic, 0.0, 1.0) * 255.0 + 0.5)).x;
 }
 
-float unpackMetallic(float code, out uint number) {
-    number = 0u;
+float unpackMetallic(float code, out uint index) {
+    index = 0u;
     if (code <= 1.0) return code;
     uint steps = (packHalf2x16(vec2(code, 0.0)) & 0xffffu) - HALF_ONE - 1u;
-    number = 1u + steps / 256u;
+    index = 1u + steps / 256u;
     return float(steps % 256u) / 255.0;
 }
 

@@ -35,9 +35,9 @@ GBufferSurface gbufferAt(ivec2 pixel) {
     if (dot(seen.face, ray) > 0.0) seen.face = -seen.face;
     vec3 normal = unpackNormal(normals.xy);
     if (dot(normal, seen.face) < -0.5) normal = -normal; // mapped normals lean, mixtures may point anywhere
-    uint number;
-    float metallic = unpackMetallic(emission.a, number);
-    vec4 dielectric = number == 0u ? PLAIN_DIELECTRIC : dielectrics.list[number];
+    uint index;
+    float metallic = unpackMetallic(emission.a, index);
+    vec4 dielectric = index == 0u ? PLAIN_DIELECTRIC : dielectrics.list[index];
     seen.surface = makeSurface(normal, base.rgb, base.a, metallic, dielectric, seen.to_viewer);
     seen.emission = emission.rgb;
     return seen;

@@ -2,9 +2,13 @@
 #ifndef PATTERN_GLSL
 #define PATTERN_GLSL
 
-// Point i of an additive recurrence that fills the square evenly (Roberts 2018, R2).
-vec2 evenPoint(uint i) {
-    return fract(vec2(0.5) + float(i) * vec2(0.7548776662, 0.5698402910));
+// Point i of the R2 sequence (Roberts 2018), which fills the unit square evenly; and the same moved by a shift.
+vec2 r2(uint i, vec2 shift) {
+    return fract(shift + float(i) * vec2(0.7548776662, 0.5698402910));
+}
+
+vec2 r2(uint i) {
+    return r2(i, vec2(0.5));
 }
 
 // Number of a pixel in its block of 8x8, 0 to 63: numbers that follow each other lie far apart.

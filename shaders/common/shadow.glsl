@@ -27,7 +27,7 @@ vec3 offSurface(vec3 p, vec3 n, vec3 to_light, float radius) {
     return p + radius * (side * sqrt(max(1.0 - cosine * cosine, 0.0)) + 0.5 * to_light);
 }
 
-// shadowVisibility: in [0,1], of a light from p on a surface with geometric normal n (facing the viewer).
+// lightVisibility: in [0,1], of a light from p on a surface with geometric normal n (facing the viewer).
 #include "modules/shadow_receiver.glsl"
 
 #endif

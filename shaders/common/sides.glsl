@@ -1,8 +1,8 @@
-// What the slots of a cell say of its surfaces, side by side.
+// Mean surface properties of one side of a surfel.
 #ifndef SIDES_GLSL
 #define SIDES_GLSL
 #include "common/volume.glsl"
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 #include "modules/merge.glsl"
 
 struct Side {
@@ -15,33 +15,33 @@ struct Side {
 
 // Area of a side's surfaces for each area that rays meet of it, where the voxelizer measures both. More than one: a lamp before a
 // ceiling, in one cell, hides it, and must not be dimmed by the mean of both. Less: the parts of a small lamp are larger than it.
-float areaRatio(uint slot, uint side) {
+float areaRatio(uint surfel, uint side) {
     bool measured = !WARPED && params.areas_measured != 0;
-    uvec2 parts = partsOf(planeBase(slot), side);
-    float covered = 16.0 * float(bitCount(parts.x) + bitCount(parts.y));
-    return measured && covered > 0.0 ? float(voxelSlots.words[sideBase(slot, side) + 3]) / covered : 1.0;
+    uvec2 mask = coverageMaskOf(surfelBase(surfel), side);
+    float covered = 16.0 * float(bitCount(mask.x) + bitCount(mask.y));
+    return measured && covered > 0.0 ? float(surfelSums.words[sideBase(surfel, side) + 3]) / covered : 1.0;
 }
 
 // A side without surfaces of its own is the back of the other: a sheet reflects on both sides.
-Side sideOfSlot(uint slot, uint side) {
-    bool mirrored = SIDES > 1 && voxelSlots.words[sideBase(slot, side) + 3] == 0;
+Side sideOfSurfel(uint surfel, uint side) {
+    bool mirrored = SIDES > 1 && surfelSums.words[sideBase(surfel, side) + 3] == 0;
     if (mirrored) side = 1 - side;
-    uint base = sideBase(slot, side);
+    uint base = sideBase(surfel, side);
     Side s;
     vec3 mean;
     mergedMean(base, s.color, mean);
     s.agreement = min(length(mean), 1.0);
     s.normal = s.agreement > 1e-3 ? mean / s.agreement * (mirrored ? -1.0 : 1.0) : vec3(0.0);
-    s.emission = meanEmission(base) * areaRatio(slot, side);
-    s.count = float(voxelSlots.words[base + 3]);
+    s.emission = meanEmission(base) * areaRatio(surfel, side);
+    s.count = float(surfelSums.words[base + 3]);
     return s;
 }
 
 // Whether a side is of a lamp: three words where its emission would be many.
-bool emits(uint slot, uint side) {
-    if (SIDES > 1 && voxelSlots.words[sideBase(slot, side) + 3] == 0) side = 1 - side;
-    uint base = sideBase(slot, side);
-    return (voxelSlots.words[base + 7] | voxelSlots.words[base + 8] | voxelSlots.words[base + 9]) != 0;
+bool emits(uint surfel, uint side) {
+    if (SIDES > 1 && surfelSums.words[sideBase(surfel, side) + 3] == 0) side = 1 - side;
+    uint base = sideBase(surfel, side);
+    return (surfelSums.words[base + 7] | surfelSums.words[base + 8] | surfelSums.words[base + 9]) != 0;
 }
 
 // Mean cosine between the surfaces' normals and the direction to something, none below 0. Where all normals lean towards it,

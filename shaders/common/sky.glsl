@@ -2,24 +2,23 @@
 // +y is above.
 #ifndef SKY_GLSL
 #define SKY_GLSL
+#include "common/math.glsl"
 #include "common/scene.glsl"
 
 uniform sampler2DArray skyTexture; // layer 0: without the sun that is among the lights; the last layer: with it
 
-const float SKY_PI = 3.14159265359;
-
 // Where the picture has direction d (unit length).
 vec2 skyPlace(vec3 d) {
     float azimuth = d.xz == vec2(0.0) ? 0.0 : atan(d.x, -d.z); // not defined straight up and down
-    return vec2(0.5 + azimuth / (2.0 * SKY_PI) + sceneInfo.sky_turn, acos(clamp(d.y, -1.0, 1.0)) / SKY_PI);
+    return vec2(0.5 + azimuth / (2.0 * PI) + sceneInfo.sky_turn, acos(clamp(d.y, -1.0, 1.0)) / PI);
 }
 
 // The level whose lookup, a tent three texels in area, is as large as `spread` [sr].
 float skyLevel(vec3 d, float spread) {
     vec2 size = vec2(textureSize(skyTexture, 0).xy);
     // Towards the poles texels are narrow; what is looked up is not narrower than itself.
-    float narrow = max(sqrt(max(1.0 - d.y * d.y, 0.0)), 0.67 * sqrt(spread / SKY_PI));
-    float texel = 2.0 * SKY_PI * SKY_PI / (size.x * size.y) * max(narrow, 1e-6);
+    float narrow = max(sqrt(max(1.0 - d.y * d.y, 0.0)), 0.67 * sqrt(spread / PI));
+    float texel = 2.0 * PI * PI / (size.x * size.y) * max(narrow, 1e-6);
     return max(0.5 * log2(max(spread / (3.0 * texel), 1.0)), 0.0);
 }
 
@@ -46,7 +45,7 @@ vec3 skyBehind(vec3 d) {
 
 // Solid angle of a cone by the tangent of half its aperture [sr].
 float coneSolidAngle(float tan_half) {
-    return 2.0 * SKY_PI * (1.0 - inversesqrt(1.0 + tan_half * tan_half));
+    return 2.0 * PI * (1.0 - inversesqrt(1.0 + tan_half * tan_half));
 }
 
 #endif

@@ -57,9 +57,9 @@ vec3 cellSize(VolumeMap map, vec3 p) {
 // length.
 void cellAlong(VolumeMap map, vec3 p, vec3 d, out float cell, out vec3 dir) {
     vec3 crossed = cellsPerMetre(map, p, d);
-    float many = CURVED ? max(length(crossed), 1e-6) : length(crossed);
-    cell = 1.0 / many;
-    dir = crossed / many;
+    float crossings = CURVED ? max(length(crossed), 1e-6) : length(crossed);
+    cell = 1.0 / crossings;
+    dir = crossed / crossings;
 }
 
 float cellLength(VolumeMap map, vec3 p, vec3 d) {

@@ -1,16 +1,16 @@
-// The sparse list of voxels. A slot holds the sums of what fell into a cell and faces along one axis, for its two sides apart
-// (modules/sides). The sums are integers, so their order does not matter and runs agree to the bit. Which slots a cell has is found
-// in common/bricks.glsl.
+// The list of surfels. A surfel is the surface of a cell along one axis; it has two sides (modules/sides). Fragments add to its sums,
+// which are integers: their order does not matter, and runs agree to the bit. common/bricks.glsl finds the surfels of a cell.
 #ifndef VOXELS_GLSL
 #define VOXELS_GLSL
 
+#include "common/math.glsl"
 #include "modules/sides.glsl"
 
 // Sums over what it has, by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10.
 const uint SIDE_WORDS = 11;
 const uint SIDE_OFFSET = 10;
-const uint SLOT_CELL = SIDES * SIDE_WORDS; // cell, and above it the axis + 1; 0: no slot
-const uint SLOT_WORDS = SLOT_CELL + 1;
+const uint SURFEL_CELL = SIDES * SIDE_WORDS; // cell, and above it the axis + 1; 0: no surfel
+const uint SURFEL_SUM_WORDS = SURFEL_CELL + 1;
 
 // Fixed point, times weights. Colour and normal do not overflow before a cell is covered a thousand times; emission before
 // 2.6e5 / radiance times.
@@ -19,10 +19,10 @@ const float NORMAL_SCALE = 2047.0;
 const float EMISSION_SCALE = 16.0;
 const float EMISSION_MAX = 1024.0;
 
-layout(std430) buffer VoxelSlots { uint words[]; } voxelSlots;
+layout(std430) buffer SurfelSums { uint words[]; } surfelSums;
 layout(std430) buffer VoxelCounter {
     uint overflow; // fragments that were lost: a list of voxels, bricks or fragments was full
-    uint count; // slots in the list
+    uint count; // surfels in the list
     uint fragments; // asked for
     uint bricks; // with a surface
     uint pieces; // of triangles, queued
@@ -30,7 +30,7 @@ layout(std430) buffer VoxelCounter {
     uvec3 fragment_groups; // indirect dispatch over the fragments
     uvec3 chunk_groups; // over the words of bricks, a chunk a group (voxelize/chunks.glsl)
     uvec3 word_groups; // over the words of bricks, 4 a group
-    uvec3 list_groups; // over the slots
+    uvec3 list_groups; // over the surfels
     uvec3 side_groups; // over their sides
 } voxelCounter;
 
@@ -50,24 +50,17 @@ vec3 unpackColor(uint w) {
     return vec3(w & 2047u, w >> 11 & 2047u, w >> 22) / vec3(2047.0, 2047.0, 1023.0);
 }
 
-// Octahedral (Cigolle et al. 2014), twelve bits a coordinate; 0 is no normal.
+// Octahedral, twelve bits a coordinate; 0 is no normal.
 uint packDirection(vec3 n) {
-    float sum = abs(n.x) + abs(n.y) + abs(n.z);
-    if (sum == 0.0) return 0;
-    n /= sum;
-    vec2 fold = (1.0 - abs(n.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(n.xy, vec2(0.0)));
-    vec2 o = n.z >= 0.0 ? n.xy : fold;
-    uvec2 v = uvec2(o * 2047.0 + 2048.5);
+    if (n == vec3(0.0)) return 0;
+    uvec2 v = uvec2(octahedral(n) * 2047.0 + 2048.5);
     return v.x | v.y << 12;
 }
 
 vec3 unpackDirection(uint w) {
     w &= 0xffffffu;
     if (w == 0) return vec3(0.0);
-    vec2 o = (vec2(w & 0xfffu, w >> 12) - 2048.0) / 2047.0;
-    vec3 n = vec3(o, 1.0 - abs(o.x) - abs(o.y));
-    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * mix(vec2(-1.0), vec2(1.0), greaterThanEqual(n.xy, vec2(0.0)));
-    return normalize(n);
+    return fromOctahedral((vec2(w & 0xfffu, w >> 12) - 2048.0) / 2047.0);
 }
 
 // Where in its cell a surface is along the axis that it faces, from the middle, in cells: eight bits above the normal's.
@@ -87,27 +80,27 @@ uint storedOffset(float offset) {
     return uint(clamp(offset / OFFSET_REACH, -1.0, 1.0) * 511.0 + 512.5);
 }
 
-// What is outermost of a side in a quarter of its cell: where, five bits that grow outwards, 0 is nothing; and how much of the
-// quarter it covers, in sevenths.
-struct Outermost {
+// Front layer of a side: in each quarter of the cell the surface that lies farthest out. Five bits of offset, growing outwards, 0 for none;
+// three bits of coverage, in sevenths of the quarter.
+struct FrontLayer {
     float offset; // along the axis from the cell's middle [cells]
     float covers; // 0 to 1
 };
 
 // `covered`: of the quarter's 16 parts.
-uint packOutermost(float offset, uint side, int covered) {
+uint packFrontLayer(float offset, uint side, int covered) {
     uint level = uint(clamp(side == 0 ? offset : -offset, -0.5, 0.5) * 30.0 + 16.5);
     return level << 3 | uint(min((covered + 1) / 2, 7));
 }
 
-Outermost outermostOf(uint word, uint side, uint quarter) {
+FrontLayer frontLayerOf(uint word, uint side, uint quarter) {
     uint w = word >> 8 * quarter & 255u;
     float offset = (float(w >> 3) - 16.0) / 30.0;
-    return Outermost(side == 0 ? offset : -offset, float(w & 7u) / 7.0);
+    return FrontLayer(side == 0 ? offset : -offset, float(w & 7u) / 7.0);
 }
 
-// Both of one, for four quarters: who lies farther out, or of the same level all. The order does not matter.
-uint outerOf(uint a, uint b) {
+// Merges four quarters: the outer surface, or the summed coverage of both at the same level. The order does not matter.
+uint frontOf(uint a, uint b) {
     uint both = 0;
     for (uint i = 0; i < 32; i += 8) {
         uint x = a >> i & 255u, y = b >> i & 255u;
@@ -144,36 +137,36 @@ ivec3 unpackCell(uint word) {
     return ivec3(word & 511u, word >> 9 & 511u, word >> 18 & 4095u);
 }
 
-ivec3 cellOfSlot(uint slot) {
-    return unpackCell(voxelSlots.words[slot * SLOT_WORDS + SLOT_CELL]);
+ivec3 cellOfSurfel(uint surfel) {
+    return unpackCell(surfelSums.words[surfel * SURFEL_SUM_WORDS + SURFEL_CELL]);
 }
 
-// Which axis a slot's surfaces face along; -1: the slot is not in use, because the list was full.
-int axisOfSlot(uint slot) {
-    return int(voxelSlots.words[slot * SLOT_WORDS + SLOT_CELL] >> 30) - 1;
+// Which axis a surfel's surfaces face along; -1: the surfel is not in use, because the list was full.
+int axisOfSurfel(uint surfel) {
+    return int(surfelSums.words[surfel * SURFEL_SUM_WORDS + SURFEL_CELL] >> 30) - 1;
 }
 
-// Of what is found in a cell: how many slots the cell has, the first of them, and that of an axis.
-uint slotsOf(uint texel) {
+// Of what is found in a cell: how many surfels the cell has, the first of them, and that of an axis.
+uint surfelCount(uint texel) {
     return bitCount(texel & 7u);
 }
 
-uint firstSlot(uint texel) {
+uint firstSurfel(uint texel) {
     return texel >> 3;
 }
 
-uint slotOf(uint texel, uint axis) {
-    return firstSlot(texel) + bitCount(texel & ((1u << axis) - 1u));
+uint surfelOf(uint texel, uint axis) {
+    return firstSurfel(texel) + bitCount(texel & ((1u << axis) - 1u));
 }
 
 // The first word of one side.
-uint sideBase(uint slot, uint side) {
-    return slot * SLOT_WORDS + side * SIDE_WORDS;
+uint sideBase(uint surfel, uint side) {
+    return surfel * SURFEL_SUM_WORDS + side * SIDE_WORDS;
 }
 
 vec3 meanEmission(uint base) {
-    float weight = float(max(voxelSlots.words[base + 3], 1u));
-    return vec3(voxelSlots.words[base + 7], voxelSlots.words[base + 8], voxelSlots.words[base + 9]) / (EMISSION_SCALE * weight);
+    float weight = float(max(surfelSums.words[base + 3], 1u));
+    return vec3(surfelSums.words[base + 7], surfelSums.words[base + 8], surfelSums.words[base + 9]) / (EMISSION_SCALE * weight);
 }
 
 #endif

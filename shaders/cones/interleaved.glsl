@@ -1,4 +1,4 @@
-// A few narrow cones or rays a pixel, other ones in each pixel of a block of 8x8 that traces any: shading filters over the block, so
+// A few narrow cones or rays a pixel, other ones in each pixel of a block of 8x8: shading filters over the block, so
 // that each surface sees up to 64 times as many (Segovia et al. 2006). What traces one is in modules/trace, which includes this after
 // saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use), and whether places on emitters are drawn too.
 #include "cones/light.glsl"
@@ -8,11 +8,11 @@
 
 // Number of a point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
 uint pixelPointNumber(int i) {
-    return uint(i) * uint(params.ray_patterns) + pixelNumber(uvec2(pixelCentre()));
+    return uint(i) * 64u + pixelNumber(uvec2(pixelCentre()));
 }
 
 vec2 pixelPoint(int i) {
-    return evenPoint(pixelPointNumber(i));
+    return r2(pixelPointNumber(i));
 }
 
 // Other points in each block: what few directions cannot tell becomes noise and not a bias.
@@ -22,7 +22,7 @@ uint blockNumber() {
 }
 
 vec2 blockPoint(int i) {
-    return fract(pixelPoint(i) + evenPoint(blockNumber()));
+    return fract(pixelPoint(i) + r2(blockNumber()));
 }
 
 // A cone has the share of the hemisphere that it has among those of 4x4 pixels: narrower ones would take more steps and tell no more.
@@ -39,7 +39,7 @@ float largest(vec3 v) {
 int specularRays(Surface s, vec3 v) {
     float mirrored = largest(fresnel(s, max(dot(s.normal, v), 0.0)));
     float share = mirrored / (mirrored + largest(s.albedo));
-    return clamp(int(ceil(params.lobe_share * share * float(gatherShare.lobe))), 1, max(gatherShare.lobe, 1));
+    return clamp(int(ceil(params.lobe_share * share * float(gatherShare.rays))), 1, max(gatherShare.rays, 1));
 }
 
 // What a place on an emitter brings if nothing hides it.

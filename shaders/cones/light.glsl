@@ -24,12 +24,11 @@ struct Gathered {
 // all threads gather is summed up.
 struct RayShare {
     int rays;
-    int lobe; // of a surface that reflects by its lobe alone
     int emitters; // to places on them
     int first;
     int of;
 };
-RayShare gatherShare = RayShare(params.diffuse_cones, params.diffuse_cones, params.emitter_rays, 0, 1);
+RayShare gatherShare = RayShare(params.diffuse_cones, params.emitter_rays, 0, 1);
 
 // Centre of the pixel that is shaded: defined by the shader.
 vec2 pixelCentre();

@@ -2,12 +2,12 @@
 #ifndef CONE_NEAR_GLSL
 #define CONE_NEAR_GLSL
 #include "cones/origin.glsl"
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 #include "common/bricks.glsl"
 
 // What rays meet, unless the shader has other names for it.
 #ifndef MET_PLANES
-#define MET_PLANES voxelPlanes
+#define MET_PLANES surfels
 #define MET_RADIANCE sideRadiance
 #define MET_BRICKS voxelBricks
 #define MET_BLOCKS voxelBlocks
@@ -25,12 +25,12 @@ struct Met {
 // Which surface of a cell a ray from `at` along `dir` meets between `enter` and `leave`: its distance, less than `end`, or `end`
 // [cells]. `facing`: the normal of the surface that the ray leaves. `met`: the number of the side that it meets.
 float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float enter, float leave, float end, out uint met) {
-    uint slot = firstSlot(found), met_behind = 0;
+    uint surfel = firstSurfel(found), met_behind = 0;
     float nearest = end, behind = end;
     met = 0;
     for (uint axis = 0; axis < 3; axis++) {
         if ((found >> axis & 1u) == 0) continue;
-        uint quad = planeBase(slot) >> 2, number = sideNumber(slot++, 0);
+        uint quad = surfelBase(surfel) >> 2, number = sideNumber(surfel++, 0);
         uvec4 first = MET_PLANES.quads[quad];
         uint own = first.x >> 30;
         for (uint side = 0; side < SIDES; side++) {
@@ -39,7 +39,7 @@ float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float ent
             vec3 middle = vec3(cell) + 0.5 + plane.offset * axisVector(axis);
             float slope = dot(plane.normal, dir), t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
             if (t < 0.0 || t < enter - NEAR_MARGIN || t > leave + NEAR_MARGIN || t >= nearest) continue;
-            vec2 place = besideOf(at + t * dir - vec3(cell), axis);
+            vec2 place = lateralOf(at + t * dir - vec3(cell), axis);
             if (!isCovered(SIDES == 1 ? first.yz : side == 0 ? first.zw : MET_PLANES.quads[quad + 1].xy, place)) continue;
             if ((side == 0) == (slope < 0.0)) {
                 nearest = t;

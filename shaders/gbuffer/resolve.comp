@@ -49,8 +49,8 @@ void main() {
     vec3 across = ray * meet, across_x = rayThrough(vec2(pixel) + vec2(1.5, 0.5)) * meet, across_y = rayThrough(vec2(pixel) + vec2(0.5, 1.5)) * meet;
     // Of a triangle that is seen edge-on rounding decides where: not beyond its corners, nor far from where it was drawn.
     vec2 weights = clamp(across.xy / (across.z == 0.0 ? 1e-30 : across.z), 0.0, 1.0);
-    float drawn = camera.near / uintBitsToFloat(word.y);
-    float along = clamp(-dot(from, plane) / (across.z == 0.0 ? 1e-30 : across.z), 0.99 * drawn, 1.01 * drawn);
+    float raster_depth = camera.near / uintBitsToFloat(word.y);
+    float depth = clamp(-dot(from, plane) / (across.z == 0.0 ? 1e-30 : across.z), 0.99 * raster_depth, 1.01 * raster_depth);
     mat2x4 uv_of = mat2x4(at[1].uv - at[0].uv, at[2].uv - at[0].uv);
     Gradient g = Gradient(uv_of * (across_x.xy / across_x.z - weights), uv_of * (across_y.xy / across_y.z - weights));
 
@@ -66,5 +66,5 @@ void main() {
     imageStore(gbufferBase, pixel, vec4(baseColor(m, place, g).rgb, rm.x));
     imageStore(gbufferNormals, pixel, vec4(packNormal(mappedNormal(m, place, g, normal, tangent, face)), packNormal(face)));
     imageStore(gbufferEmission, pixel, vec4(emission(m, place, g), packMetallic(rm.y, dielectricNumber(m))));
-    imageStore(gbufferDistance, pixel, vec4(along * length(ray)));
+    imageStore(gbufferDistance, pixel, vec4(depth * length(ray)));
 }

@@ -1,4 +1,5 @@
-// The visibility buffer (Burns and Hunt 2013): of each pixel the depth and the number of the triangle that is seen.
+// Visibility buffer (Burns and Hunt 2013): depth and triangle index of each pixel in one word, so that one 64-bit maximum decides.
+// The including file enables the 64-bit extensions.
 #ifndef VISIBILITY_GLSL
 #define VISIBILITY_GLSL
 #include "common/scene.glsl"
@@ -17,6 +18,16 @@ float targetNear(uint layer) {
 
 uint wordOf(ivec2 pixel) {
     return uint(pixel.y) * camera.size.x + uint(pixel.x);
+}
+
+layout(std430) buffer Visibility { uint64_t words[]; } visibility;
+
+bool isNearer(ivec2 pixel, uint layer, float depth) {
+    return uint(visibility.words[wordOf(pixel)] >> 32) <= floatBitsToUint(depth);
+}
+
+void plot(ivec2 pixel, uint layer, float depth, uint triangle) {
+    atomicMax(visibility.words[wordOf(pixel)], uint64_t(floatBitsToUint(depth)) << 32 | uint64_t(triangle));
 }
 
 #endif

@@ -5,7 +5,7 @@
 #include "common/volume.glsl"
 #include "common/directions.glsl"
 #include "common/sides.glsl"
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 #include "common/bricks.glsl"
 
 layout(local_size_x = 128) in;
@@ -21,21 +21,21 @@ float opacityTo(Side s, vec3 d) {
 }
 
 void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
-    ivec3 cell = cellOfSlot(slot);
+    uint surfel = gl_GlobalInvocationID.x;
+    if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return;
+    ivec3 cell = cellOfSurfel(surfel);
     uint found = foundAtStored(cell);
-    if (slot != firstSlot(found)) return;
+    if (surfel != firstSurfel(found)) return;
 
     VolumeMap map = volume.maps[cascadeOf(cell)];
     vec3 center = volumeToWorld(map, cellCentre(cell));
     mat3 axes = cellAxes(map, center);
     vec3 light[6] = vec3[6](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     float seen[6] = float[6](0.0, 0.0, 0.0, 0.0, 0.0, 0.0), opacity[6] = seen;
-    for (uint i = 0; i < slotsOf(found) * SIDES; i++) {
+    for (uint i = 0; i < surfelCount(found) * SIDES; i++) {
         uint side = i % SIDES;
-        Side s = sideOfSlot(slot + i / SIDES, side);
-        vec3 radiance = lightOf(sideRadiance.list[sideNumber(slot, i)]);
+        Side s = sideOfSurfel(surfel + i / SIDES, side);
+        vec3 radiance = lightOf(sideRadiance.list[sideNumber(surfel, i)]);
         for (int face = 0; face < 6; face++) {
             vec3 d = normalize(axes * mipDirection(face));
             float area = s.count * meanCosine(s, -d);

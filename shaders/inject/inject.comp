@@ -3,9 +3,10 @@
 // Radiance leaving each side of a voxel: albedo / pi * E * max(0, n.l) * visibility, summed over all lights, plus albedo times the
 // mean radiance that the side has gathered, plus emission. Runs over the voxel list, so each surface is lit once.
 #include "params.glsl"
+#include "common/math.glsl"
 #include "common/volume.glsl"
 #include "common/sides.glsl"
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 #include "common/shadow_layers.glsl"
 #include "common/scene.glsl"
 #include "common/emitters.glsl"
@@ -13,33 +14,32 @@
 
 layout(local_size_x = 128) in;
 
-const float PI = 3.14159265359;
 // Surfaces that lie nearer to each other are one [cells].
 const float LAYER = 0.12;
 
-// Places on a slot's surfaces in each quarter of the cell that they cover, from the cell's middle [cells]: on their mean, and as far
-// out as its outermost surface lies. Of two layers in one cell the outer one is lit, and the mean lies in its shadow.
+// Points on a side's surfaces in each covered quarter, relative to the cell's middle [cells]: on the mean plane, and on the front layer. If
+// a cell holds two layers, the front layer is lit and shadows the mean plane.
 struct Taps {
     vec3 middle;
     vec3 places[4];
-    float lift[4]; // of the outermost surface over the mean, along the axis [cells]
-    float share[4]; // of the outermost surface
+    float lift[4]; // of the front layer over the mean, along the axis [cells]
+    float share[4]; // of the front layer
     vec3 outwards;
     int count;
 };
 
-Taps tapsOf(uint slot, uint side, uint base, uint axis) {
-    uvec2 parts = partsOf(base, side);
-    uint outermost = planeData(outermostWord(base, side));
+Taps tapsOf(uint surfel, uint side, uint base, uint axis) {
+    uvec2 mask = coverageMaskOf(base, side);
+    uint front_layers = surfelData(frontLayerWord(base, side));
     float mean = planeOf(base, side, axis).offset;
     Taps taps;
     taps.count = 0;
     taps.middle = planeMiddle(base, side, axis);
     taps.outwards = (side == 0 ? 1.0 : -1.0) * axisVector(axis);
     for (uint i = 0; i < 4; i++) {
-        uvec2 quarter = quarterOf(parts, i);
+        uvec2 quarter = quarterOf(mask, i);
         if (quarter == uvec2(0)) continue;
-        Outermost o = outermostOf(outermost, side, i);
+        FrontLayer o = frontLayerOf(front_layers, side, i);
         int k = taps.count++;
         taps.places[k] = onPlane(base, side, axis, middleOf(quarter));
         taps.lift[k] = side == 0 ? o.offset - mean : mean - o.offset;
@@ -88,16 +88,16 @@ vec3 radianceOf(Side s, vec3 gathered, vec3 center, Taps taps, mat3 axes) {
 
 void main() {
     for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.count * SIDES; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
-        uint slot = i / SIDES, side = i % SIDES;
-        if (axisOfSlot(slot) < 0) continue;
-        ivec3 cell = cellOfSlot(slot);
+        uint surfel = i / SIDES, side = i % SIDES;
+        if (axisOfSurfel(surfel) < 0) continue;
+        ivec3 cell = cellOfSurfel(surfel);
         VolumeMap map = volume.maps[cascadeOf(cell)];
         vec3 center = volumeToWorld(map, cellCentre(cell));
         mat3 axes = cellAxes(map, center);
-        uint axis = uint(axisOfSlot(slot)), base = planeBase(slot);
+        uint axis = uint(axisOfSurfel(surfel)), base = surfelBase(surfel);
         vec3 gathered = lightOf(sideGathered.list[i]);
-        Side s = sideOfSlot(slot, side);
-        vec3 radiance = radianceOf(s, gathered, center, tapsOf(slot, side, base, axis), axes);
+        Side s = sideOfSurfel(surfel, side);
+        vec3 radiance = radianceOf(s, gathered, center, tapsOf(surfel, side, base, axis), axes);
         float emitted = emitters.count > 0 ? luminance(s.emission) / max(luminance(radiance), 1e-20) : 0.0;
         sideRadiance.list[i] = packLight(radiance, emitted);
     }

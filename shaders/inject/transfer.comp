@@ -12,9 +12,9 @@ uniform sampler3D voxelColor;
 uniform writeonly image3D injected;
 
 void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
-    ivec3 cell = cellOfSlot(slot);
+    uint surfel = gl_GlobalInvocationID.x;
+    if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return;
+    ivec3 cell = cellOfSurfel(surfel);
     float opacity = texelFetch(voxelColor, cell, 0).a;
-    imageStore(injected, cell, vec4(meanEmission(sideBase(slot, 0)) * opacity, opacity));
+    imageStore(injected, cell, vec4(meanEmission(sideBase(surfel, 0)) * opacity, opacity));
 }

@@ -53,26 +53,26 @@ vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escap
         vec3 emitted = h.emission * shareOfRay(density, h, hit.t);
         sum += weight * (emitted + directLight(h.surface, h.position, h.face, h.view));
         float shine = luminance(fresnel(h.surface, max(dot(h.surface.normal, h.view), 0.0)));
-        float chance = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
+        float probability = clamp(shine / max(shine + luminance(h.surface.albedo), 1e-6), 0.05, 0.95);
         bool last = bounce == params.bounces;
-        vec2 sent = last ? vec2(0.0) : vec2(1.0 - chance, chance);
+        vec2 sent = last ? vec2(0.0) : vec2(1.0 - probability, probability);
         if (skyHasPicture()) {
             SkyLight sky = skyLight(h.surface, h.position, h.face, h.view, sent, last, next4(random));
             sum += weight * (sky.diffuse + sky.specular + sky.direct);
         }
         if (last) break;
         vec4 u = next4(random);
-        LobeLight drawn = emitterLight(h.surface, h.position, h.face, h.view, sent, random);
-        sum += weight * (drawn.diffuse + drawn.specular);
+        LobeLight from_emitters = emitterLight(h.surface, h.position, h.face, h.view, sent, random);
+        sum += weight * (from_emitters.diffuse + from_emitters.specular);
         LobeSample next;
-        if (u.z < chance) {
+        if (u.z < probability) {
             next = specularSample(h.surface, h.face, h.view, u.xy);
-            next.weight /= chance;
-            density = chance * specularDensity(h.surface, h.view, next.direction);
+            next.weight /= probability;
+            density = probability * specularDensity(h.surface, h.view, next.direction);
         } else {
             next = diffuseSample(h.surface, h.face, u.xy);
-            next.weight /= 1.0 - chance;
-            density = (1.0 - chance) * diffuseDensity(h.surface, next.direction);
+            next.weight /= 1.0 - probability;
+            density = (1.0 - probability) * diffuseDensity(h.surface, next.direction);
         }
         weight *= next.weight;
         if (weight == vec3(0.0)) break;
@@ -96,8 +96,8 @@ vec3 cameraRay(vec2 at) {
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
-    uint number = uint(params.first_sample) + pass.index;
-    Random random = Random(uvec4(uint(pixel.x) | uint(pixel.y) << 16, number, 0, uint(params.seed)));
+    uint sample_index = uint(params.first_sample) + pass.index;
+    Random random = Random(uvec4(uint(pixel.x) | uint(pixel.y) << 16, sample_index, 0, uint(params.seed)));
     vec4 u = next4(random);
     vec2 at = vec2(pixel) + (params.pixel == PIXEL_BOX ? u.xy : vec2(0.5));
     vec3 d = cameraRay(at);
@@ -137,9 +137,9 @@ void main() {
             specular = two.weight * incoming(p, two.direction, specularDensity(h.surface, h.view, two.direction), other, unused, sun);
             direct += two.weight * sun;
         }
-        LobeLight drawn = emitterLight(h.surface, h.position, h.face, h.view, vec2(1.0), random);
-        diffuse += sky.diffuse + drawn.diffuse;
-        specular += sky.specular + drawn.specular;
+        LobeLight from_emitters = emitterLight(h.surface, h.position, h.face, h.view, vec2(1.0), random);
+        diffuse += sky.diffuse + from_emitters.diffuse;
+        specular += sky.specular + from_emitters.specular;
         direct += sky.direct;
         total = h.emission + direct + diffuse + specular;
     }
@@ -147,7 +147,7 @@ void main() {
         atomicAdd(referenceErrors.not_finite, 1u);
         return;
     }
-    ivec3 texel = ivec3(pixel, int(number & 1u));
+    ivec3 texel = ivec3(pixel, int(sample_index & 1u));
     imageStore(totalSum, texel, imageLoad(totalSum, texel) + vec4(total, 1.0));
     imageStore(directSum, texel, imageLoad(directSum, texel) + vec4(direct, 1.0));
     imageStore(diffuseSum, texel, imageLoad(diffuseSum, texel) + vec4(diffuse, 1.0));

@@ -54,7 +54,7 @@ SkyShine skyTexel(uvec2 at, float polar) {
     vec3 radiance = vec3(unpackHalf2x16(first), unpackHalf2x16(second & 0xffffu).x), around = radiance;
     if (second >> 16 != 0) around = vec3(skySum(SKY_AROUND), skySum(SKY_AROUND + 1), skySum(SKY_AROUND + 2));
     float share = (skySum(SKY_ROWS + at.y + 1) - skySum(SKY_ROWS + at.y)) * (skySum(row + at.x + 1) - skySum(row + at.x));
-    float density = share * float(size.x) * float(size.y) / (2.0 * SKY_PI * SKY_PI * max(sin(polar), 1e-7));
+    float density = share * float(size.x) * float(size.y) / (2.0 * PI * PI * max(sin(polar), 1e-7));
     return SkyShine(sceneInfo.sky * around, sceneInfo.sky * (radiance - around), density);
 }
 
@@ -62,7 +62,7 @@ SkyShine skyTexel(uvec2 at, float polar) {
 SkyShine skyShine(vec3 d) {
     uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
     vec2 place = skyPlace(d);
-    return skyTexel(min(uvec2(vec2(fract(place.x), place.y) * vec2(size)), size - 1u), place.y * SKY_PI);
+    return skyTexel(min(uvec2(vec2(fract(place.x), place.y) * vec2(size)), size - 1u), place.y * PI);
 }
 
 // A direction, as dense as the picture's luminance.
@@ -71,7 +71,7 @@ SkyShine drawSky(vec4 u, out vec3 d) {
     uint y = skyPart(SKY_ROWS, size.y, u.x);
     uint x = skyPart(SKY_ROWS + size.y + 1 + y * (size.x + 1), size.x, u.y);
     vec2 place = (vec2(x, y) + u.zw) / vec2(size);
-    float polar = place.y * SKY_PI, azimuth = (place.x - 0.5 - sceneInfo.sky_turn) * 2.0 * SKY_PI;
+    float polar = place.y * PI, azimuth = (place.x - 0.5 - sceneInfo.sky_turn) * 2.0 * PI;
     d = vec3(sin(azimuth) * sin(polar), cos(polar), -cos(azimuth) * sin(polar));
     return skyTexel(uvec2(x, y), polar);
 }
@@ -83,13 +83,13 @@ float lobeShare(SkyShine shine, float density) {
 
 // Light of one direction drawn from the sky at p; `drawn`: how many directions the diffuse and the specular lobe draw here, on average.
 // Nobody has drawn any at a path's end, where the sun alone counts, as lights do.
-SkyLight skyLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 drawn, bool only_sun, vec4 u) {
+SkyLight skyLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 samples, bool only_sun, vec4 u) {
     vec3 d;
     SkyShine shine = drawSky(u, d);
     float cosine = dot(s.normal, d);
     if (cosine <= 0.0 || dot(face, d) <= 0.0 || shine.density <= 0.0 || only_sun && shine.sun == vec3(0.0)) return NO_SKY_LIGHT;
     if (blocked(Ray(offsetPoint(p, face), d, 1e30))) return NO_SKY_LIGHT;
-    vec2 densities = shine.density + drawn * vec2(diffuseDensity(s, d), specularDensity(s, view, d));
+    vec2 densities = shine.density + samples * vec2(diffuseDensity(s, d), specularDensity(s, view, d));
     vec3 diffuse = diffuseBrdf(s) * cosine / densities.x, specular = specularBrdf(s, view, d) * cosine / densities.y;
     vec3 sky = only_sun ? vec3(0.0) : shine.sky;
     return SkyLight(diffuse * sky, specular * sky, (diffuse + specular) * shine.sun);

@@ -1,4 +1,4 @@
-// The mean of what the pixels around have gathered, of those that see the same surface.
+// Edge-stopping weights of the filter over gathered light.
 #ifndef SHADE_FILTER_GLSL
 #define SHADE_FILTER_GLSL
 
@@ -7,8 +7,8 @@ struct Filtered {
     vec3 specular; // radiance towards the viewer
 };
 
-// What tells whether other pixels see the same surface, worked out once for all of them.
-struct Likeness {
+// The surface of the filtered pixel, prepared for comparison with other pixels.
+struct EdgeStop {
     vec2 origin, step; // of the pixels' rays: tangents of their angles
     vec3 plane; // the surface's normal, of rays in view space
     float away; // of the plane from the camera [m]
@@ -16,44 +16,34 @@ struct Likeness {
     vec3 normal;
 };
 
-Likeness likenessOf(GBufferSurface seen) {
+EdgeStop edgeStopOf(GBufferSurface seen) {
     vec2 zoom = 1.0 / vec2(camera.projection[0][0], camera.projection[1][1]);
     vec2 step = 2.0 * zoom / vec2(camera.size);
     vec3 off = seen.position - camera.position;
-    return Likeness(0.5 * step - zoom, step, mat3(camera.view) * seen.face, dot(off, seen.face), 200.0 / length(off), seen.surface.normal);
+    vec3 plane = mat3(camera.view) * seen.face;
+    float away = dot(off, seen.face), scale = 200.0 / length(off);
+    return EdgeStop(0.5 * step - zoom, step, plane, away, scale, seen.surface.normal);
 }
 
-// What other pixels see: a normal, and how far it is [m]; 0 beyond the picture and where they see the sky.
+// Normal and distance [m] of the surface at a pixel. The distance is 0 outside the picture and for the sky.
 vec4 seenAt(ivec2 at) {
     if (any(greaterThanEqual(uvec2(at), uvec2(camera.size)))) return vec4(0.0);
     return vec4(unpackNormal(texelFetch(gbufferNormals, at, 0).xy), texelFetch(gbufferDistance, at, 0).r);
 }
 
-// How much of another pixel's light a surface takes: 1 where both see one surface.
-float likeness(ivec2 at, Likeness like) {
+// Weight of another pixel's light: 1 if both pixels see one surface.
+float edgeStoppingWeight(ivec2 at, EdgeStop stop) {
     vec4 other = seenAt(at);
     if (other.w <= 0.0) return 0.0;
-    vec2 ray = like.origin + vec2(at) * like.step;
-    float off = abs(other.w * inversesqrt(dot(ray, ray) + 1.0) * (dot(ray, like.plane.xy) - like.plane.z) - like.away);
-    return clamp(5.0 * abs(dot(other.xyz, like.normal)) - 3.8, 0.0, 1.0) * clamp(2.0 - like.scale * off, 0.0, 1.0);
+    vec2 ray = stop.origin + vec2(at) * stop.step;
+    float away = other.w * inversesqrt(dot(ray, ray) + 1.0) * (dot(ray, stop.plane.xy) - stop.plane.z);
+    float off = abs(away - stop.away), cosine = abs(dot(other.xyz, stop.normal));
+    return clamp(5.0 * cosine - 3.8, 0.0, 1.0) * clamp(2.0 - stop.scale * off, 0.0, 1.0);
 }
 
-// How far a surface's reflection may blur: a mirror's picture must not.
-float blurs(GBufferSurface seen) {
+// Weight of other pixels' reflections: 0 for mirrors, which must stay sharp.
+float reflectionBlur(GBufferSurface seen) {
     return smoothstep(0.05, 0.25, seen.surface.roughness);
-}
-
-// The nearest pixels of the lattice are this one, and those one step to the right, one down, and both.
-ivec2 latticeBefore(ivec2 pixel) {
-    return pixel & -params.ray_step;
-}
-
-// Whether they say nothing of the surface that a pixel sees.
-bool isAlone(ivec2 pixel, GBufferSurface seen) {
-    Likeness like = likenessOf(seen);
-    float weights = 0.0;
-    for (int i = 0; i < 4; i++) weights += likeness(latticeBefore(pixel) + params.ray_step * ivec2(i & 1, i >> 1), like);
-    return weights < 0.25;
 }
 
 #endif

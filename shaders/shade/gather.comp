@@ -15,7 +15,10 @@ void main() {
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     GBufferSurface seen = gbufferAt(pixel);
     Gathered light = NOTHING_GATHERED;
-    if (seen.any) light = gather(coneOrigin(seen.position, seen.face, seen.surface.normal), seen.surface, seen.face, seen.to_viewer);
+    if (seen.any) {
+        ConeOrigin origin = coneOrigin(seen.position, seen.face, seen.surface.normal);
+        light = gather(origin, seen.surface, seen.face, seen.to_viewer);
+    }
     imageStore(gatheredDiffuse, pixel, light.hemisphere);
     imageStore(gatheredSpecular, pixel, vec4(light.specular, 0.0));
 }

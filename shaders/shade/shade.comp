@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Final shading of the surfaces that pixels see, a thread a pixel, each contribution to its own picture (thesis, Algorithm 3).
-// Indirect diffuse light is albedo times the mean radiance over the hemisphere, sky included where it is open.
+// Final shading of the surfaces that pixels see, a thread a pixel, each contribution to its own picture
+// (thesis, Algorithm 3). Indirect diffuse light is albedo times the mean radiance over the hemisphere, sky
+// included where it is open.
 #include "params.glsl"
 #include "common/gbuffer_read.glsl"
 #include "common/shadow.glsl"
@@ -24,42 +25,28 @@ uniform writeonly image2D specularIndirect;
 uniform writeonly image2D occlusion; // 1: open
 uniform writeonly image2D surfaceNormal; // * .5 + .5
 
-float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
-    return shadowVisibility(light, p, face, to_light);
-}
-
 Filtered unfiltered(ivec2 pixel) {
     return Filtered(texelFetch(gatheredDiffuse, pixel, 0), texelFetch(gatheredSpecular, pixel, 0).rgb);
 }
 
-// What the lattice has gathered around a pixel, and the pixel itself where it has gathered.
+// Mean of 2x2 smoothed pixels: with smooth.comp, of 8x8 pixels that see the same surface.
 Filtered filtered(ivec2 pixel, GBufferSurface seen) {
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
-    float weights = 0.0, specular_weights = 0.0, lobe = blurs(seen);
-    Likeness like = likenessOf(seen);
-    if (latticeBefore(pixel) != pixel) {
-        vec4 own = texelFetch(gatheredDiffuse, pixel, 0), reflected = texelFetch(gatheredSpecular, pixel, 0);
-        if (own.a >= 0.0) {
-            diffuse = own;
-            weights = 1.0;
-        }
-        if (reflected.a >= 0.0) {
-            specular = reflected.rgb;
-            specular_weights = 1.0;
-        }
-    }
+    float weights = 0.0, specular_weights = 0.0, lobe = reflectionBlur(seen);
+    EdgeStop stop = edgeStopOf(seen);
     for (int i = 0; i < 4; i++) {
-        ivec2 at = latticeBefore(pixel) + params.ray_step * ivec2(i & 1, i >> 1), place = at / params.ray_step;
-        bool own = at == pixel;
-        float weight = own ? 1.0 : likeness(at, like);
-        diffuse += weight * texelFetch(smoothedDiffuse, place, 0);
+        ivec2 at = pixel + ivec2(i & 1, i >> 1);
+        bool self = at == pixel;
+        float weight = self ? 1.0 : edgeStoppingWeight(at, stop);
+        diffuse += weight * texelFetch(smoothedDiffuse, at, 0);
         weights += weight;
-        weight *= own ? 1.0 : lobe;
-        specular += weight * texelFetch(smoothedSpecular, place, 0).rgb;
+        weight *= self ? 1.0 : lobe;
+        specular += weight * texelFetch(smoothedSpecular, at, 0).rgb;
         specular_weights += weight;
     }
-    specular *= max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE) / max(specular_weights, 1e-6);
+    vec3 reflectance = max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);
+    specular *= reflectance / max(specular_weights, 1e-6);
     return Filtered(diffuse / max(weights, 1e-6), specular);
 }
 

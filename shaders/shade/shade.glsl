@@ -1,5 +1,5 @@
-// Final shading (thesis, Algorithm 3). Indirect diffuse light is albedo * sum_c w_c L_c with L_c the mean radiance of a
-// cone, sky included where it escapes.
+// Final shading (thesis, Algorithm 3). Indirect diffuse light is albedo * sum_c w_c L_c with L_c the mean
+// radiance of a cone, sky included where it escapes.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 #include "modules/trace.glsl"
@@ -13,10 +13,6 @@ struct Shading {
     vec3 specular; // indirect
     float open; // share of the hemisphere that is, cosine-weighted
 };
-
-float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
-    return shadowVisibility(light, p, face, to_light);
-}
 
 // face: the geometric normal, v: to the viewer; both on one side.
 Shading shade(Surface s, vec3 p, vec3 face, vec3 v) {

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The first half of the filter over what pixels of the lattice have gathered: every other one of those in 8x8 pixels. Shading takes
-// the mean of 2x2 of what this leaves, so that both together have each pixel of the pattern once, for 20 lookups and not 64.
+// First half of the filter over gathered light: the mean of every other pixel in 8x8. Shading averages 2x2 of
+// these means. Together they read each pixel of the pattern once, with 20 lookups instead of 64.
 #include "params.glsl"
 #include "common/gbuffer_read.glsl"
 #include "shade/filter.glsl"
@@ -14,31 +14,28 @@ uniform writeonly image2D smoothedDiffuse;
 uniform writeonly image2D smoothedSpecular;
 
 void main() {
-    ivec2 place = ivec2(gl_GlobalInvocationID.xy), pixel = params.ray_step * place;
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) return;
     GBufferSurface seen = gbufferAt(pixel);
     if (!seen.any) {
-        imageStore(smoothedDiffuse, place, vec4(0.0, 0.0, 0.0, 1.0));
-        imageStore(smoothedSpecular, place, vec4(0.0));
+        imageStore(smoothedDiffuse, pixel, vec4(0.0, 0.0, 0.0, 1.0));
+        imageStore(smoothedSpecular, pixel, vec4(0.0));
         return;
     }
-    Likeness like = likenessOf(seen);
+    EdgeStop stop = edgeStopOf(seen);
     vec4 diffuse = vec4(0.0);
     vec3 specular = vec3(0.0);
-    float weights = 0.0, specular_weights = 0.0, lobe = blurs(seen);
-    int stride = 2 * params.ray_step, across = 4 / params.ray_step, first = -(across / 2) * stride;
-    for (int y = first; y < first + across * stride; y += stride) {
-        for (int x = first; x < first + across * stride; x += stride) {
-            ivec2 at = pixel + ivec2(x, y);
-            bool own = at == pixel;
-            float weight = own ? 1.0 : likeness(at, like);
-            diffuse += weight * texelFetch(gatheredDiffuse, at, 0);
-            weights += weight;
-            weight *= own ? 1.0 : lobe;
-            specular += weight * texelFetch(gatheredSpecular, at, 0).rgb;
-            specular_weights += weight;
-        }
+    float weights = 0.0, specular_weights = 0.0, lobe = reflectionBlur(seen);
+    for (int i = 0; i < 16; i++) {
+        ivec2 at = pixel + 2 * (ivec2(i & 3, i >> 2) - 2);
+        bool self = at == pixel;
+        float weight = self ? 1.0 : edgeStoppingWeight(at, stop);
+        diffuse += weight * texelFetch(gatheredDiffuse, at, 0);
+        weights += weight;
+        weight *= self ? 1.0 : lobe;
+        specular += weight * texelFetch(gatheredSpecular, at, 0).rgb;
+        specular_weights += weight;
     }
-    imageStore(smoothedDiffuse, place, diffuse / weights);
-    imageStore(smoothedSpecular, place, vec4(specular / specular_weights, 1.0));
+    imageStore(smoothedDiffuse, pixel, diffuse / weights);
+    imageStore(smoothedSpecular, pixel, vec4(specular / specular_weights, 1.0));
 }

@@ -21,17 +21,17 @@ void main() {
         VoxelPiece p = voxelPieces.list[i];
         VolumeMap map = volume.maps[p.cascade];
         CellRange r = rangeOf(map, p);
-        ivec3 first = r.from >> 2, many = (r.to >> 2) - first + 1;
+        ivec3 first = r.from >> 2, extent = (r.to >> 2) - first + 1;
         vec3 face = cross(p.b - p.a, p.c - p.a), steep = abs(face);
-        int k = !isFlat(map) ? 2 : steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
+        int k = isFlat(map) ? int(dominantAxis(face)) : 2;
         int x = k == 0 ? 1 : 0, y = k == 2 ? 1 : 2;
         bool has_plane = isFlat(map) && face[k] != 0.0;
         float least = min(p.a[k], min(p.b[k], p.c[k])), most = max(p.a[k], max(p.b[k], p.c[k]));
-        for (int t = int(gl_LocalInvocationIndex); t < many[x] * many[y]; t += int(gl_WorkGroupSize.x)) {
+        for (int t = int(gl_LocalInvocationIndex); t < extent[x] * extent[y]; t += int(gl_WorkGroupSize.x)) {
             ivec3 brick = first;
-            brick[x] += t % many[x];
-            brick[y] += t / many[x];
-            int start = first[k], end = first[k] + many[k] - 1;
+            brick[x] += t % extent[x];
+            brick[y] += t / extent[x];
+            int start = first[k], end = first[k] + extent[k] - 1;
             if (has_plane) { // the plane over the column
                 vec3 low = flatOfCells(map, vec3(brick * BRICK)), edge = flatOfCells(map, vec3(brick * BRICK + BRICK)) - low;
                 vec3 middle = low + 0.5 * edge;

@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Sets aside the slots that this frame's volume takes over from last frame's, before they are cleared. Planes are last frame's.
+// Sets aside the surfels that this frame's volume takes over from last frame's, before they are cleared. Planes are last frame's.
 #include "params.glsl"
 #include "common/volume.glsl"
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 #include "voxelize/kept.glsl"
 
 layout(local_size_x = 128) in;
@@ -11,8 +11,8 @@ layout(local_size_x = 128) in;
 void main() {
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.count; i += stride) {
-        int axis = axisOfSlot(i);
-        ivec3 stored = cellOfSlot(i);
+        int axis = axisOfSurfel(i);
+        ivec3 stored = cellOfSurfel(i);
         int cascade = cascadeOf(stored);
         VolumeMap map = volume.maps[cascade];
         ivec3 cell = cellOfStored(stored, cascade) - map.shift;
@@ -22,13 +22,13 @@ void main() {
             atomicAdd(keptCounter.groups.x, 1);
             keptCounter.groups.yz = uvec2(1);
         }
-        uint first = to * KEPT_WORDS, base = planeBase(i);
-        for (uint word = 0; word < SLOT_CELL; word++) voxelKept.words[first + word] = voxelSlots.words[i * SLOT_WORDS + word];
-        voxelKept.words[first + SLOT_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
+        uint first = to * KEPT_WORDS, base = surfelBase(i);
+        for (uint word = 0; word < SURFEL_CELL; word++) voxelKept.words[first + word] = surfelSums.words[i * SURFEL_SUM_WORDS + word];
+        voxelKept.words[first + SURFEL_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
         for (uint side = 0; side < SIDES; side++) {
-            bool own = voxelSlots.words[sideBase(i, side) + 3] != 0; // else its parts are those of the other
-            for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_PARTS + 2 * side + k] = own ? planeData(partsWord(base, side) + k) : 0;
-            voxelKept.words[first + KEPT_PARTS + 2 * SIDES + side] = planeData(outermostWord(base, side));
+            bool has_surfaces = surfelSums.words[sideBase(i, side) + 3] != 0; // else its parts are those of the other
+            for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_MASKS + 2 * side + k] = has_surfaces ? surfelData(coverageMaskWord(base, side) + k) : 0;
+            voxelKept.words[first + KEPT_MASKS + 2 * SIDES + side] = surfelData(frontLayerWord(base, side));
         }
     }
 }

@@ -1,12 +1,12 @@
-// Slots that stay while the volume scrolls.
+// Surfels that stay while the volume scrolls.
 #ifndef VOXEL_KEPT_GLSL
 #define VOXEL_KEPT_GLSL
 
-#include "common/planes.glsl"
+#include "common/surfels.glsl"
 
-// Of each the words of its slot, and those of its planes that are merged.
-const uint KEPT_PARTS = SLOT_WORDS;
-const uint KEPT_WORDS = SLOT_WORDS + PLANE_WORDS - PLANE_PARTS;
+// Of each the words of its surfel, and those of its planes that are merged.
+const uint KEPT_MASKS = SURFEL_SUM_WORDS;
+const uint KEPT_WORDS = SURFEL_SUM_WORDS + SURFEL_WORDS - SURFEL_MASKS;
 
 layout(std430) buffer VoxelKept { uint words[]; } voxelKept;
 layout(std430) buffer KeptCounter {

@@ -3,6 +3,7 @@
 // group. Where a queue is full, who finds it full tests the cells at once.
 #ifndef VOXELIZE_PIECES_GLSL
 #define VOXELIZE_PIECES_GLSL
+#include "common/math.glsl"
 #include "common/volume.glsl"
 #include "common/scene.glsl"
 #include "common/materials.glsl"
@@ -75,8 +76,8 @@ void storeCell(VolumeMap map, VoxelPiece p, ivec3 cell) {
 
     VertexAttributes v[3] = VertexAttributes[3](loadAttributes(vertex.x), loadAttributes(vertex.y), loadAttributes(vertex.z));
     mat3 axes = cellAxes(map, middle);
-    vec3 along = face * axes, steep = abs(along);
-    int dominant = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
+    vec3 along = face * axes;
+    int dominant = int(dominantAxis(along));
     int i = dominant == 0 ? 1 : 0, j = dominant == 2 ? 1 : 2;
     mat2x4 uv_of = mat2x4(v[1].uv - v[0].uv, v[2].uv - v[0].uv);
     float per = area > 0.0 ? 1.0 / along[dominant] : 0.0;

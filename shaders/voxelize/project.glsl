@@ -3,6 +3,7 @@
 #ifndef VOXELIZE_PROJECT_GLSL
 #define VOXELIZE_PROJECT_GLSL
 #include "voxelize/raster.glsl"
+#include "common/math.glsl"
 #include "common/scene.glsl"
 
 layout(triangles) in;
@@ -24,11 +25,10 @@ layout(location = 5) flat out uvec2 triangle; // draw, first of its indices
 layout(location = 6) flat out vec3 corner[3]; // in cells
 layout(location = 9) out vec4 color;
 
-uint dominantAxis(VolumeMap map) {
+uint triangleAxis(VolumeMap map) {
     vec3 face = cross(in_position[1] - in_position[0], in_position[2] - in_position[0]);
     vec3 middle = (in_position[0] + in_position[1] + in_position[2]) / 3.0;
-    vec3 a = abs(face * cellAxes(map, middle));
-    return a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u; // >=: triangles at 45 degrees belong somewhere
+    return dominantAxis(face * cellAxes(map, middle));
 }
 
 // What fragments say of their triangle.
@@ -60,7 +60,7 @@ struct Projected {
 // Whether any of it falls into cells that are not kept.
 bool projectTriangle(VolumeMap map, out Projected t) {
     float dim = float(params.voxel_dim);
-    t.along = dominantAxis(map);
+    t.along = triangleAxis(map);
     for (int i = 0; i < 3; i++) {
         t.raster[i] = toRasterSpace(map, in_position[i]);
         t.clip[i] = project(t.raster[i], t.along);

@@ -13,16 +13,16 @@ uniform writeonly image3D voxelNormal;
 
 #include "modules/merge.glsl"
 void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= voxelCounter.count || axisOfSlot(slot) < 0) return;
-    ivec3 cell = cellOfSlot(slot);
+    uint surfel = gl_GlobalInvocationID.x;
+    if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return;
+    ivec3 cell = cellOfSurfel(surfel);
     uint found = foundAtStored(cell);
-    if (slot != firstSlot(found)) return;
+    if (surfel != firstSurfel(found)) return;
     vec3 color = vec3(0.0), normal = vec3(0.0);
     float count = 0.0;
-    for (uint i = 0; i < slotsOf(found) * SIDES; i++) {
-        uint base = sideBase(slot + i / SIDES, i % SIDES);
-        float weight = float(voxelSlots.words[base + 3]);
+    for (uint i = 0; i < surfelCount(found) * SIDES; i++) {
+        uint base = sideBase(surfel + i / SIDES, i % SIDES);
+        float weight = float(surfelSums.words[base + 3]);
         if (weight == 0.0) continue;
         vec3 c, n;
         mergedMean(base, c, n);

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Puts the cells of the kept slots back, where they are now.
+// Puts the cells of the kept surfels back, where they are now.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
@@ -12,6 +12,6 @@ layout(local_size_x = 128) in;
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= keptCounter.count) return;
-    uint word = voxelKept.words[i * KEPT_WORDS + SLOT_CELL];
+    uint word = voxelKept.words[i * KEPT_WORDS + SURFEL_CELL];
     occupy(unpackCell(word), (word >> 30) - 1);
 }

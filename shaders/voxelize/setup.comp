@@ -52,8 +52,8 @@ void main() {
     int cascade = int(gl_GlobalInvocationID.y);
     VolumeMap map = volume.maps[cascade];
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    for (uint number = gl_GlobalInvocationID.x; number < sceneInfo.triangle_count; number += stride) {
-        uvec2 t = triangles.list[number];
+    for (uint index = gl_GlobalInvocationID.x; index < sceneInfo.triangle_count; index += stride) {
+        uvec2 t = triangles.list[index];
         uint instance = draws.draws[t.x].instance;
         vec3 p[3], parts[6];
         for (int i = 0; i < 3; i++) p[i] = toWorld(instance, loadPosition(indices.indices[t.y + i]));
@@ -61,7 +61,7 @@ void main() {
         for (int i = 0; i < 3 * count; i += 3) {
             vec3 q[3];
             for (int k = 0; k < 3; k++) q[k] = isFlat(map) ? flatFromWorld(map, parts[i + k]) : parts[i + k];
-            place(map, VoxelPiece(q[0], number, q[1], cascade, q[2], 0));
+            place(map, VoxelPiece(q[0], index, q[1], cascade, q[2], 0));
         }
     }
 }

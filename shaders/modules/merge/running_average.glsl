@@ -6,7 +6,7 @@ void runningAverage(uint word, vec3 value) {
     uint next = v.x | v.y << 8 | v.z << 16 | v.w << 24;
     uint expected = 0;
     for (int i = 0; i < 1024; i++) {
-        uint seen = atomicCompSwap(voxelSlots.words[word], expected, next);
+        uint seen = atomicCompSwap(surfelSums.words[word], expected, next);
         if (seen == expected) return;
         expected = seen;
         vec4 mean = vec4(seen & 255u, seen >> 8 & 255u, seen >> 16 & 255u, seen >> 24);
@@ -22,6 +22,6 @@ void mergeInto(uint base, vec3 color, vec3 normal, uint weight) {
 }
 
 void mergedMean(uint base, out vec3 color, out vec3 normal) {
-    color = unpackUnorm4x8(voxelSlots.words[base]).rgb;
-    normal = unpackUnorm4x8(voxelSlots.words[base + 4]).rgb * 2.0 - 1.0;
+    color = unpackUnorm4x8(surfelSums.words[base]).rgb;
+    normal = unpackUnorm4x8(surfelSums.words[base + 4]).rgb * 2.0 - 1.0;
 }

@@ -31,7 +31,7 @@ bool hiddenByItself(int layer, vec3 q, vec2 slope, float deep) {
     return any(lessThanEqual(above, vec4(0.0))) && mix(row.x, row.y, beyond.y) < CLOSE * deep;
 }
 
-float shadowVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
+float lightVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
     int layer = shadowLayerOf(light, p);
     float texel = shadowTexel(layer, light, p);

@@ -1,37 +1,38 @@
-// Which parts of a cell a triangle covers: a cell, seen along an axis, is cut into 8x8 parts, a bit each.
-#ifndef VOXELIZE_PARTS_GLSL
-#define VOXELIZE_PARTS_GLSL
-#include "common/parts.glsl"
+// Coverage of a cell by a triangle: its coverage mask, area and offset.
+#ifndef VOXELIZE_COVERAGE_MASK_GLSL
+#define VOXELIZE_COVERAGE_MASK_GLSL
+#include "common/coverage_mask.glsl"
 
-struct Covered {
-    uvec2 parts;
+struct Coverage {
+    uvec2 mask;
     uint weight; // area as seen along the axis, in sixteenths of a part, at least 1
     float offset; // of the triangle's plane from the cell's middle, along the axis [cells]
 };
 
-Covered wholeCell(float offset) {
-    return Covered(uvec2(0xffffffffu), 1024u, offset);
+Coverage fullCoverage(float offset) {
+    return Coverage(uvec2(0xffffffffu), 1024u, offset);
 }
 
-// Parts whose middle the triangle covers, or comes as near to as PARTS_REACH [parts]. Corners in cells. Row by row: between
-// which columns all three edges say inside (Pineda 1988). Of a triangle that is seen edge-on, all, and the offset that is given.
-const float PARTS_REACH = 0.1;
+// Sets the parts whose middle lies inside the triangle or closer than MASK_REACH [parts]. Corners in cells.
+// Each row is the span of columns inside all three edges (Pineda 1988). Edge-on triangles cover the whole
+// cell and keep the given offset.
+const float MASK_REACH = 0.1;
 
-Covered coveredParts(vec3 a, vec3 b, vec3 c, ivec3 cell, uint axis, float offset) {
+Coverage triangleCoverage(vec3 a, vec3 b, vec3 c, ivec3 cell, uint axis, float offset) {
     vec3 face = cross(b - a, c - a);
-    if (abs(face[axis]) < 0.1 * length(face)) return wholeCell(offset);
+    if (abs(face[axis]) < 0.1 * length(face)) return fullCoverage(offset);
     offset = dot(face, a - vec3(cell) - 0.5) / face[axis];
-    vec2 p[3] = vec2[3](8.0 * besideOf(a - vec3(cell), axis), 8.0 * besideOf(b - vec3(cell), axis), 8.0 * besideOf(c - vec3(cell), axis));
+    vec2 p[3] = vec2[3](8.0 * lateralOf(a - vec3(cell), axis), 8.0 * lateralOf(b - vec3(cell), axis), 8.0 * lateralOf(c - vec3(cell), axis));
     vec2 e = p[1] - p[0], f = p[2] - p[0];
     float area = 0.5 * abs(e.x * f.y - e.y * f.x), facing = sign(e.x * f.y - e.y * f.x);
-    vec2 low = min(p[0], min(p[1], p[2])) - PARTS_REACH, high = max(p[0], max(p[1], p[2])) + PARTS_REACH;
+    vec2 low = min(p[0], min(p[1], p[2])) - MASK_REACH, high = max(p[0], max(p[1], p[2])) + MASK_REACH;
     bool whole = true;
     for (int i = 0; i < 3; i++) {
         vec2 from = p[i], along = (p[(i + 1) % 3] - from) * facing;
         vec2 far = vec2(along.y > 0.0 ? 8.0 : 0.0, along.x > 0.0 ? 0.0 : 8.0); // the cell's corner that is farthest out
         whole = whole && along.x * (far.y - from.y) >= along.y * (far.x - from.x);
     }
-    if (whole) return wholeCell(offset); // most fragments of large triangles
+    if (whole) return fullCoverage(offset); // most fragments of large triangles
     uint rows[2] = uint[2](0u, 0u);
     float within = 0.0; // area, from the rows' middles
     for (int row = 0; row < 8; row++) {
@@ -41,7 +42,7 @@ Covered coveredParts(vec3 a, vec3 b, vec3 c, ivec3 cell, uint axis, float offset
         for (int i = 0; i < 3; i++) {
             vec2 from = p[i], along = (p[(i + 1) % 3] - from) * facing;
             // Inside: along.x * (y - from.y) - along.y * (x - from.x) >= -reach
-            float level = along.x * (y - from.y) + along.y * from.x, reach = PARTS_REACH * (abs(along.x) + abs(along.y));
+            float level = along.x * (y - from.y) + along.y * from.x, reach = MASK_REACH * (abs(along.x) + abs(along.y));
             if (along.y > 0.0) {
                 exact.y = min(exact.y, level / along.y);
                 columns.y = min(columns.y, (level + reach) / along.y);
@@ -57,10 +58,10 @@ Covered coveredParts(vec3 a, vec3 b, vec3 c, ivec3 cell, uint axis, float offset
         int first = int(ceil(columns.x - 0.5)), last = min(int(floor(columns.y - 0.5)), 7);
         if (last >= first) rows[row / 4] |= ((2u << (last - first)) - 1u) << first << 8 * (row & 3);
     }
-    // Of a triangle that ends within the cell the area is known; of what is cut off, the rows' middles say it well.
-    bool inside = all(greaterThanEqual(low, vec2(-PARTS_REACH))) && all(lessThanEqual(high, vec2(8.0 + PARTS_REACH)));
+    // The area is exact if the triangle ends within the cell. Otherwise the rows' middles approximate it.
+    bool inside = all(greaterThanEqual(low, vec2(-MASK_REACH))) && all(lessThanEqual(high, vec2(8.0 + MASK_REACH)));
     if (!inside) area = within;
-    return Covered(uvec2(rows[0], rows[1]), uint(max(16.0 * area + 0.5, 1.0)), offset);
+    return Coverage(uvec2(rows[0], rows[1]), uint(max(16.0 * area + 0.5, 1.0)), offset);
 }
 
 #endif

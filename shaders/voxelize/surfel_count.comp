@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// How many slots the words of bricks before each word have, of its chunk.
+// Counts the surfels before each word of a brick, in its chunk of words.
 #include "params.glsl"
 #include "common/bricks.glsl"
 #define SUMS_CHUNKS
@@ -14,9 +14,9 @@ void main() {
         before[i] = sum;
         sum += bitCount(word.x) + bitCount(word.y) + bitCount(word.z);
     }
-    uint own = sum;
-    sum = sumUpTo(thread, own);
+    uint count = sum;
+    sum = inclusiveSum(count);
     for (uint i = 0; i < THREAD_WORDS; i++)
-        if (first + i < words) voxelBricks.words[first + i].w = sum - own + before[i];
-    if (thread == CHUNK_THREADS - 1) voxelChunks.slots[gl_WorkGroupID.x] = sum;
+        if (first + i < words) voxelBricks.words[first + i].w = sum - count + before[i];
+    if (thread == CHUNK_THREADS - 1) voxelChunks.surfels[gl_WorkGroupID.x] = sum;
 }

@@ -15,7 +15,7 @@ uint bricksOf(uint block) {
 
 // A block's bricks as far as there is room for them. Where there is none, groups count what others may have taken out meanwhile or not:
 // either way no room is left.
-void number(uint block, uint first) {
+void assignIndices(uint block, uint first) {
     uint next = first, room = voxelPlaces.bricks.length();
     for (uint word = 0; word < 2; word++) {
         for (uint left = voxelBlocks.list[block][word]; left != 0; left &= left - 1) {
@@ -31,13 +31,13 @@ void main() {
     uint chunk = gl_WorkGroupID.x * CHUNK_BLOCKS, thread = gl_LocalInvocationIndex, before = 0;
     // Each group counts all before its chunk anew: few blocks, and nobody waits for another pass.
     for (uint block = thread; block < chunk; block += CHUNK_THREADS) before += bricksOf(block);
-    uint start = sumOfAll(thread, before), own = 0;
-    for (uint i = 0; i < 4; i++) own += bricksOf(chunk + 4 * thread + i);
-    uint sum = sumUpTo(thread, own), first = start + sum - own;
+    uint start = groupSum(before), total = 0;
+    for (uint i = 0; i < 4; i++) total += bricksOf(chunk + 4 * thread + i);
+    uint sum = inclusiveSum(total), first = start + sum - total;
     for (uint i = 0; i < 4; i++) {
-        uint block = chunk + 4 * thread + i, many = bricksOf(block);
-        if (many > 0) number(block, first);
-        first += many;
+        uint block = chunk + 4 * thread + i, count = bricksOf(block);
+        if (count > 0) assignIndices(block, first);
+        first += count;
     }
     if (gl_WorkGroupID.x < gl_NumWorkGroups.x - 1 || thread < CHUNK_THREADS - 1) return;
     uint bricks = min(first, voxelPlaces.bricks.length()), fragments = min(voxelCounter.fragments, voxelFragments.list.length());

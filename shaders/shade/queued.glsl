@@ -1,12 +1,11 @@
-// The pixels that gather in this frame. A pixel's rays are dealt to several threads; threads beside each other take the same ray of
-// different pixels.
+// Gathers the light of the queued pixels. Several threads share the rays of a pixel; neighbouring threads
+// take the same ray of different pixels.
 #include "params.glsl"
 #define READS_AGE
-#include "shade/kept.glsl"
+#include "shade/queue.glsl"
 #include "shade/gathered.glsl"
 #include "shade/demodulate.glsl"
 
-const uint GATHER_PIXELS = 32; // of a group
 const uint GATHER_THREADS = 4; // of a pixel
 
 layout(local_size_x = GATHER_PIXELS, local_size_y = GATHER_THREADS) in;
@@ -20,20 +19,23 @@ vec2 pixelCentre() {
     return vec2(gathering) + 0.5;
 }
 
-// All threads of a group come here.
-void gatherListed(uint word, bool gathers) {
-    uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x, how = word >> 30;
-    gathering = ivec2(word & 0x7fffu, word >> 15 & 0x7fffu);
-    // Over the hemisphere, none where what it has gathered of that stays; into the lobe of a surface that reflects by its lobe alone.
-    int rays = how == GATHER_ALL ? params.pixel_rays : how == GATHER_FEW ? min(params.pixel_rays, FEW_RAYS) : 0;
-    int lobe = how == GATHER_LOBE ? params.pixel_rays : rays;
-    int emitters = how == GATHER_MIRRORED ? 0 : how == GATHER_FEW ? min(params.emitter_rays, 1) : params.emitter_rays;
+// All threads of a group call this together.
+void gatherQueued(uint word, bool gathers) {
+    uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x, mode = queuedMode(word);
+    gathering = queuedPixel(word);
+    int rays = params.pixel_rays, emitters = params.emitter_rays;
+    if (mode == GATHER_FEW) {
+        rays = min(rays, FEW_RAYS);
+        emitters = min(emitters, 1);
+    }
+    if (mode == GATHER_MIRRORED) rays = emitters = 0; // the hemisphere keeps its history
     Gathered light = Gathered(vec4(0.0), vec3(0.0));
     if (gathers) {
         GBufferSurface seen = gbufferAt(gathering);
         seen.surface.multiple = vec3(1.0); // cancels between here and the shading
-        gatherShare = RayShare(rays, lobe, emitters, int(part), int(GATHER_THREADS));
-        light = gather(coneOrigin(seen.position, seen.face, seen.surface.normal), seen.surface, seen.face, seen.to_viewer);
+        gatherShare = RayShare(rays, emitters, int(part), int(GATHER_THREADS));
+        ConeOrigin origin = coneOrigin(seen.position, seen.face, seen.surface.normal);
+        light = gather(origin, seen.surface, seen.face, seen.to_viewer);
         light.specular /= max(lobeReflectance(seen.surface, seen.to_viewer), MIN_REFLECTANCE);
     }
     shared_hemisphere[part][lane] = light.hemisphere;
@@ -49,10 +51,10 @@ void gatherListed(uint word, bool gathers) {
 }
 
 void main() {
-    uint count = gatherCounter.count;
-    for (uint start = gl_WorkGroupID.x * GATHER_PIXELS; start < count; start += gl_NumWorkGroups.x * GATHER_PIXELS) {
+    uint count = gatherCounter.count, stride = gl_NumWorkGroups.x * GATHER_PIXELS;
+    for (uint start = gl_WorkGroupID.x * GATHER_PIXELS; start < count; start += stride) {
         uint i = start + gl_LocalInvocationID.x;
-        gatherListed(i < count ? gatherList.pixels[i] : 0, i < count);
+        gatherQueued(i < count ? gatherQueue.items[i] : 0, i < count);
         barrier();
     }
 }

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// How many slots there are, before each chunk and in all, and the arguments of the passes that run over slots.
+// Sums up the surfels before each chunk and in all, and writes the arguments of the passes over surfels.
 #include "params.glsl"
 #include "common/volume.glsl"
 #include "common/voxels.glsl"
@@ -9,12 +9,12 @@
 
 void main() {
     uint chunks = voxelCounter.chunk_groups.x, thread = gl_LocalInvocationIndex, share = (chunks + CHUNK_THREADS - 1) / CHUNK_THREADS;
-    uint first = min(thread * share, chunks), end = min(first + share, chunks), own = 0;
-    for (uint i = first; i < end; i++) own += voxelChunks.slots[i];
-    uint sum = sumUpTo(thread, own), before = sum - own;
+    uint first = min(thread * share, chunks), end = min(first + share, chunks), share_sum = 0;
+    for (uint i = first; i < end; i++) share_sum += voxelChunks.surfels[i];
+    uint sum = inclusiveSum(share_sum), before = sum - share_sum;
     for (uint i = first; i < end; i++) {
-        voxelStarts.slots[i] = before;
-        before += voxelChunks.slots[i];
+        voxelStarts.surfels[i] = before;
+        before += voxelChunks.surfels[i];
     }
     if (thread < CHUNK_THREADS - 1) return;
     uint count = min(sum, uint(params.voxel_capacity)), fragments = min(voxelCounter.fragments, voxelFragments.list.length());

@@ -2,4 +2,4 @@
 #extension GL_GOOGLE_include_directive : require
 // In a scene where nothing emits.
 #define SCENE_EMITS false
-#include "shade/listed.glsl"
+#include "shade/queued.glsl"

@@ -1,0 +1,56 @@
+// Gathers the light of the queued voxel sides with a few rays or narrow cones, several threads a side.
+// Neighbours take other directions. Injection reflects the light, so that each frame adds a bounce. All hits
+// read the last frame's data, `volume` too; `placed` is the current volume.
+#include "params.glsl"
+#include "common/voxels.glsl"
+#include "common/volume.glsl"
+
+layout(std430) readonly buffer LastSurfels { uvec4 quads[]; } lastSurfels;
+layout(std430) readonly buffer LastRadiance { uvec2 list[]; } lastRadiance;
+layout(std430) readonly buffer LastBricks { uvec4 words[]; } lastBricks;
+layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
+
+#define MET_PLANES lastSurfels
+#define MET_RADIANCE lastRadiance
+#define MET_BRICKS lastBricks
+#define MET_BLOCKS lastBlocks
+#include "modules/bounce_trace.glsl"
+#include "cones/near.glsl"
+#include "bounce/gather.glsl"
+#include "bounce/queue.glsl"
+#include "bounce/placed.glsl"
+
+const uint BOUNCE_THREADS = 4;
+
+layout(local_size_x = BOUNCE_SIDES, local_size_y = BOUNCE_THREADS) in;
+
+shared vec3 shared_light[BOUNCE_THREADS][BOUNCE_SIDES];
+
+vec3 gatheredShare(uint surfel, uint side, int part) {
+    Side s = sideOfSurfel(surfel, side);
+    if (s.normal == vec3(0.0)) return vec3(0.0);
+    ivec3 cell = cellOfSurfel(surfel);
+    uint axis = uint(axisOfSurfel(surfel));
+    vec3 p = surfelPosition(placed.maps[cascadeOf(cell)], cell, surfelBase(surfel), side, axis);
+    return gatherAt(p, s.normal, emits(surfel, side), patternOf(uvec3(cell)), part, int(BOUNCE_THREADS));
+}
+
+void main() {
+    uint lane = gl_LocalInvocationID.x, part = gl_LocalInvocationID.y, count = bounceCounter.count;
+    uint stride = gl_NumWorkGroups.x * BOUNCE_SIDES;
+    for (uint start = gl_WorkGroupID.x * BOUNCE_SIDES; start < count; start += stride) {
+        vec3 light = vec3(0.0);
+        uint index = 0;
+        if (start + lane < count) {
+            index = bounceQueue.items[start + lane];
+            light = gatheredShare(index / SIDES, index % SIDES, int(part));
+        }
+        shared_light[part][lane] = light;
+        barrier();
+        if (part == 0 && start + lane < count) {
+            for (uint k = 1; k < BOUNCE_THREADS; k++) light += shared_light[k][lane];
+            sideGathered.list[index] = packLight(light, timesOf(sideGathered.list[index]));
+        }
+        barrier();
+    }
+}

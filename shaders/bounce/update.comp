@@ -1,0 +1,60 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Updates the light that sides of voxels have gathered from the last frame's, and queues the sides that
+// gather again.
+#include "params.glsl"
+#include "bounce/reproject.glsl"
+#define QUEUE_WRITES
+#include "bounce/queue.glsl"
+#include "bounce/placed.glsl"
+
+layout(local_size_x = 128) in;
+
+shared uint queued_here;
+shared uint first;
+
+// Interleaving phase of a brick: its voxels gather together, and neighbouring bricks in different frames.
+uint phaseOf(uvec3 brick) {
+    return (brick.x + 3u * brick.y + 5u * brick.z) % uint(params.bounce_frames);
+}
+
+// Stores a side's history, and returns whether the side gathers: in its phase, and in every frame until it
+// has gathered in as many frames as there are phases, so that the first pictures have light.
+bool updateHistory(uint surfel, uint side, bool has_history) {
+    if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return false;
+    uint index = sideNumber(surfel, side), phases = uint(params.bounce_frames);
+    if (!has_history) {
+        sideGathered.list[index] = uvec2(0);
+        return false;
+    }
+    ivec3 cell = cellOfSurfel(surfel);
+    int cascade = cascadeOf(cell);
+    vec3 p = volumeToWorld(placed.maps[cascade], cellCentre(cell));
+    uvec2 last = reprojected(p, cascade, uint(axisOfSurfel(surfel)), side);
+    float updates = timesOf(last);
+    bool due = updates < float(phases) || phaseOf(uvec3(cell) >> 2) == camera.frame % phases;
+    sideGathered.list[index] = due ? packLight(vec3(0.0), min(updates + 1.0, float(phases))) : last;
+    return due;
+}
+
+// All threads of a group.
+void enqueue(bool due, uint i) {
+    uint place = 0;
+    if (gl_LocalInvocationIndex == 0) queued_here = 0;
+    barrier();
+    if (due) place = atomicAdd(queued_here, 1);
+    barrier();
+    if (gl_LocalInvocationIndex == 0 && queued_here > 0) first = reserve(queued_here);
+    barrier();
+    if (due) bounceQueue.items[first + place] = i;
+}
+
+void main() {
+    bool has_history = volume.signature == placed.signature;
+    uint count = voxelCounter.count * SIDES, stride = gl_NumWorkGroups.x * 128;
+    for (uint start = gl_WorkGroupID.x * 128; start < count; start += stride) {
+        uint i = start + gl_LocalInvocationIndex;
+        bool due = updateHistory(i / SIDES, i % SIDES, has_history);
+        enqueue(due, i);
+    }
+}

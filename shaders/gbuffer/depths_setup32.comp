@@ -1,5 +1,0 @@
-#version 460
-#extension GL_GOOGLE_include_directive : require
-// Sets up the triangles that the camera may see, for their depth.
-#include "gbuffer/depths32.glsl"
-#include "raster/setup.glsl"

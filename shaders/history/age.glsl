@@ -1,0 +1,65 @@
+// Age of a pixel's gathered light, and when the pixel gathers again. Each of the 64 pixels of 8x8 has an
+// interleaving phase. A surface gathers once in params.phases frames, whichever pixels it moves through: no
+// light is older, and no ray refreshes light that is not due. A still picture converges to the bit.
+#ifndef HISTORY_AGE_GLSL
+#define HISTORY_AGE_GLSL
+#include "common/ggx.glsl"
+#include "common/gbuffer_read.glsl"
+#include "common/pattern.glsl"
+
+// Fraction of an age that marks disoccluded pixels, which have gathered with few rays. Other ages are whole
+// frames.
+const float FEW_RAYS_AGE = 0.5;
+
+// Updates of all voxels without a change after which their light has nearly converged: if half the light is
+// reflected, less than a hundredth is missing.
+const int CONVERGED_UPDATES = 8;
+
+struct Age {
+    float frames;
+    bool due; // the pixel gathers with all its rays
+};
+
+// Frames since the pixel's phase was last due; params.phases if it is due in this frame. index: of the pixel
+// in 8x8.
+float ageInPhase(uint index) {
+    uint phases = uint(params.phases), phase = index * phases / 64u;
+    return float(phases - (phase + phases - camera.frame % phases) % phases);
+}
+
+// Whether light ages in this frame. Under a moving camera converged light ages in one of gather_rest frames;
+// more often if the surface's lobe turns by much within all phases.
+bool ages(GBufferSurface seen, uint index, bool few_rays) {
+    // One round of all phases more: by then each pixel has gathered the converged light.
+    bool converged = camera.still_frames > uint(CONVERGED_UPDATES * params.bounce_frames + params.phases);
+    if (few_rays || !converged || camera.view_projection == camera.previous_view_projection) return true;
+    uint interval = uint(params.gather_rest);
+    if (params.specular_cone) {
+        vec3 previous_to_viewer = normalize(camera.previous_position - seen.position);
+        float turned = distance(seen.to_viewer, previous_to_viewer) * float(params.phases);
+        float alpha = ggxAlpha(seen.surface.roughness);
+        interval = uint(clamp(alpha / max(turned, 1e-6), 1.0, float(interval)));
+    }
+    return (camera.frame + index) % interval == 0;
+}
+
+// Age of a disoccluded pixel: it gathers fully in its own phase.
+Age newAge(uint index) {
+    float frames = ageInPhase(index) + FEW_RAYS_AGE;
+    return Age(frames, floor(frames) >= float(params.phases));
+}
+
+// Age of light that had an age in the last frame.
+Age nextAge(GBufferSurface seen, uint index, float last) {
+    float frames = ages(seen, index, fract(last) != 0.0) ? last + 1.0 : last;
+    return Age(frames, floor(frames) >= float(params.phases));
+}
+
+// Age of light that is gathered in this frame. When the camera approaches, many pixels inherit from one and
+// would stay due together: those a little behind their own phase return to it.
+float gatheredAge(uint index) {
+    float in_phase = ageInPhase(index);
+    return in_phase <= 0.25 * float(params.phases) ? in_phase : 0.0;
+}
+
+#endif
