@@ -12,12 +12,12 @@ layout(local_size_x = 128) in;
 
 uniform writeonly image3D injected;
 
-// Opacity of a surface to rays along d, which cross fewer of its cells the straighter they meet it; none goes through along the
-// axis that it faces.
-float opacityTo(Side s, vec3 d) {
-    vec3 a = abs(s.normal);
-    float steepest = max(a.x, max(a.y, a.z));
-    return steepest > 0.0 ? mix(1.0, abs(dot(s.normal, d)) / steepest, params.face_opacity * s.agreement) : 1.0;
+// Fraction of the cell's face that a surfel covers, seen along its axis.
+float coverageOf(uint slot, uint side) {
+    uint base = planeBase(slot);
+    uvec2 parts = partsOf(base, side);
+    if (parts == uvec2(0)) parts = partsOf(base, SIDES - 1 - side); // a mirrored side has no mask of its own
+    return float(bitCount(parts.x) + bitCount(parts.y)) / 64.0;
 }
 
 void main() {
@@ -35,13 +35,17 @@ void main() {
     for (uint i = 0; i < slotsOf(found) * SIDES; i++) {
         uint side = i % SIDES;
         Side s = sideOfSlot(slot + i / SIDES, side);
-        vec3 radiance = lightOf(sideRadiance.list[sideNumber(slot, i)]);
+        uvec2 packed = sideRadiance.list[sideNumber(slot, i)];
+        vec3 radiance = lightOf(packed);
+        // Opacity is the projected area: the coverage along the axis times the cosine ratio of the direction and the axis.
+        vec3 facing = normalize(axes * axisVector(uint(axisOfSlot(slot + i / SIDES)))) * (side == 0 ? 1.0 : -1.0);
+        float covered = coverageOf(slot + i / SIDES, side), steepest = max(meanCosine(s, facing), 1e-3);
         for (int face = 0; face < 6; face++) {
             vec3 d = normalize(axes * mipDirection(face));
             float area = s.count * meanCosine(s, -d);
             light[face] += area * radiance;
             seen[face] += area;
-            if (area > 0.0) opacity[face] = min(opacity[face] + opacityTo(s, d), 1.0);
+            if (area > 0.0) opacity[face] = min(opacity[face] + covered * mix(1.0, min(meanCosine(s, -d) / steepest, 1.0), params.face_opacity), 1.0);
         }
     }
     if (params.radiance_faces == 1) {
