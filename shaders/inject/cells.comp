@@ -7,6 +7,7 @@
 #include "common/sides.glsl"
 #include "common/planes.glsl"
 #include "common/bricks.glsl"
+#include "common/emitters.glsl"
 
 layout(local_size_x = 128) in;
 
@@ -37,6 +38,7 @@ void main() {
         Side s = sideOfSlot(slot + i / SIDES, side);
         uvec2 packed = sideRadiance.list[sideNumber(slot, i)];
         vec3 radiance = lightOf(packed);
+        if (!WARPED && params.levels_emit == 0 && emitters.count > 0) radiance *= 1.0 - timesOf(packed);
         // Opacity is the projected area: the coverage along the axis times the cosine ratio of the direction and the axis.
         vec3 facing = normalize(axes * axisVector(uint(axisOfSlot(slot + i / SIDES)))) * (side == 0 ? 1.0 : -1.0);
         float covered = coverageOf(slot + i / SIDES, side), steepest = max(meanCosine(s, facing), 1e-3);

@@ -25,8 +25,8 @@ void gatherListed(uint word, bool gathers) {
     uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x, how = word >> 30;
     gathering = ivec2(word & 0x7fffu, word >> 15 & 0x7fffu);
     // Over the hemisphere, none where what it has gathered of that stays; into the lobe of a surface that reflects by its lobe alone.
-    int rays = how == GATHER_ALL ? params.pixel_cones : how == GATHER_FEW ? min(params.pixel_cones, FEW_RAYS) : 0;
-    int lobe = how == GATHER_LOBE ? params.pixel_cones : rays;
+    int rays = how == GATHER_ALL ? params.diffuse_cones : how == GATHER_FEW ? min(params.diffuse_cones, FEW_RAYS) : 0;
+    int lobe = how == GATHER_LOBE ? params.diffuse_cones : rays;
     int emitters = how == GATHER_MIRRORED ? 0 : how == GATHER_FEW ? min(params.emitter_rays, 1) : params.emitter_rays;
     Gathered light = Gathered(vec4(0.0), vec3(0.0));
     if (gathers) {

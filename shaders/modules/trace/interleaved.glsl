@@ -1,10 +1,12 @@
-// Narrow cones: rays that meet voxels' surfaces, and from near_cells on filtered levels, which know no emitters.
+// Narrow cones at a reduced rate: exact surfels while the cone is thin, then filtered levels. Emitter samples replace the emission
+// that filtered levels would hold.
+#define NARROW_CONES true
 #include "modules/cone.glsl"
 
-const bool DRAWS_EMITTERS = false;
+#define DRAWS_EMITTERS (!WARPED && params.levels_emit == 0)
 
 vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
-    return traceCone(o, d, tan_half, steps);
+    return traceCone(o, d, tan_half, steps, use);
 }
 
 #include "cones/interleaved.glsl"

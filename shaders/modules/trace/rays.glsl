@@ -4,6 +4,10 @@
 
 const bool DRAWS_EMITTERS = !CURVED;
 
+float exactRange(ConeOrigin o, vec3 d, float tan_half) {
+    return 1e30;
+}
+
 vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     return traceVoxels(o, d, use);
 }
