@@ -92,7 +92,9 @@ fn samples_add_up_to_what_shading_found() {
         let what = format!("{name} at {at:?}, {trace}");
         let wanted = ["coneSamples", "gatheredDiffuse", "surfaceNormal"];
         // What rays to emitters bring is no radiance that they meet.
-        let mut session = frame(&lab, name, Some(at), &[("trace", trace), ("emitter_rays", "0")], &wanted);
+        let count = if *trace == "interleaved" { "2" } else { "9" };
+        let settings = [("trace", *trace), ("cone_count", count), ("emitter_rays", "0")];
+        let mut session = frame(&lab, name, Some(at), &settings, &wanted);
         let pixel = (at[1] * SIZE.0 + at[0]) as usize;
         let normal = Vec3::from_slice(&floats(&mut session, "surfaceNormal", 0)[pixel][..3]) * 2.0 - 1.0;
         match material {
