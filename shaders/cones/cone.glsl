@@ -5,6 +5,7 @@
 #define CONE_GLSL
 #include "modules/lookup.glsl"
 #include "cones/near.glsl"
+#include "cones/emitters.glsl"
 
 // A cone that has met more than stop_transmittance leaves: what is left would hit something too, so it is spread over what
 // was hit.
@@ -12,15 +13,30 @@ vec4 stopped(vec3 color, float alpha) {
     return vec4(color / alpha, 1.0);
 }
 
-// Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
-vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
+// Length of the exact part of a cone [m]: as long as the cone would read level 0, its axis is tested against surfels. The cells of
+// the next cascade are up to eight times as large, so narrow cones stay exact until this holds in the coarsest cascade. Warped
+// cells bend rays, so the exact part is short there.
+float exactRange(ConeOrigin o, vec3 d, float tan_half) {
+    float near = params.near_cells * cellLength(volume.maps[o.cascade], o.surface, d);
+    if (WARPED || params.near_cells == 0.0) return near;
+    float cell = cellLength(volume.maps[NARROW_CONES ? CASCADE_COUNT - 1 : o.cascade], o.surface, d);
+    return max(near, exp2(-params.lod_offset) * cell / (2.0 * tan_half));
+}
+
+// Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture. Rays to emitter samples are
+// exact along their whole length, because filtered levels blur the shadows of lamps.
+vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     float first_cell;
     Cone cone = coneFrom(o, d, tan_half, first_cell);
     float along = params.cone_height * first_cell;
-    if (params.near_cells > 0.0 && meetsPlanes(o)) {
-        float range = params.near_cells * first_cell;
+    bool to_emitter = use.range < 1e30;
+    float range = to_emitter ? use.range : exactRange(o, d, tan_half);
+    if ((range > 0.0 || to_emitter) && meetsPlanes(o)) {
         Met met = meetSurface(o, d, range);
+        if (met.emitted > 0.5 && met.distance > use.lamp) met.light = vec4(0.0);
+        if (to_emitter) return met.light;
         if (met.light.a > 0.0) {
+            met.light.rgb *= shareOfRay(use, met.light.rgb, met.emitted, met.distance);
             vec3 position = o.surface + met.distance * d;
             CONE_SAMPLED(0, met.distance, ConeSample(position, met.distance * tan_half, 0.0, first_cell, first_cell, 0.0, met.light, false, true), 1.0, 0.0);
             return met.light;
@@ -47,6 +63,10 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
         along += x.advance;
     }
     return vec4(color, min(alpha, 1.0));
+}
+
+vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
+    return traceCone(o, d, tan_half, steps, MEETS_ALL);
 }
 
 #endif

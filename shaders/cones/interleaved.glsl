@@ -25,12 +25,6 @@ vec2 blockPoint(int i) {
     return fract(pixelPoint(i) + r2(blockNumber()));
 }
 
-// A cone has the share of the hemisphere that it has among those of 4x4 pixels: narrower ones would take more steps and tell no more.
-float tanOfShare(int cones) {
-    float cosine = 1.0 - 1.0 / float(16 * cones);
-    return sqrt(1.0 - cosine * cosine) / cosine;
-}
-
 float largest(vec3 v) {
     return max(v.r, max(v.g, v.b));
 }
@@ -48,18 +42,27 @@ struct EmitterLight {
     vec3 specular; // as of `lobe` rays
 };
 
-EmitterLight lightOfPlace(EmitterPlace place, Surface s, vec3 face, vec3 v, float rays, float lobe, float drawn) {
+// Length of the exact part of cones [m]. There they hit emitters and share their light with emitter samples (multiple importance
+// sampling); filtered levels hold no emission.
+struct SharedRange {
+    float rays;
+    float lobe;
+};
+
+EmitterLight lightOfPlace(EmitterPlace place, Surface s, vec3 face, vec3 v, float rays, float lobe, float drawn, SharedRange range) {
     float cosine = dot(s.normal, place.direction);
     if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0) return EmitterLight(vec3(0.0), vec3(0.0));
     float found = drawn * place.by_area * place.distance * place.distance;
     vec3 light = place.radiance * place.cosine * cosine;
+    float by_rays = place.distance < range.rays ? rays * cosine / PI : 0.0;
+    float by_lobe = place.distance < range.lobe && lobe > 0.0 ? lobe * specularDensity(s, v, place.direction) : 0.0;
     return EmitterLight(
-        rays > 0.0 ? light * (rays / PI) / (found + rays * cosine / PI) : vec3(0.0),
-        lobe > 0.0 ? light * lobe * specularBrdf(s, v, place.direction) / (found + lobe * specularDensity(s, v, place.direction)) : vec3(0.0));
+        rays > 0.0 ? light * (rays / PI) / (found + by_rays) : vec3(0.0),
+        lobe > 0.0 ? light * lobe * specularBrdf(s, v, place.direction) / (found + by_lobe) : vec3(0.0));
 }
 
 // A place of some that are drawn, and what it brings for all of them.
-EmitterPlace bestPlace(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe, float drawn, out EmitterLight light) {
+EmitterPlace bestPlace(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe, float drawn, float tan_half, float tan_lobe, out EmitterLight light) {
     float sum = 0.0, own = 0.0;
     EmitterPlace best;
     best.cosine = 0.0;
@@ -68,7 +71,8 @@ EmitterPlace bestPlace(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, f
     float choice = fract(shift.x + float(pixelPointNumber(number) & 0xffffu) * 0.6180339887);
     for (int k = 0; k < CANDIDATES; k++) {
         EmitterPlace place = drawEmitter(o.surface, evenPoint4(pixelPointNumber(number * CANDIDATES + k), shift));
-        EmitterLight found = lightOfPlace(place, s, face, v, rays, lobe, drawn);
+        SharedRange range = SharedRange(exactRange(o, place.direction, tan_half), exactRange(o, place.direction, tan_lobe));
+        EmitterLight found = lightOfPlace(place, s, face, v, rays, lobe, drawn, range);
         float weight = luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
         if (weight <= 0.0) continue;
         sum += weight;
@@ -88,11 +92,11 @@ EmitterPlace bestPlace(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, f
     return best;
 }
 
-// Cones over the hemisphere, then some directions of the lobe; a cone there has a sixteenth of it; then rays to emitters. One loop for
+// Cones over the hemisphere, then some directions of the lobe; a cone there has a sixty-fourth of it; then rays to emitters. One loop for
 // all: what traces them is large, and in the program once.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     mat3 frame = frameOf(s.normal);
-    float tan_half = tanOfShare(params.pixel_rays), tan_lobe = 0.5 * ggxAlpha(s.roughness);
+    float tan_half = tan(radians(0.5 * params.cone_aperture)), tan_lobe = 0.25 * ggxAlpha(s.roughness);
     int rays = gatherShare.rays, lobe = specularRays(s, v);
     int drawn = DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
     float candidates = float(drawn * CANDIDATES);
@@ -106,7 +110,7 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
         RayUse use = MEETS_ALL;
         EmitterLight light = EmitterLight(vec3(0.0), vec3(0.0));
         if (is_drawn) {
-            EmitterPlace place = bestPlace(o, s, face, v, i - rays - lobe, float(rays), float(lobe), candidates, light);
+            EmitterPlace place = bestPlace(o, s, face, v, i - rays - lobe, float(rays), float(lobe), candidates, tan_half, tan_lobe, light);
             if (place.cosine == 0.0) continue;
             d = place.direction;
             use = rayTo(place, o.surface);

@@ -15,7 +15,7 @@ struct ConeSet {
 
 // Angles in degrees; the graph's value cone_aperture is the full angle, of the set or as diffuse_aperture says.
 ConeSet makeConeSet(int count, float axial_weight, float tilt) {
-    return ConeSet(count, axial_weight, cos(radians(tilt)), sin(radians(tilt)), tan(radians(0.5 * params.cone_aperture)));
+    return ConeSet(max(count, 4), axial_weight, cos(radians(tilt)), sin(radians(tilt)), tan(radians(0.5 * params.cone_aperture)));
 }
 
 #include "modules/cone_set.glsl"

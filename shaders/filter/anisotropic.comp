@@ -4,7 +4,7 @@
 // +z and -z meet in it, composited front to back in pairs and averaged over the four columns. The six lie side by side.
 #include "params.glsl"
 #include "common/directions.glsl"
-#include "common/volume.glsl"
+#include "common/bricks.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 
@@ -18,6 +18,15 @@ vec4 child(ivec3 cell, int direction, int dim) {
     return texelFetch(src, ivec3(cell.x + direction * dim, cell.yz), 0);
 }
 
+// Whether a cell of level 1 belongs to a brick that is not stored. Its texels hold no light and need not be read.
+bool isEmpty(ivec3 cell, int fine) {
+    if (params.light_in_bricks == 0 || fine != params.voxel_dim) return false;
+    ivec3 stored = 2 * cell;
+    int cascade = cascadeOf(stored);
+    ivec3 first = cellOfStored(stored, cascade);
+    return !isStored(voxelBlocks.list[blockNumber(first, cascade)], placeOf(first >> 2));
+}
+
 void main() {
     ivec3 size = imageSize(dst);
     ivec3 at = ivec3(gl_GlobalInvocationID);
@@ -27,6 +36,10 @@ void main() {
     ivec3 cell = ivec3(at.x - direction * dim, at.yz);
     vec3 dir = mipDirection(direction);
     int fine = textureSize(src, 0).y;
+    if (isEmpty(cell, fine)) {
+        imageStore(dst, at, vec4(0.0));
+        return;
+    }
     ivec3 along = ivec3(abs(dir)), u = along.yzx, v = along.zxy;
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 4; i++) {

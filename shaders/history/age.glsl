@@ -33,13 +33,10 @@ bool ages(GBufferSurface seen, uint index, bool few_rays) {
     // One round of all phases more: by then each pixel has gathered the converged light.
     bool converged = camera.still_frames > uint(CONVERGED_UPDATES * params.bounce_frames + params.phases);
     if (few_rays || !converged || camera.view_projection == camera.previous_view_projection) return true;
-    uint interval = uint(params.gather_rest);
-    if (params.specular_cone) {
-        vec3 previous_to_viewer = normalize(camera.previous_position - seen.position);
-        float turned = distance(seen.to_viewer, previous_to_viewer) * float(params.phases);
-        float alpha = ggxAlpha(seen.surface.roughness);
-        interval = uint(clamp(alpha / max(turned, 1e-6), 1.0, float(interval)));
-    }
+    vec3 previous_to_viewer = normalize(camera.previous_position - seen.position);
+    float turned = distance(seen.to_viewer, previous_to_viewer) * float(params.phases);
+    float alpha = ggxAlpha(seen.surface.roughness);
+    uint interval = uint(clamp(alpha / max(turned, 1e-6), 1.0, float(params.gather_rest)));
     return (camera.frame + index) % interval == 0;
 }
 

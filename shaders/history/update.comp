@@ -36,7 +36,7 @@ uint updateHistory(ivec2 pixel, uint index) {
     imageStore(gatheredSpecular, pixel, vec4(last.rgb, age.frames));
     if (!reprojected) return GATHER_FEW;
     imageStore(gatheredDiffuse, pixel, texelFetch(lastDiffuse, at, 0));
-    bool mirrors = params.specular_cone && seen.surface.roughness < MIRROR_ROUGHNESS;
+    bool mirrors = seen.surface.roughness < MIRROR_ROUGHNESS;
     return mirrors ? GATHER_MIRRORED : GATHER_NOTHING;
 }
 

@@ -7,17 +7,18 @@
 #include "common/sides.glsl"
 #include "common/surfels.glsl"
 #include "common/bricks.glsl"
+#include "common/emitters.glsl"
 
 layout(local_size_x = 128) in;
 
 uniform writeonly image3D injected;
 
-// Opacity of a surface to rays along d, which cross fewer of its cells the straighter they meet it; none goes through along the
-// axis that it faces.
-float opacityTo(Side s, vec3 d) {
-    vec3 a = abs(s.normal);
-    float steepest = max(a.x, max(a.y, a.z));
-    return steepest > 0.0 ? mix(1.0, abs(dot(s.normal, d)) / steepest, s.agreement) : 1.0;
+// Fraction of the cell's face that a surfel covers, seen along its axis.
+float coverageOf(uint surfel, uint side) {
+    uint base = surfelBase(surfel);
+    uvec2 mask = coverageMaskOf(base, side);
+    if (mask == uvec2(0)) mask = coverageMaskOf(base, SIDES - 1 - side); // a mirrored side has no mask of its own
+    return float(bitCount(mask.x) + bitCount(mask.y)) / 64.0;
 }
 
 void main() {
@@ -35,13 +36,18 @@ void main() {
     for (uint i = 0; i < surfelCount(found) * SIDES; i++) {
         uint side = i % SIDES;
         Side s = sideOfSurfel(surfel + i / SIDES, side);
-        vec3 radiance = lightOf(sideRadiance.list[sideNumber(surfel, i)]);
+        uvec2 packed = sideRadiance.list[sideNumber(surfel, i)];
+        vec3 radiance = lightOf(packed);
+        if (!WARPED && params.levels_emit == 0 && emitters.count > 0) radiance *= 1.0 - timesOf(packed);
+        // Opacity is the projected area: the coverage along the axis times the cosine ratio of the direction and the axis.
+        vec3 facing = normalize(axes * axisVector(uint(axisOfSurfel(surfel + i / SIDES)))) * (side == 0 ? 1.0 : -1.0);
+        float covered = coverageOf(surfel + i / SIDES, side), steepest = max(meanCosine(s, facing), 1e-3);
         for (int face = 0; face < 6; face++) {
             vec3 d = normalize(axes * mipDirection(face));
             float area = s.count * meanCosine(s, -d);
             light[face] += area * radiance;
             seen[face] += area;
-            if (area > 0.0) opacity[face] = min(opacity[face] + opacityTo(s, d), 1.0);
+            if (area > 0.0) opacity[face] = min(opacity[face] + covered * min(meanCosine(s, -d) / steepest, 1.0), 1.0);
         }
     }
     if (params.radiance_faces == 1) {

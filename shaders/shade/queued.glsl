@@ -23,7 +23,7 @@ vec2 pixelCentre() {
 void gatherQueued(uint word, bool gathers) {
     uint part = gl_LocalInvocationID.y, lane = gl_LocalInvocationID.x, mode = queuedMode(word);
     gathering = queuedPixel(word);
-    int rays = params.pixel_rays, emitters = params.emitter_rays;
+    int rays = params.diffuse_cones, emitters = params.emitter_rays;
     if (mode == GATHER_FEW) {
         rays = min(rays, FEW_RAYS);
         emitters = min(emitters, 1);

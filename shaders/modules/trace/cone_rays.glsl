@@ -1,12 +1,18 @@
-// Rays through every voxel that fill the same cones evenly: what filtering and steps cost.
+// Rays that fill the same cones evenly, voxel by voxel: what filtered levels and steps cost.
 #include "modules/lookup.glsl"
 #include "cones/rays.glsl"
 #include "common/frame.glsl"
 
-vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number) {
+#define DRAWS_EMITTERS false
+
+float exactRange(ConeOrigin o, vec3 d, float tan_half) {
+    return 1e30;
+}
+
+vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     mat3 frame = frameOf(d);
     float least = inversesqrt(1.0 + tan_half * tan_half);
-    vec2 shift = rayShift(number);
+    vec2 shift = rayShift(floatBitsToUint(d.x));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < params.exact_rays; i++) {
         vec2 u = rayPoint(i, shift);
@@ -16,4 +22,4 @@ vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number) {
     return sum / float(params.exact_rays);
 }
 
-#include "cones/gather.glsl"
+#include "cones/interleaved.glsl"

@@ -4,6 +4,10 @@
 
 #define DRAWS_EMITTERS (!WARPED && !CURVED) // others know no emitters
 
+float exactRange(ConeOrigin o, vec3 d, float tan_half) {
+    return 1e30;
+}
+
 vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     return traceVoxels(o, d, use);
 }

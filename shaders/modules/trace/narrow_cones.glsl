@@ -1,0 +1,12 @@
+// Narrow cones at a reduced rate: exact surfels while the cone is thin, then filtered levels. Emitter samples replace the emission
+// that filtered levels would hold.
+#define NARROW_CONES true
+#include "modules/cone.glsl"
+
+#define DRAWS_EMITTERS (!WARPED && params.levels_emit == 0)
+
+vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
+    return traceCone(o, d, tan_half, steps, use);
+}
+
+#include "cones/interleaved.glsl"
