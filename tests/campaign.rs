@@ -238,7 +238,7 @@ fn what_is_plain_already_or_plainer_is_left_out() {
 fn samples(count: usize, seed: u64) -> Vec<[f64; 3]> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("sample.ron");
-    let of = r#""bias": Uniform(0, 1), "near_cells": Uniform(0, 1), "lod_offset": Uniform(0, 1)"#;
+    let of = r#""bias": Uniform(0, 1), "diffuse_aperture": Uniform(0, 1), "lod_offset": Uniform(0, 1)"#;
     let experiment = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("configs/cones.ron");
     let axis = format!("Sample(count: {count}, seed: {seed}, of: {{ {of} }})");
     std::fs::write(&path, format!("(experiments: [{experiment:?}], axes: [{axis}])")).unwrap();

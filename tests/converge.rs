@@ -24,10 +24,9 @@ use std::time::{Duration, Instant};
 const BOUND: f64 = 0.005;
 
 /// Parameters that change how light is gathered, each with one or two values.
-const OPTIONS: [(&str, &[&str]); 9] = [
+const OPTIONS: [(&str, &[&str]); 8] = [
     ("trace", &["cone_rays", "lobe_rays"]),
     ("bounces", &["one"]),
-    ("bounce_trace", &["rays", "cones"]),
     ("bounce_frames", &["1", "5", "64"]),
     ("bounce_emitter_rays", &["0"]),
     ("gather_frames", &["1", "32"]),
@@ -71,7 +70,7 @@ fn cases() -> Vec<Experiment> {
         graphs.push(preset.graph.clone());
         let graph = load(&home.graph_path(&preset.graph), &home.folders()).unwrap();
         let filtered = graph.params.index("temporal_factor").is_some();
-        let matters = |name: &str| !filtered || ["bounce_trace", "temporal_factor"].contains(&name);
+        let matters = |name: &str| !filtered || ["temporal_factor"].contains(&name);
         let has = |name: &str| graph.params.index(name).is_some() && matters(name);
         for (name, values) in OPTIONS.iter().filter(|(name, _)| has(name)) {
             for value in *values {

@@ -76,7 +76,9 @@ fn small(opacity: &str) -> Experiment {
             ("voxel_dim", "32"),
             ("shadow_dim", "256"),
             ("bounces", "one"),
-            ("cone_set", "thesis"),
+            ("gather_frames", "1"),
+            ("emitter_rays", "0"),
+            ("cone_count", "3"),
             ("opacity", opacity),
         ],
     );

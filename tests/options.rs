@@ -53,7 +53,6 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
         "density_axis" => &[("view", "voxels"), ("density", "surfaces"), ("warp", "logistic")],
         "voxel_view_cascade" => &[("view", "voxels"), ("cascades", "2")],
         "voxel_view_mip" => &[("view", "voxels")],
-        "step_factor" => &[("near_cells", "0")],
         "exact_rays" => &[("trace", "cone_rays")],
         _ => &[],
     }

@@ -169,7 +169,7 @@ fn saving_says_beside_the_field_what_became_of_it() {
     driver.click("Button", "save");
     driver.event(mark, "saved");
     let saved = driver.file("configs/con-fig.ron");
-    assert!(saved.contains("\"trace\"") && !saved.contains("probe"), "{saved}");
+    assert!(saved.contains("\"bounces\"") && !saved.contains("probe"), "{saved}");
     driver.texts_until("the corrected name", |texts| {
         has(texts, "experiment: con-fig") && texts.iter().any(|t| t.starts_with("saved ") && t.ends_with("con-fig.ron"))
     });

@@ -87,17 +87,15 @@ fn samples_add_up_to_what_shading_found() {
         ("furnace", [20, 20], ""),
         ("white-sky", [32, 24], ""),
     ];
-    // The wide set has 0.15 on the normal, the rest shared by the ring of eight. What a pixel's own rays gather is mixed with
-    // its neighbours' afterwards.
-    let wide: Vec<f32> = (1..10).map(|n| if n == 1 { 0.15 } else { 0.85 / 8.0 }).collect();
-    let traces = [("rays", vec![1.0 / 2.0; 2]), ("cones", wide)];
+    // What a pixel's own rays and cones gather is mixed with its neighbours' afterwards.
+    let traces = [("rays", vec![1.0 / 2.0; 2]), ("cones", vec![1.0 / 3.0; 3])];
     for ((name, at, material), (trace, weights)) in cases.into_iter().flat_map(|c| traces.iter().map(move |t| (c, t))) {
         let what = format!("{name} at {at:?}, {trace}");
         let wanted = ["coneSamples", "gatheredDiffuse", "surfaceNormal"];
         // What rays to emitters bring is no radiance that they meet.
         let mut session = match *trace {
             "rays" => frame(&lab, name, Some(at), &[], &wanted),
-            _ => frame_of(&lab, name, Some(at), &[("trace", trace)], &wanted),
+            _ => frame_of(&lab, name, Some(at), &[("cone_count", "3"), ("gather_frames", "1"), ("emitter_rays", "0")], &wanted),
         };
         let pixel = (at[1] * SIZE.0 + at[0]) as usize;
         let normal = Vec3::from_slice(&floats(&mut session, "surfaceNormal", 0)[pixel][..3]) * 2.0 - 1.0;

@@ -213,9 +213,6 @@ fn the_method_reloaded_makes_the_picture_of_a_fresh_start() {
     let small = [
         ("voxel_dim", "32"),
         ("shadow_dim", "256"),
-        ("diffuse_steps", "16"),
-        ("specular_steps", "16"),
-        ("pixel_rays", "2"),
         ("gather_frames", "1"), // nothing of the step before is kept
     ];
     let steps: [&[(&str, &str)]; 7] = [

@@ -43,7 +43,7 @@ fn a_sweep_that_is_killed_again_and_again_ends_as_one_that_is_not() {
     let home = home();
     let count = 5 * kills();
     let axes = format!(
-        "List(name: \"voxel_dim\", values: [16, 24]), Range(name: \"stop_transmittance\", from: 0.01, to: 0.2, count: {count})"
+        "List(name: \"voxel_dim\", values: [16, 24]), Range(name: \"bias\", from: 0.5, to: 2, count: {count})"
     );
     let file = sweep_file(home.path(), &axes);
     let (whole, killed) = (home.path().join("whole"), home.path().join("killed"));
@@ -226,7 +226,7 @@ fn shards_merge_to_the_whole_in_one_page_without_a_network() {
     let home = home();
     let file = sweep_file(
         home.path(),
-        "List(name: \"voxel_dim\", values: [16, 24, 32]), List(name: \"cone_set\", values: [\"fitted\", \"thesis\"])",
+        "List(name: \"voxel_dim\", values: [16, 24, 32]), List(name: \"opacity\", values: [\"coverage\", \"layers\"])",
     );
     let whole = home.path().join("whole");
     succeeds(&mut sweep(home.path(), &file, &whole, &[]));
@@ -284,13 +284,13 @@ fn axes_are_walked_in_the_order_of_the_file() {
     let home = home();
     let file = sweep_file(
         home.path(),
-        "Together({ \"bias\": [1, 2], \"near_cells\": [3, 4] }),\n\
+        "Together({ \"bias\": [1, 2], \"diffuse_aperture\": [3, 4] }),\n\
          Range(name: \"voxel_dim\", from: 16, to: 64, count: 3, scale: log),\n\
          Sample(count: 4, seed: 7, of: { \"lod_offset\": Uniform(-2, 0), \"cone_count\": Whole(4, 7) })",
     );
     let sweep = Sweep::read(&file).unwrap();
     assert_eq!(sweep.len(), 2 * 3 * 4);
-    assert_eq!(sweep.names, ["bias", "near_cells", "voxel_dim", "lod_offset", "cone_count"]);
+    assert_eq!(sweep.names, ["bias", "diffuse_aperture", "voxel_dim", "lod_offset", "cone_count"]);
     let values = |index: usize| -> Vec<String> { sweep.point(index).unwrap().1.into_iter().map(|l| l.1).collect() };
     assert_eq!(values(0)[..3], ["1", "3", "16"]);
     assert_eq!(values(4)[..3], ["1", "3", "32"]);
@@ -331,7 +331,7 @@ fn mistakes_of_a_sweep_are_told_with_their_place_before_anything_is_measured() {
             "Range(name: \"bias\", from: 0, to: 1, count: 900000)",
             "small.ron:4:44: error: a range has 1 to 20000 values",
         ),
-        ("Together({ \"bias\": [1], \"near_cells\": [1, 2] })", "they are walked together"),
+        ("Together({ \"bias\": [1], \"diffuse_aperture\": [1, 2] })", "they are walked together"),
         (
             "Sample(count: 3, of: { \"bias\": Log(0, 1) })",
             "small.ron:4:32: error: 'bias': nothing can be drawn from this",

@@ -334,8 +334,8 @@ fn edge() {
     let sets: [(&str, &[(&str, &str)]); 4] = [
         ("rays", &[]),
         ("whole lobe", &[("trace", "lobe_rays")]),
-        ("cones", &[("trace", "cones")]),
-        ("thesis set", &[("cone_set", "thesis")]),
+        ("cones", &[("cone_count", "5")]),
+        ("cones of 60 degrees", &[("diffuse_aperture", "60")]),
     ];
     for (cones, set) in sets {
         let settings = [&[("voxel_dim", "64"), QUICK, ONE_BOUNCE], set].concat();
