@@ -27,7 +27,7 @@ fn each_parameter_is_changed_alone_and_finished_points_stay() {
         succeeds(command.args(["--only", "cone_count,mips", "-o"]).arg(&folder))
     };
     let said = run();
-    assert!(said.contains("| mips          | anisotropic | isotropic |"), "{said}");
+    assert!(said.contains("| mips       | anisotropic | isotropic |"), "{said}");
     let rows = table(&folder.join("ablation.csv"));
     let of = |name: &str, part: &str, quantity: &str, column: &str| -> f64 {
         let is = |r: &&std::collections::BTreeMap<String, String>| {

@@ -189,12 +189,7 @@ fn resources_come_as_they_are() {
     // Slices of a volume lie below one another: mip 2 of 32^3 is 8 wide and 8 * 8 high.
     let mut mip = conelab(root());
     mip.args(["render", "configs/cones.ron", "--scene", "cornell"]).args(SMALL).arg("-o").arg(out.path("mip.exr"));
-    succeeds(mip.args([
-        "--resource",
-        "voxelRadiance:2",
-        "--set",
-        "mips=isotropic",
-    ]));
+    succeeds(mip.args(["--resource", "voxelRadiance:2", "--set", "mips=isotropic"]));
     let (width, height, texels) = read_exr(&out.path("mip.exr"));
     assert_eq!((width, height), (8, 64));
     assert!(texels.iter().any(|t| t[3] > 0.0) && texels.iter().flatten().all(|v| v.is_finite()));
@@ -212,9 +207,9 @@ fn wrong_arguments_are_told_and_leave_nothing() {
     assert_snapshot!(error_of(&["--set", "voxel_dim=9000"]), @"--set voxel_dim=9000: error: 'voxel_dim': 9000 is outside 16 to 512");
     assert_snapshot!(error_of(&["--set", "voxelizer=tesselated"]), @"--set voxelizer=tesselated: error: 'voxelizer' has no option 'tesselated' (did you mean 'tessellated'?)");
     assert_snapshot!(error_of(&["--set", "volume_size=(1, 2)"]), @"--set volume_size=(1, 2): error: 'volume_size': expected 3 numbers in parentheses, got (1, 2)");
-    assert_snapshot!(error_of(&["--set", "voxel_dmi=64", "--set", "bias=x"]), @r"
+    assert_snapshot!(error_of(&["--set", "voxel_dmi=64", "--set", "exposure=x"]), @r"
     --set voxel_dmi=64: error: no parameter 'voxel_dmi' (did you mean 'voxel_dim'?)
-    --set bias=x: error: 'bias': expected a number, got x
+    --set exposure=x: error: 'exposure': expected a number, got x
     ");
     assert_snapshot!(error_of(&["--size", "0x64"]), @"error: a picture of 0x64 cannot be made: each side is 1 to 16384 pixels");
     assert_snapshot!(error_of(&["--size", "64"]), @"error: --size 64: expected WIDTHxHEIGHT, for example 1280x720");
@@ -282,7 +277,7 @@ fn outputs_that_cannot_be_written() {
 #[test]
 fn what_is_wrong_is_told_before_what_is_missing() {
     let without = |more: &[&str]| fails(conelab(root()).args(["render", "configs/rays.ron"]).args(SMALL).args(more));
-    assert_snapshot!(without(&["--scene", "cornell", "--set", "bais=1"]), @"--set bais=1: error: no parameter 'bais' (did you mean 'bias'?)");
+    assert_snapshot!(without(&["--scene", "cornell", "--set", "exposrue=1"]), @"--set exposrue=1: error: no parameter 'exposrue' (did you mean 'exposure'?)");
     assert_snapshot!(without(&["--scene", "gone.obj"]), @"error: cannot read gone.obj: No such file or directory (os error 2). Check the path and its permissions");
     assert_snapshot!(without(&["--scene", "cornell"]), @"error: nothing to write: name the picture with --output, for example -o picture.png");
 }
@@ -339,9 +334,7 @@ fn files_are_for_whom_the_umask_says() {
 fn files_of_the_program_are_found_from_anywhere() {
     let out = Out::new();
     let from_elsewhere = |args: &[&str]| succeeds(conelab(root()).current_dir(out.0.path()).args(args));
-    assert!(
-        from_elsewhere(&["check", "configs/rays.ron", "passes/rays.ron"]).starts_with("checked 2 files, 0 errors")
-    );
+    assert!(from_elsewhere(&["check", "configs/rays.ron", "passes/rays.ron"]).starts_with("checked 2 files, 0 errors"));
     assert!(from_elsewhere(&["graph", "passes/rays.ron"]).starts_with("graph rays: "));
     assert!(from_elsewhere(&["graph", "configs/thesis.ron"]).starts_with("graph thesis: "));
     let mut render = conelab(root());

@@ -109,11 +109,8 @@ fn white_balls_vanish_under_a_white_sky() {
 
     let size = (384, 192);
     let lab = lab(root());
-    let e: Experiment = experiment(
-        "cornell",
-        size,
-        &settings(&[("gather_frames", "1"), ("bounce_frames", "2"), ("pixel_rays", "16")]),
-    );
+    let e: Experiment =
+        experiment("cornell", size, &settings(&[("gather_frames", "1"), ("bounce_frames", "2"), ("pixel_rays", "16")]));
     let (mut session, _) = lab.prepare(&e, scene.clone(), |_| Ok(vec!["radiance".into()])).unwrap();
     for _ in 0..24 {
         session.frame(0.0).unwrap();

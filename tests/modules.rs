@@ -79,6 +79,8 @@ fn small(opacity: &str) -> Experiment {
             ("gather_frames", "1"),
             ("emitter_rays", "0"),
             ("cone_count", "3"),
+            ("diffuse_aperture", "40"),
+            ("lod_offset", "0"),
             ("opacity", opacity),
         ],
     );
@@ -91,6 +93,7 @@ fn command(home: &Path, name: &str) -> Command {
     let mut command = conelab(home);
     command.args([name, "configs/cones.ron", "--scene", "cornell", "--size", "48x36"]);
     command.args(["--set", "voxel_dim=32", "--set", "shadow_dim=256"]);
+    command.args(["--set", "diffuse_aperture=40", "--set", "lod_offset=0"]);
     command
 }
 

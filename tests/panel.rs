@@ -9,7 +9,7 @@ use std::time::Duration;
 use window_driver::{CONTROL, PATIENCE, WindowDriver, centre, with};
 
 /// Cones in every pixel, so that the pinned parameters count; small enough for a software device.
-const CONES: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one })"#;
+const CONES: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "cone_count": 3, "emitter_rays": 0, "lod_offset": 0 })"#;
 
 const ESCAPE: u32 = 0xff1b;
 const F12: u32 = 0xffc9;
@@ -28,10 +28,10 @@ fn has(texts: &[String], text: &str) -> bool {
 fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_written() {
     let mut driver = small();
     let first = driver.first_picture();
-    let titles = ["Cone count", "Aperture", "Steps", "Bias", "LOD offset", "Warp alpha", "Perspective warp"];
+    let titles = ["Cone count", "Aperture", "Steps", "Bias", "LOD offset", "Warp", "Warp alpha"];
     let tops: Vec<f64> = titles.iter().map(|title| driver.find("Label", title)[1]).collect();
     assert!(tops.is_sorted(), "{tops:?}");
-    driver.texts_until("the set's own aperture", |texts| has(texts, "= 78 deg"));
+    driver.texts_until("the aperture that the graph chooses", |texts| has(texts, "Aperture, auto (6 deg)"));
     let group = driver.find("", "Tracing (1)");
 
     for typed in ["lod offset", "lodoffset"] {

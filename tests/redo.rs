@@ -47,7 +47,7 @@ fn build(lab: &Lab, e: &Experiment, scene: &Arc<Scene>, old: Option<&Session>) -
 
 impl Pair {
     fn new(lab: &Lab, scene_name: &str, settings: &[(&str, &str)]) -> Pair {
-        let base = [("voxel_dim", "24"), ("shadow_dim", "256"), ("pixel_rays", "4")];
+        let base = [("voxel_dim", "24"), ("shadow_dim", "256")];
         let (experiment, scene) = (experiment(scene_name, SIZE, &[&base[..], settings].concat()), scene(scene_name));
         let mut sides = [(); 2].map(|()| build(lab, &experiment, &scene, None));
         sides[1].set_redo(Redo::Changed);

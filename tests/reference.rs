@@ -352,7 +352,8 @@ fn a_reference_is_found_for_what_it_was_made_of_and_for_nothing_else() {
         let same = experiment("cornell", (16, 12), &[(name, value)]);
         assert!(found(&lab.home, &same, &cornell, 1).is_some(), "{name}");
     }
-    for (name, value) in [("shading_model", "cook_torrance"), ("shading_model", "blinn_phong"), ("seed", "2"), ("pixel", "box")]
+    for (name, value) in
+        [("shading_model", "cook_torrance"), ("shading_model", "blinn_phong"), ("seed", "2"), ("pixel", "box")]
     {
         let other = experiment("cornell", (16, 12), &[(name, value)]);
         assert_eq!(found(&lab.home, &other, &cornell, 1), None, "{name}");

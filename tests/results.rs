@@ -144,34 +144,33 @@ fn moving() -> String {
     )
 }
 
-/// Both presets in every scene, worst first.
+/// The three methods in every scene, the worst of rays first.
 fn scenes() -> String {
     let record = record("scenes");
     let done = |experiment: &str| -> BTreeMap<String, &BTreeMap<String, String>> {
         let lines = record.lines.iter().filter(|l| l["outcome"] == "done" && l["experiment"] == experiment);
         lines.map(|l| (l["scene"].clone(), l)).collect()
     };
-    let (default, thesis) = (done("rays"), done("thesis"));
-    let mut names: Vec<&String> = default.keys().collect();
-    names.sort_by(|a, b| number(default[*b], "total flip").total_cmp(&number(default[*a], "total flip")));
-    let columns: [(&str, usize); 6] = [
+    let methods = ["rays", "cones", "thesis"].map(done);
+    let mut names: Vec<&String> = methods[0].keys().collect();
+    names.sort_by(|a, b| number(methods[0][*b], "total flip").total_cmp(&number(methods[0][*a], "total flip")));
+    let columns: [(&str, usize); 5] = [
         ("total energy_ratio", 2),
-        ("diffuse energy_ratio", 2),
+        ("total flip", 3),
         ("total relmse", 4),
         ("total, 1 bounces relmse", 4),
-        ("total flip", 3),
-        ("total structure", 3),
+        ("total median ms", 2),
     ];
     let line = |name: &&String| {
         let cell = |(column, digits): (&str, usize)| {
-            let (a, b) = (number(default[*name], column), thesis.get(*name).map_or(f64::NAN, |l| number(l, column)));
-            format!("{a:.digits$} ({b:.digits$})")
+            let of = methods.each_ref().map(|m| m.get(*name).map_or(f64::NAN, |l| number(l, column)));
+            of.map(|x| format!("{x:.digits$}")).join(" / ")
         };
         std::iter::once((*name).clone()).chain(columns.map(cell)).collect()
     };
     let lines: Vec<Vec<String>> = names.iter().map(line).collect();
-    let head = ["scene", "energy", "diffuse", "relMSE", "relMSE, one bounce", "FLIP", "structure"];
-    format!("*{}*\n\n{}", record.said, table(&head, &lines))
+    let head = ["scene", "energy", "FLIP", "relMSE", "relMSE, one bounce", "ms"];
+    format!("*{}*\n\nEach cell: rays / cones / thesis.\n\n{}", record.said, table(&head, &lines))
 }
 
 /// Rays to emitters: what they bring and cost.

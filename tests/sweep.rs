@@ -42,9 +42,8 @@ fn kills() -> usize {
 fn a_sweep_that_is_killed_again_and_again_ends_as_one_that_is_not() {
     let home = home();
     let count = 5 * kills();
-    let axes = format!(
-        "List(name: \"voxel_dim\", values: [16, 24]), Range(name: \"bias\", from: 0.5, to: 2, count: {count})"
-    );
+    let axes =
+        format!("List(name: \"voxel_dim\", values: [16, 24]), Range(name: \"bias\", from: 0.5, to: 2, count: {count})");
     let file = sweep_file(home.path(), &axes);
     let (whole, killed) = (home.path().join("whole"), home.path().join("killed"));
     let begin = Instant::now();

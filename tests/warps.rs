@@ -524,12 +524,19 @@ fn cones_go_by_the_cells_around_them() {
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 0.01;
         // Narrow cones read whole levels.
         let level = (2.0 * number(row, "radius") / cell).max(1.0).log2();
-        assert!((number(row, "level") - level.min(6.0)).abs() < 0.52, "{at}: level {}, not {level}", number(row, "level"));
+        assert!(
+            (number(row, "level") - level.min(6.0)).abs() < 0.52,
+            "{at}: level {}, not {level}",
+            number(row, "level")
+        );
         let coarse = cell * number(row, "level").exp2();
         assert!(near(number(row, "cell"), coarse), "{at}: a cell of {} m, not {coarse}", number(row, "cell"));
         // Steps are one and a half cells, and twice as long in empty space.
         let (step, twice) = (number(row, "step"), number(row, "opacity") == 0.0);
-        assert!(near(step, 1.5 * coarse) || twice && near(step, 3.0 * coarse), "{at}: a step of {step} m in {coarse} m");
+        assert!(
+            near(step, 1.5 * coarse) || twice && near(step, 3.0 * coarse),
+            "{at}: a step of {step} m in {coarse} m"
+        );
         assert!(near(p.distance(position(next)), step), "{at}: the next sample is elsewhere");
         if number(row, "opacity") < 1e-5 {
             empty += 1;
@@ -554,7 +561,8 @@ fn curved_cells_that_end_before_they_begin_are_refused() {
         let settings = [("warp", warp), ("warp_near", "5"), ("warp_far", "5"), ("voxel_dim", "16")];
         let experiment = experiment("cornell", (16, 16), &settings);
         let error = lab.prepare(&experiment, scene("cornell"), |_| Ok(Vec::new())).err().map(|e| e.to_string());
-        let told = error.as_deref().is_some_and(|e| e.contains("passes/parts/warp.ron:") && e.contains("above warp_near"));
+        let told =
+            error.as_deref().is_some_and(|e| e.contains("passes/parts/warp.ron:") && e.contains("above warp_near"));
         assert_eq!(told, refused, "{warp}: {error:?}");
         assert!(refused || error.is_none(), "{warp}: {error:?}");
     }

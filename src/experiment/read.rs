@@ -57,9 +57,9 @@ impl Experiment {
     /// All mistakes of the file.
     pub fn read(path: &Path) -> Result<Experiment, Vec<Diagnostic>> {
         let mut sources = Sources::default();
-        let file = sources.read(path).map_err(|e| {
-            vec![e.help(Some("give the path of an experiment, for example configs/rays.ron".into()))]
-        })?;
+        let file = sources
+            .read(path)
+            .map_err(|e| vec![e.help(Some("give the path of an experiment, for example configs/rays.ron".into()))])?;
         parse(path, sources, file)
     }
 

@@ -95,8 +95,8 @@ pub fn graph_with(params: &[(&str, &str)]) -> String {
     };
     let own = |name: &str| root().join("tests/common").join(name).to_string_lossy().into_owned();
     let (base, both) = (own("base_color.ron"), own("warps_temporal.ron"));
-    let graphs =
-        ["rays.ron", "cones.ron", "warps.ron", "temporal.ron", "thesis.ron", "reference.ron", &base, &both].map(String::from);
+    let graphs = ["rays.ron", "cones.ron", "warps.ron", "temporal.ron", "thesis.ron", "reference.ron", &base, &both]
+        .map(String::from);
     graphs.into_iter().find(has_all).unwrap_or_else(|| panic!("no graph has all of {params:?}"))
 }
 

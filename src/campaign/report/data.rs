@@ -31,6 +31,8 @@ pub struct Dot {
     /// By part.
     pub noise: BTreeMap<String, f64>,
     pub warnings: Vec<String>,
+    /// Its graph's name.
+    pub graph: String,
     /// The experiment, to be saved and run.
     pub experiment: String,
     /// JPEG.
@@ -69,7 +71,7 @@ pub struct Scored {
     pub error: f64,
     /// Whether its relMSE is not told apart from the reference's noise.
     pub noisy: bool,
-    /// Name of the experiment that it is a variant of; empty where there is one alone.
+    /// Name of the experiment or graph that it is a variant of; empty where there is one alone.
     pub experiment: String,
 }
 
@@ -175,6 +177,7 @@ impl Data {
                 scores: parts_of(point),
                 noise: point.noise.clone(),
                 warnings: point.stats.warnings.clone(),
+                graph: point.stats.graph.clone(),
                 experiment: record.about.experiment.clone(),
                 picture: picture("pictures"),
                 error_map: picture("errors"),
@@ -192,10 +195,18 @@ impl Data {
             let scores = dot.scores.get(part)?;
             let error = metric.distance(*scores.get(metric.key)?);
             let noisy = within_noise(*scores.get(RELMSE).unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
-            let experiment = dot.labels.get("experiment").cloned().unwrap_or_default();
+            let experiment = self.family(dot);
             (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy, experiment })
         })
         .collect()
+    }
+
+    /// What a dot is coloured by: its experiment, or its graph where the experiment is tried with several.
+    fn family(&self, dot: &Dot) -> String {
+        let of = |dot: &Dot| dot.labels.get("experiment").cloned().unwrap_or_default();
+        let experiment = of(dot);
+        let has_others = self.dots.iter().any(|d| d.graph != dot.graph && of(d) == experiment);
+        if has_others { dot.graph.clone() } else { experiment }
     }
 
     /// A file's name for a subject.

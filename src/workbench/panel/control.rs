@@ -81,14 +81,18 @@ fn automatic(ui: &mut Ui, param: &Param, title: &str, value: &mut Value, auto: f
     let (low, high) = param.range?;
     let (mut number, shown) = (auto, short_number(auto));
     let unit = if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
+    let chosen = format!("auto ({shown}{unit})");
+    let name = format!("{title}, {chosen}");
     let slid = slider(ui, param, title, &mut number, (low, high));
     let field = DragValue::new(&mut number)
         .range(low..=high)
         .clamp_existing_to_range(false)
         .speed(param.step.unwrap_or((high - low) / 500.0))
-        .custom_formatter(move |x, _| if x == auto { format!("auto ({shown}{unit})") } else { short_number(x) })
-        .custom_parser(move |text| if text.trim().starts_with("auto") { Some(default) } else { text.trim().parse().ok() });
-    let response = joined(Some(slid), spin(ui, field, title), ui.label(title));
+        .custom_formatter(move |x, _| if x == auto { chosen.clone() } else { short_number(x) })
+        .custom_parser(
+            move |text| if text.trim().starts_with("auto") { Some(default) } else { text.trim().parse().ok() },
+        );
+    let response = joined(Some(slid), spin(ui, field, &name), ui.label(title));
     if number != auto {
         *value = match value {
             Value::Int(_) => Value::Int(number.round() as i64),
