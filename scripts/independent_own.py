@@ -5,7 +5,7 @@
     pip install mitsuba numpy openexr    # tried: 3.9.1 with LLVM 19, DRJIT_LIBLLVM_PATH=/path/to/libLLVM.so.19.1
     conelab scene tests/common/own/scene.ron --export own.gltf
     conelab reference configs/rays.ron --scene tests/common/own/scene.ron --size 48x36 --spp 4096 \\
-        --set pixel=box --set multiple_scattering=false -o own.exr
+        --set pixel=box --set shading_model=single_scattering -o own.exr
     python3 scripts/independent_own.py own.gltf --size 48x36 --spp 4096 --against own.exr
 
 Only what both have is alike: metals are white, since Mitsuba's reflectance has no Fresnel term then, and one scattering
