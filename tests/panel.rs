@@ -32,7 +32,7 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
     let tops: Vec<f64> = titles.iter().map(|title| driver.find("Label", title)[1]).collect();
     assert!(tops.is_sorted(), "{tops:?}");
     driver.texts_until("the aperture that the graph chooses", |texts| has(texts, "Aperture, auto (6 deg)"));
-    let group = driver.find("", "Tracing (1)");
+    let group = driver.find("", "Tracing (3)");
 
     for typed in ["lod offset", "lodoffset"] {
         driver.keys(&[CONTROL, u32::from(b'f')]);
@@ -41,7 +41,7 @@ fn the_panel_begins_with_what_the_graph_pins_and_finds_names_however_they_are_wr
         driver.keys(&[ESCAPE]);
         driver.texts_until("the groups as they were", |texts| has(texts, "Cone count") && !has(texts, "lod_offset"));
     }
-    assert_eq!(driver.find("", "Tracing (1)"), group, "the panel is as wide as it was, its groups folded");
+    assert_eq!(driver.find("", "Tracing (3)"), group, "the panel is as wide as it was, its groups folded");
 
     // A drag takes the keys from the search: undo is of the parameter.
     driver.keys(&[CONTROL, u32::from(b'f')]);
