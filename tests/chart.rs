@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use window_driver::{PATIENCE, WindowDriver, centre};
 
 /// Small enough for a software device to draw several a second, and nothing gathers over frames: a picture is one frame.
-const SMALL: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "cone_count": 9 })"#;
+const SMALL: &str = r#"(graph: "cones.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "cone_count": 9, "diffuse_aperture": 60, "lod_offset": 0 })"#;
 
 /// Four points, one of them [`SMALL`].
 const SWEEP: &str = r#"(experiments: ["configs/opened.ron"], warmup: 1, frames: 3,
@@ -99,7 +99,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     driver.click("", "Diffuse cones (1)");
     let mark = driver.now();
     let (x, y) = centre(driver.find("Slider", "cone_count"));
-    driver.drag((x, y), (x - 34.0, y));
+    driver.drag((x, y), (x - 42.0, y));
     error(&mut driver, mark, "another error", |e| !same(e, own));
     driver.resting(0);
     let picture = driver.events.iter().rev().find(|e| e["event"] == "picture").unwrap();

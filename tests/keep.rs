@@ -456,7 +456,8 @@ fn a_capture_is_replayed_texel_by_texel() {
 fn the_method_is_captured_and_replayed() {
     let folder = tempfile::tempdir().unwrap();
     let lab = lab(root());
-    let mut experiment = common::experiment("cornell", (48, 32), &[("voxel_dim", "32"), ("shadow_dim", "256"), ("cone_count", "5")]);
+    let mut experiment =
+        common::experiment("cornell", (48, 32), &[("voxel_dim", "32"), ("shadow_dim", "256"), ("cone_count", "5")]);
     experiment.lights.push((named("lamp"), LightChange { color: Some((9.0, 8.0, 7.0)), ..LightChange::default() }));
     let what = capture::What {
         resources: vec![capture::Resource { name: "voxelRadiance".into(), mip: 1, layer: 0 }],

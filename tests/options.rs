@@ -36,7 +36,7 @@ fn context(name: &str) -> &'static [(&'static str, &'static str)] {
             &[("warp", "spline"), ("voxelizer", "raster"), ("conservative", "off"), ("warp_alpha", "0.05")]
         }
         "fallback" => &[("warp", "perspective"), ("warp_near", "1.0"), ("warp_far", "6.0")],
-        "warp" => &[("warp_near", "1.0"), ("warp_far", "6.0")],
+        "warp" => &[("warp_alpha", "0.25"), ("warp_near", "1.0"), ("warp_far", "6.0")],
         "voxel_view" | "density" => &[("view", "voxels")],
         "conservative" => &[("voxelizer", "raster")],
         "trace" => &[("exact_rays", "8")],

@@ -81,7 +81,7 @@ fn suite(home: &Path, methods: &str, cases: &str) -> PathBuf {
     let path = home.join("small.ron");
     let text = format!(
         "(experiment: \"configs/rays.ron\", warmup: 3, frames: 4, samples: 32,\n\
-         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\", \"gather_frames\": 1, \"pixel_rays\": 2 }},\n\
+         set: {{ \"graph\": \"warps.ron\", \"scene\": \"moving-box\", \"size\": (32, 24), \"voxel_dim\": 32, \"shadow_dim\": 256, \"bounces\": \"one\", \"gather_frames\": 1, \"cone_count\": 2 }},\n\
          methods: {{\n{methods}\n}},\ncases: {{\n{cases}\n}})"
     );
     std::fs::write(&path, text).unwrap();
@@ -259,13 +259,14 @@ fn references_know_what_moved() {
 #[test]
 fn a_parameter_moves() {
     let home = home();
-    let volume = "\"volume\": \"camera\", \"volume_size\": (10, 10, 10)";
+    // Filtered levels see where cells lie; exact surfels move by whole cells unseen.
+    let volume = "\"volume\": \"camera\", \"volume_size\": (10, 10, 10), \"diffuse_aperture\": 40, \"lod_offset\": 0";
     let methods = format!(
         "\"snapped\": {{ {volume}, \"volume_snap\": \"voxel\" }}, \"free\": {{ {volume}, \"volume_snap\": \"off\" }}"
     );
     let cases = "\"volume\": (warmup: 0, frames: 12, motion: Parameter(name: \"volume_offset\", step: (0.03, 0, 0))), \
                  \"back\": (warmup: 2, frames: 3, motion: Parameter(name: \"volume_offset\", values: [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])), \
-                 \"raised\": (frames: 3, motion: Parameter(name: \"bias\", values: [1, 4, 4]))";
+                 \"raised\": (frames: 3, motion: Parameter(name: \"lod_offset\", values: [0, 2, 2]))";
     let file = suite(home.path(), &methods, cases);
     succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
     let frames = table(&home.path().join("out/frames.csv"));
@@ -291,7 +292,16 @@ fn a_parameter_moves() {
 #[test]
 fn a_parameter_that_references_have_too() {
     let home = home();
-    let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"shading_model\", values: [\"gltf\", \"cook_torrance\", \"cook_torrance\"]))";
+    let edit = |file: &str, old: &str, new: &str| {
+        let path = home.path().join(file);
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.contains(old), "{file}");
+        std::fs::write(path, text.replacen(old, new, 1)).unwrap();
+    };
+    let declared = "params: [\n        Float(name: \"mirrored\", default: 1.0, help: \"Scales reflectance.\"),";
+    edit("passes/parts/surface.ron", "params: [", declared);
+    edit("shaders/common/brdf.glsl", "vec3 f0 = mix(", "vec3 f0 = params.mirrored * mix(");
+    let cases = "\"lobe\": (warmup: 0, frames: 3, motion: Parameter(name: \"mirrored\", values: [1, 0.5, 0.5]))";
     let file = suite(home.path(), "\"a\": { \"scene\": \"configs/stability/scenes/metal-rough.ron\" }", cases);
     succeeds(&mut stability(home.path(), &file, "out", &[]));
     let references = std::fs::read_dir(home.path().join("captures/reference")).unwrap().count();
@@ -450,11 +460,14 @@ fn shipped_suites() {
         succeeds(conelab(home.path()).arg("check").arg(path));
     }
     let small = ["--size", "24x18", "--frames", "2", "--spp", "32", "--set", "voxel_dim=24", "--set", "shadow_dim=256"];
-    let small = [&small[..], &["--set", "bounces=one", "--set", "gather_frames=1", "--set", "pixel_rays=4"]].concat();
+    let small = [&small[..], &["--set", "bounces=one", "--set", "gather_frames=1"]].concat();
     // All rays in each frame: only the temporal filter, which must rest where nothing moves, needs many before those measured.
     let all = |suite: &str, more: &[&str]| {
         let text = std::fs::read_to_string(root().join(format!("configs/stability/{suite}.ron"))).unwrap();
-        let text = text.replace("../rays.ron", &root().join("configs/rays.ron").to_string_lossy());
+        let at_root = |text: String, name: &str| {
+            text.replace(&format!("../{name}"), &root().join("configs").join(name).to_string_lossy())
+        };
+        let text = at_root(at_root(text, "rays.ron"), "cones.ron");
         let (head, cases) = text.split_once("cases: {").unwrap();
         let head = ["warmup: 32,", "warmup: 40,"].iter().fold(head.to_string(), |t, w| t.replace(w, "warmup: 2,"));
         let file = home.path().join(format!("{suite}.ron"));

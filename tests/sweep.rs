@@ -252,7 +252,7 @@ fn points_are_scored_against_references_and_measured_again_when_there_is_one() {
     let home = home();
     let file = sweep_file(
         home.path(),
-        "List(name: \"size\", values: [(48, 36)]), List(name: \"diffuse_steps\", values: [128, 1]), List(name: \"trace\", values: [\"cones\"])",
+        "List(name: \"size\", values: [(48, 36)]), List(name: \"diffuse_steps\", values: [128, 1]), List(name: \"diffuse_aperture\", values: [40]), List(name: \"lod_offset\", values: [0])",
     );
     let folder = home.path().join("out");
     succeeds(&mut sweep(home.path(), &file, &folder, &[]));
@@ -475,7 +475,7 @@ fn recorded_times_are_measured_again_and_what_became_slower_fails() {
     renamed["device"]["driver"] = "another".into();
     let first = &mut renamed["configurations"][0];
     first["stages"] = serde_json::json!({ "everything": [1.0, 1.0] });
-    first["params"]["bias"] = "3.0".into();
+    first["params"]["exposure"] = "3.0".into();
     first["scene_sha256"] = "0".into();
     divide(&mut first["total"], 100.0);
     write(&renamed);
@@ -485,7 +485,7 @@ fn recorded_times_are_measured_again_and_what_became_slower_fails() {
     assert!(err.contains("slower than recorded: total "), "{err}");
     let ends = |name: &str, end: &str| out.lines().any(|l| l.starts_with(name) && l.ends_with(end));
     assert!(ends("everything ", " gone") && ends("final shading ", " new"), "{out}");
-    for note in ["the driver was another, is ", "bias was 3.0, is ", "the scene is not the recorded one"] {
+    for note in ["the driver was another, is ", "exposure was 3.0, is ", "the scene is not the recorded one"] {
         assert!(out.contains(&format!("note: {note}")), "{note}:\n{out}");
     }
 }
@@ -535,7 +535,7 @@ fn a_record_that_does_not_fit_says_why() {
     let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
     assert_eq!(output.status.code(), Some(1), "{out}{err}");
     assert!(out.contains("\nthesis, cornell, 64x48"), "{out}");
-    assert!(out.contains("cannot be measured again: default, cornell, 64x48"), "{out}");
+    assert!(out.contains("cannot be measured again: rays, cornell, 64x48"), "{out}");
     assert!(out.contains("error: no parameter 'voxel_dimm' (did you mean 'voxel_dim'?)"), "{out}");
     assert!(err.contains("1 configurations cannot be measured again"), "{err}");
     // The check needs no device for that.

@@ -368,7 +368,7 @@ fn a_snapped_volume_stands_still() {
     let jump = |settings: &[(&str, &str)], from: f64| {
         // Frames until what voxels reflect to each other has settled.
         let settle = if settings.contains(&NO_BOUNCES) { 0 } else { 320 };
-        let set = [settings, &[("voxel_dim", "48"), ("gather_frames", "1"), ("pixel_rays", "2"), QUICK]].concat();
+        let set = [settings, &[("voxel_dim", "48"), ("gather_frames", "1"), QUICK]].concat();
         let e = inside(experiment("cornell", (48, 36), &set));
         let mut session = prepare(&lab, &e, &["radiance"]);
         offset(&lab, &mut session, &e, [from, 0.0, 0.0]);
