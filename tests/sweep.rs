@@ -554,7 +554,7 @@ fn a_record_that_does_not_fit_says_why() {
     missing["configurations"][0]["settings"]["scene"] = "\"missing.ron\"".into();
     std::fs::write(&edited, missing.to_string()).unwrap();
     let said = succeeds(&mut against(home.path(), &edited, &["--tolerance", "20"]));
-    assert!(said.contains("skipped: default, missing, 64x48") && said.contains("set CONELAB_SCENES"), "{said}");
+    assert!(said.contains("skipped: rays, missing, 64x48") && said.contains("set CONELAB_SCENES"), "{said}");
     let said = fails(&mut against(home.path(), &edited, &["configs/rays.ron"]));
     assert!(said.contains("nothing of '"), "{said}");
 }

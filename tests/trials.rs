@@ -335,7 +335,7 @@ fn edge() {
         ("rays", &[]),
         ("whole lobe", &[("trace", "lobe_rays")]),
         ("cones", &[("cone_count", "5")]),
-        ("cones of 60 degrees", &[("diffuse_aperture", "60")]),
+        ("cones of 60 degrees", &[("diffuse_aperture", "60"), ("lod_offset", "0")]),
     ];
     for (cones, set) in sets {
         let settings = [&[("voxel_dim", "64"), QUICK, ONE_BOUNCE], set].concat();

@@ -15,6 +15,7 @@ struct Cone {
     ConeOrigin origin;
     vec3 direction;
     float tan_half; // of half the aperture
+    float rise; // above the surface for each metre
     int cascade; // of the last sample
     float voxel; // length of its level-0 cell along the cone [m]
     vec3 dir; // direction in its cells, unit length
@@ -45,7 +46,7 @@ ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
 }
 
 Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {
-    Cone cone = Cone(o, d, tan_half, o.cascade, 0.0, vec3(0.0), false);
+    Cone cone = Cone(o, d, tan_half, max(dot(d, o.normal), 0.0), o.cascade, 0.0, vec3(0.0), false);
     cellAlong(volume.maps[o.cascade], o.position, d, cone.voxel, cone.dir);
     first_cell = cone.voxel;
     if (CASCADE_COUNT > 1 && o.weight < 1.0)
@@ -72,19 +73,30 @@ vec4 sampleMap(vec3 u, int cascade, vec3 dir, float level) {
     return mix(texel, sampleCascade(vec3(u.x < 0.5 ? 1.0 - half_cell : half_cell, u.yz), cascade, dir, level), over);
 }
 
-float levelAt(int cascade, float voxel, float radius) {
+// Cones wider than this read no level so coarse that it contains the surface they leave: an open plane would shadow itself.
+// Narrow cones stay clear of it. Tangent of half the aperture, 12 degrees.
+const float CLEARED = 0.105;
+
+// The coarsest level whose lookup, 1.5 cells to each side, fits between p and the surface. `height` of p above its plane [m].
+float clearLevel(Cone cone, int cascade, vec3 p, float height) {
+    float reach = max(cellReach(volume.maps[cascade], p, cone.origin.normal), cone.origin.reach);
+    return floor(log2(max(height / (3.0 * reach), 1.0)) + 1e-3);
+}
+
+float levelAt(Cone cone, int cascade, vec3 p, float voxel, float radius, float height) {
     float level = coneLevel(voxel, radius);
+    if (cone.tan_half > CLEARED) level = min(level, clearLevel(cone, cascade, p, height));
     return clamp(NARROW_CONES ? round(level) : level, 0.0, volume.maps[cascade].last);
 }
 
 // Turns a sample into the next cascade's by its weight there.
-void blendNext(Cone cone, inout ConeSample x, float weight) {
+void blendNext(Cone cone, inout ConeSample x, float height, float weight) {
     int next = cone.cascade + 1;
     vec3 u = worldToVolume(volume.maps[next], x.position), dir;
     if (!inVolume(u)) return;
     float voxel;
     cellAlong(volume.maps[next], x.position, cone.direction, voxel, dir);
-    float level = levelAt(next, voxel, x.radius);
+    float level = levelAt(cone, next, x.position, voxel, x.radius, height);
     vec4 found = sampleMap(u, next, dir, level);
     found *= opacityScale(found.a, x.voxel, x.cell, voxel, voxel * exp2(level));
     x.texel = mix(found, x.texel, weight);
@@ -112,7 +124,8 @@ ConeSample coneSample(inout Cone cone, int number, float along) {
     if (x.outside) return x;
     if (WARPED || CASCADE_COUNT > 1) cellAlong(volume.maps[k], x.position, cone.direction, cone.voxel, cone.dir);
     x.voxel = cone.voxel;
-    x.level = levelAt(k, x.voxel, x.radius);
+    float height = cone.origin.height + along * cone.rise;
+    x.level = levelAt(cone, k, x.position, x.voxel, x.radius, height);
     x.cell = x.voxel * exp2(x.level);
     x.advance = max(params.step_factor * x.cell, 0.05 * x.voxel);
     if (NARROW_CONES && cone.empty && isEmptyAround(u, cone, x.level)) {
@@ -124,7 +137,7 @@ ConeSample coneSample(inout Cone cone, int number, float along) {
     cone.empty = x.texel.a == 0.0;
     if (CASCADE_COUNT > 1 && k < CASCADE_COUNT - 1) {
         float weight = cascadeWeight(u, x.level);
-        if (weight < 1.0) blendNext(cone, x, weight);
+        if (weight < 1.0) blendNext(cone, x, height, weight);
     }
     return x;
 }
