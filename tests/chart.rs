@@ -96,7 +96,7 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     assert!(dots.iter().any(|d| d["front"] == true), "{chart}");
 
     // The dot moves with a slider.
-    driver.click("", "Diffuse cones (1)");
+    driver.click("", "Diffuse cones (2)");
     let mark = driver.now();
     let (x, y) = centre(driver.find("Slider", "cone_count"));
     driver.drag((x, y), (x - 42.0, y));

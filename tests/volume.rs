@@ -42,7 +42,7 @@ fn run(session: &mut Session, count: usize) {
 /// With a graph whose volume can be moved under the picture.
 fn moved(mut e: Experiment) -> Experiment {
     e.graph = match e.graph.as_str() {
-        "rays.ron" => common::graph_with(&[("volume_offset", "")]),
+        "rays.ron" | "cones.ron" => common::graph_with(&[("volume_offset", "")]),
         "temporal.ron" => common::graph_with(&[("volume_offset", ""), ("temporal_cut", "")]),
         other => other.into(),
     };
@@ -368,7 +368,11 @@ fn a_snapped_volume_stands_still() {
     let jump = |settings: &[(&str, &str)], from: f64| {
         // Frames until what voxels reflect to each other has settled.
         let settle = if settings.contains(&NO_BOUNCES) { 0 } else { 320 };
-        let set = [settings, &[("voxel_dim", "48"), ("gather_frames", "1"), QUICK]].concat();
+        let set = [
+            settings,
+            &[("voxel_dim", "48"), ("gather_frames", "1"), ("cone_count", "2"), ("emitter_rays", "0"), QUICK],
+        ]
+        .concat();
         let e = inside(experiment("cornell", (48, 36), &set));
         let mut session = prepare(&lab, &e, &["radiance"]);
         offset(&lab, &mut session, &e, [from, 0.0, 0.0]);
