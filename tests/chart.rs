@@ -111,17 +111,17 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     // A click on a dot loads its experiment: the dot is there, then.
     driver.now();
     let chart = driver.events.iter().rev().find(|e| e["event"] == "dots").unwrap().clone();
-    let worst =
-        chart["dots"].as_array().unwrap().iter().max_by(|a, b| number(a, "error").total_cmp(&number(b, "error")));
-    let worst = worst.unwrap();
-    assert!(!same(number(worst, "error"), own) && !same(number(worst, "error"), slid), "{chart}");
-    let at = (worst["at"][0].as_f64().unwrap(), worst["at"][1].as_f64().unwrap());
+    let best =
+        chart["dots"].as_array().unwrap().iter().min_by(|a, b| number(a, "error").total_cmp(&number(b, "error")));
+    let best = best.unwrap();
+    assert!(!same(number(best, "error"), own) && !same(number(best, "error"), slid), "{chart}");
+    let at = (best["at"][0].as_f64().unwrap(), best["at"][1].as_f64().unwrap());
     driver.point_at(at);
     driver.texts_until("what the dot is", |texts| texts.iter().any(|t| t == "voxel_dim: 16"));
-    let (mark, loaded) = load_point(&mut driver, &worst["id"]);
-    assert_eq!(loaded["id"], worst["id"], "{loaded}");
+    let (mark, loaded) = load_point(&mut driver, &best["id"]);
+    assert_eq!(loaded["id"], best["id"], "{loaded}");
     assert_eq!(loaded["params"]["voxel_dim"], "16", "{loaded}");
-    error(&mut driver, mark, "the dot's error", |e| same(e, number(worst, "error")));
+    error(&mut driver, mark, "the dot's error", |e| same(e, number(best, "error")));
 
     let mark = driver.now();
     driver.click("Button", "undo");
@@ -147,8 +147,8 @@ fn the_experiment_is_a_dot_among_those_of_a_sweep_and_a_click_on_another_goes_th
     let chart = driver.events.iter().rev().find(|e| e["event"] == "dots").unwrap().clone();
     let differs = chart["differs"].as_array().unwrap();
     assert!(differs.contains(&"camera".into()) && differs.contains(&"size".into()), "{chart}");
-    let (mark, _) = load_point(&mut driver, &worst["id"]);
-    error(&mut driver, mark, "the dot's error, from its view and at its size", |e| same(e, number(worst, "error")));
+    let (mark, _) = load_point(&mut driver, &best["id"]);
+    error(&mut driver, mark, "the dot's error, from its view and at its size", |e| same(e, number(best, "error")));
     let mark = driver.now();
     driver.click("Button", "undo");
     driver.picture(mark, 0, &before);
