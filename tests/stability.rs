@@ -266,7 +266,7 @@ fn a_parameter_moves() {
     );
     let cases = "\"volume\": (warmup: 0, frames: 12, motion: Parameter(name: \"volume_offset\", step: (0.03, 0, 0))), \
                  \"back\": (warmup: 2, frames: 3, motion: Parameter(name: \"volume_offset\", values: [(0, 0, 0), (0.5, 0, 0), (0, 0, 0)])), \
-                 \"raised\": (frames: 3, motion: Parameter(name: \"diffuse_steps\", values: [256, 1, 1]))";
+                 \"raised\": (frames: 3, motion: Parameter(name: \"bias\", values: [1, 4, 4]))";
     let file = suite(home.path(), &methods, cases);
     succeeds(&mut stability(home.path(), &file, "out", &["--no-reference"]));
     let frames = table(&home.path().join("out/frames.csv"));
