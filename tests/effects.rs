@@ -35,7 +35,7 @@ fn found(graph: &str, params: &str) -> (BTreeMap<String, Reason>, Option<f64>) {
 
 #[test]
 fn what_changes_nothing_is_told_with_the_choice_that_it_waits_for() {
-    // What was asked for counts with the graph's defaults.
+    // The pinned parameters have an effect with the graph's defaults.
     let (idle, taken) = found("cones.ron", "");
     println!("{idle:#?}");
     for name in ["cone_count", "diffuse_aperture", "diffuse_steps", "bias", "lod_offset", "warp", "warp_alpha"] {
@@ -51,7 +51,7 @@ fn what_changes_nothing_is_told_with_the_choice_that_it_waits_for() {
     let needs = idle.get("diffuse_aperture").map_or(Vec::new(), |r| r.needs.clone());
     assert!(needs.contains(&("trace".into(), "cones".into())), "{:?}", idle.get("diffuse_aperture"));
     assert!(!idle.contains_key("volume_center"));
-    assert_eq!(taken, None, "what is set is taken");
+    assert_eq!(taken, None, "a set value is used");
 
     let (idle, _) = found("rays.ron", "");
     for name in ["pixel_rays", "gather_frames", "bounce_directions", "bounce_frames"] {

@@ -83,7 +83,7 @@ fn samples_add_up_to_what_shading_found() {
         ("furnace", [20, 20], ""),
         ("white-sky", [32, 24], ""),
     ];
-    // What a pixel's own rays and cones gather is mixed with its neighbours' afterwards.
+    // Filtering mixes a pixel's light with its neighbours' afterwards.
     let traces = [("rays", vec![1.0 / 2.0; 2]), ("cones", vec![1.0 / 3.0; 3])];
     for ((name, at, material), (trace, weights)) in cases.into_iter().flat_map(|c| traces.iter().map(move |t| (c, t))) {
         let what = format!("{name} at {at:?}, {trace}");

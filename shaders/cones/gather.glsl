@@ -7,12 +7,9 @@
 vec4 gatherDiffuse(ConeOrigin o, vec3 n) {
     ConeSet set = diffuseConeSet();
     mat3 frame = frameOf(n);
-    float turn = 0.0;
-    if (bool(params.cone_rotate)) // interleaved gradient noise (Jimenez 2014): trades banding for noise
-        turn = fract(52.9829189 * fract(dot(pixelCentre(), vec2(0.06711056, 0.00583715))));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < set.count; i++) {
-        float angle = 2.0 * PI * (float(i) + turn) / float(set.count - 1);
+        float angle = 2.0 * PI * float(i) / float(set.count - 1);
         vec3 d = i == 0 ? n : frame * vec3(set.sin_tilt * cos(angle), set.sin_tilt * sin(angle), set.cos_tilt);
         float weight = i == 0 ? set.axial_weight : (1.0 - set.axial_weight) / float(set.count - 1);
         CONE_BEGINS(uint(i) + 1u);
@@ -30,9 +27,7 @@ vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     return coneRadiance(traceAny(o, d, tan_half, params.specular_steps, 0u), d, coneSolidAngle(tan_half)) * specularWeight(s, v);
 }
 
-// Diffuse and specular cones are traced in two places: the compiler makes two loops of them, each the faster for it.
+// Two calls that trace cones: the compiler makes two loops of them, each the faster for it.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
-    Gathered sum = Gathered(gatherDiffuse(o, s.normal), vec3(0.0));
-    if (params.specular_steps > 0) sum.specular = gatherSpecular(o, s, face, v);
-    return sum;
+    return Gathered(gatherDiffuse(o, s.normal), gatherSpecular(o, s, face, v));
 }

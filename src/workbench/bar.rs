@@ -69,9 +69,7 @@ impl Workbench {
     /// Comparisons that the graph offers: each is one click.
     fn comparisons(&mut self, ui: &mut Ui) {
         let Some(info) = self.sides[0].info.clone() else { return };
-        let is_there = |side| CompareDecl::graph(side).is_none_or(|graph| self.home.graph_path(&graph).is_file());
-        let all = info.graph.compare.iter().filter(|c| is_there(&c.value.a) && is_there(&c.value.b));
-        for compare in all.collect::<Vec<_>>() {
+        for compare in &info.graph.compare {
             let button = ui.button(&compare.value.title).on_hover_text(&compare.value.help);
             if button.clicked() {
                 let base = self.desired.sides[0].clone().unwrap_or_default();

@@ -77,7 +77,7 @@ vec4 sampleMap(vec3 u, int cascade, vec3 dir, float level) {
 // Narrow cones stay clear of it. Tangent of half the aperture, 12 degrees.
 const float CLEARED = 0.105;
 
-// The coarsest level whose lookup, 1.5 cells to each side, fits between p and the surface. `height` of p above its plane [m].
+// The coarsest level with a lookup, 1.5 cells to each side, that fits between p and the surface. `height` of p above its plane [m].
 float clearLevel(Cone cone, int cascade, vec3 p, float height) {
     float reach = max(cellReach(volume.maps[cascade], p, cone.origin.normal), cone.origin.reach);
     return floor(log2(max(height / (3.0 * reach), 1.0)) + 1e-3);

@@ -31,5 +31,5 @@ vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
 }
 
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
-    return Gathered(gatherDiffuse(o, s.normal, face), params.specular_steps > 0 ? gatherSpecular(o, s, face, v) : vec3(0.0));
+    return Gathered(gatherDiffuse(o, s.normal, face), gatherSpecular(o, s, face, v));
 }

@@ -7,7 +7,7 @@ use crate::campaign::sweep::{Collected, Subject, parts_of};
 use crate::metrics::{Metric, RELMSE, within_noise};
 use indexmap::IndexMap;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Bytes of pictures that go into a page.
 const MAX_PICTURES: usize = 64 << 20;
@@ -107,6 +107,11 @@ impl Dot {
     }
 }
 
+/// The experiment that a dot is a variant of; empty where there is one alone.
+fn experiment_of(dot: &Dot) -> &str {
+    dot.labels.get("experiment").map_or("", String::as_str)
+}
+
 impl Data {
     pub fn new(collected: &Collected) -> Data {
         let (sweeps, names) = (collected.sweeps.clone(), collected.names.clone());
@@ -190,23 +195,24 @@ impl Data {
 
     /// The points of a subject that have a score, in order.
     pub fn scored(&self, subject: usize, part: &str, metric: &Metric) -> Vec<Scored> {
+        let several = self.experiments_of_several_graphs();
         let dots = self.dots.iter().enumerate().filter(|d| d.1.subject == subject);
         dots.filter_map(|(index, dot)| {
             let scores = dot.scores.get(part)?;
             let error = metric.distance(*scores.get(metric.key)?);
             let noisy = within_noise(*scores.get(RELMSE).unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
-            let experiment = self.family(dot);
+            let experiment = if several.contains(experiment_of(dot)) { &dot.graph } else { experiment_of(dot) };
+            let experiment = experiment.to_string();
             (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy, experiment })
         })
         .collect()
     }
 
-    /// What a dot is coloured by: its experiment, or its graph where the experiment is tried with several.
-    fn family(&self, dot: &Dot) -> String {
-        let of = |dot: &Dot| dot.labels.get("experiment").cloned().unwrap_or_default();
-        let experiment = of(dot);
-        let has_others = self.dots.iter().any(|d| d.graph != dot.graph && of(d) == experiment);
-        if has_others { dot.graph.clone() } else { experiment }
+    /// Experiments that are tried with several graphs: their points are told apart by graph.
+    fn experiments_of_several_graphs(&self) -> BTreeSet<&str> {
+        let mut graphs: BTreeMap<&str, &str> = BTreeMap::new();
+        let of = self.dots.iter().map(|dot| (experiment_of(dot), dot.graph.as_str()));
+        of.filter_map(|(name, graph)| (*graphs.entry(name).or_insert(graph) != graph).then_some(name)).collect()
     }
 
     /// A file's name for a subject.

@@ -73,8 +73,8 @@ pub struct GraphFile {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Retired {
-    /// By the name of a graph's file.
+    /// Replacement by file name of the graph.
     pub graphs: Entries<String>,
-    /// By the name of a parameter, or by `parameter=option`.
+    /// Replacement by name of the parameter, or by `parameter=option`.
     pub parameters: Entries<String>,
 }

@@ -136,7 +136,7 @@ pub struct Param {
     pub when: Option<Ex>,
     /// What shaders take in place of the default, which stands for a choice of the graph's.
     pub effective: Option<Ex>,
-    /// Of a choice: one line for each option, or none at all.
+    /// Lines of help for the options of a choice; empty for other kinds.
     pub option_help: Vec<String>,
     /// Of a module: the shader file of each option; empty for all others.
     pub files: Vec<String>,

@@ -6,7 +6,7 @@ use egui::{Color32, DragValue, Response, RichText, Ui, WidgetInfo};
 /// Colour of what is not at its default.
 pub(crate) const CHANGED: Color32 = Color32::from_rgb(255, 196, 84);
 
-/// Shows a value under a title; edits go into it. `auto`: what the graph chooses in place of a number at its default.
+/// Shows a value under a title; edits go into it. `auto`: the number that a default stands for, if the graph chooses it.
 pub(crate) fn control(
     ui: &mut Ui,
     param: &Param,
