@@ -27,4 +27,4 @@ for every in "" "--every 16.667"; do
 done
 echo "an edit of the shader of the default's rays"
 "$conelab" screenshot --scene "$scene" --size "$size" -o "$home/shot.png" --times 25 \
-    --edit "$home/shaders/cones/rays.glsl" --from '0.5698402910' --to '0.5698402911'
+    --edit "$home/shaders/surfels/rays.glsl" --from '0.5698402910' --to '0.5698402911'

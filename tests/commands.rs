@@ -458,11 +458,11 @@ fn check_finds_nothing_here_and_every_mistake_in_a_broken_copy() {
         |     params: { "voxel_dim": 8 },
     checked 5 files, 1 errors
     "#);
-    edit("shaders/cones/near.glsl", "vec4", "vec5");
+    edit("shaders/surfels/trace.glsl", "vec4", "vec5");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(said.contains("shaders/cones/near.glsl:") && said.contains("vec5"), "{said}");
+    assert!(said.contains("shaders/surfels/trace.glsl:") && said.contains("vec5"), "{said}");
 }
 
 #[test]

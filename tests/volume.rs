@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 const QUICK: (&str, &str) = ("shadow_dim", "512");
 /// Light that voxels reflect to each other takes frames to settle.
 const NO_BOUNCES: (&str, &str) = ("bounces", "one");
-/// A word of the buffer voxelCounter (shaders/common/voxels.glsl).
+/// A word of the buffer voxelCounter (shaders/voxels/voxels.glsl).
 const FRAGMENTS: usize = 2;
 const VOXELS: [&str; 4] = ["voxelIndex", "voxelColor", "voxelNormal", "voxelBorders"];
 
@@ -560,7 +560,7 @@ fn boxes(lab: &Lab, name: &str) -> Vec<(Vec3, f32)> {
     let mut session = frames(lab, &e, &["volume"], 1);
     let bytes = session.buffer("volume").unwrap();
     let words: Vec<f32> = bytes.as_chunks::<4>().0.iter().map(|b| f32::from_ne_bytes(*b)).collect();
-    // shaders/common/volume.glsl: six maps, each begins with its corner, a word, its edges.
+    // shaders/volume/volume.glsl: six maps, each begins with its corner, a word, its edges.
     words.chunks(words.len() / 6).map(|m| (Vec3::new(m[0], m[1], m[2]), m[4])).take_while(|m| m.1 > 0.0).collect()
 }
 

@@ -101,7 +101,7 @@ const MAP_POINTS: &str = "#version 460
 #include \"params.glsl\"
 #include \"common/scene.glsl\"
 #include \"common/random.glsl\"
-#include \"common/volume.glsl\"
+#include \"volume/volume.glsl\"
 #include \"display/density.glsl\"
 layout(local_size_x = 64) in;
 struct Row { vec4 there, back, at, image, again, a0, a1, a2, d0, d1, d2, inside; };
@@ -455,7 +455,7 @@ fn the_list_of_fragments_is_long_enough_for_every_slope() {
             [session.graph.buffers.iter().position(|b| b.0 == "voxelFragments").unwrap()]
         .size
             / 16;
-        let fragments = words[2]; // shaders/common/voxels.glsl
+        let fragments = words[2]; // shaders/voxels/voxels.glsl
         println!("{warp}, {mode}: {fragments} fragments in a list of {list}");
         assert!(fragments > 0, "{warp}, {mode}");
         full.extend(session.failed_checks().unwrap().iter().map(|f| format!("{warp}, {mode}: {f}")));

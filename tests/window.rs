@@ -15,7 +15,7 @@ use window_driver::{CONTROL, F1, PATIENCE, SHIFT, WINDOW, WindowDriver, centre, 
 /// Small enough for a software device to draw several a second.
 const SMALL: &str = r#"(graph: "rays.ron", scene: "cornell", size: (160, 120), params: { "voxel_dim": 32, "shadow_dim": 256, "bounces": one, "gather_frames": 1, "pixel_rays": 2 })"#;
 
-/// A line of `shaders/cones/interleaved.glsl`, which every picture of [`SMALL`] depends on.
+/// A line of `shaders/gather/interleaved.glsl`, which every picture of [`SMALL`] depends on.
 const GATHERED: &str = "vec4 hemisphere = vec4(0.0);";
 
 /// The test that measures how fast the program is runs without the others, which share the cores.
@@ -118,7 +118,7 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
     let first = driver.first_picture();
     let good = driver.shows(&first);
     let display = driver.file("shaders/display/display.comp");
-    let gather = driver.file("shaders/cones/interleaved.glsl");
+    let gather = driver.file("shaders/gather/interleaved.glsl");
 
     // Saved in two ways: a new file renamed over the old one, and the old file written.
     let line = "toneMap(c * exp2(params.exposure))";
@@ -144,14 +144,14 @@ fn a_saved_shader_is_shown_and_a_broken_one_leaves_the_last_picture() {
 
     // An include builds what includes it.
     let mark = driver.now();
-    driver.rename_into("shaders/cones/interleaved.glsl", &with(&gather, GATHERED, "vec4 hemisphere = vec4(0.1);"));
+    driver.rename_into("shaders/gather/interleaved.glsl", &with(&gather, GATHERED, "vec4 hemisphere = vec4(0.1);"));
     let glowing = driver.other_picture(mark, 0, &first);
     let built = driver.event(mark, "built");
     assert_eq!(number(&built, "rebuilt"), 1.0, "only one pass gathers: {built}");
     assert!(number(&built, "kept") > 5.0, "{built}");
     driver.shows(&glowing);
     let mark = driver.now();
-    driver.rename_into("shaders/cones/interleaved.glsl", &gather);
+    driver.rename_into("shaders/gather/interleaved.glsl", &gather);
     driver.picture(mark, 0, &first);
     driver.shows(&first);
 
@@ -433,7 +433,7 @@ fn a_save_is_on_the_screen_before_one_looks_up() {
     let mut last = driver.first_picture();
     // A slow machine needs longer for all: then the bound is a part of what building the whole graph took.
     let limit = LIMIT.max(0.6 * number(&driver.event(0, "built"), "build_ms"));
-    let gather = driver.file("shaders/cones/interleaved.glsl");
+    let gather = driver.file("shaders/gather/interleaved.glsl");
     // What else the machine does only adds: the best of three rounds counts.
     let mut rounds = Vec::new();
     for round in 0..3 {
@@ -455,7 +455,7 @@ fn saves(driver: &mut WindowDriver, last: &mut String, gather: &str, first: u32)
         let text = with(gather, GATHERED, &format!("vec4 hemisphere = vec4({});", 0.02 * f64::from(i)));
         let mark = driver.now();
         let start = Instant::now();
-        driver.rename_into("shaders/cones/interleaved.glsl", &text);
+        driver.rename_into("shaders/gather/interleaved.glsl", &text);
         let painted = driver.wait(mark, "new picture on the screen", |e| {
             e["event"] == "painted" && e["pictures"][0] == 0 && e["fingerprints"][0] != last.as_str()
         });

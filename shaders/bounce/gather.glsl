@@ -1,11 +1,11 @@
 // Light that a side of a voxel gathers.
 #ifndef BOUNCE_GATHER_GLSL
 #define BOUNCE_GATHER_GLSL
-#include "common/sides.glsl"
+#include "surfels/sides.glsl"
 #include "common/ggx.glsl"
 #include "common/pattern.glsl"
-#include "cones/light.glsl"
-#include "cones/emitters.glsl"
+#include "gather/radiance.glsl"
+#include "gather/emitters.glsl"
 
 // Index of a cell in 4x4x4, of 64 patterns of directions.
 uint patternOf(uvec3 cell) {

@@ -2,8 +2,8 @@
 // Neighbours take other directions. Injection reflects the light, so that each frame adds a bounce. All hits
 // read the last frame's data, `volume` too; `placed` is the current volume.
 #include "params.glsl"
-#include "common/voxels.glsl"
-#include "common/volume.glsl"
+#include "voxels/voxels.glsl"
+#include "volume/volume.glsl"
 
 layout(std430) readonly buffer LastSurfels { uvec4 quads[]; } lastSurfels;
 layout(std430) readonly buffer LastRadiance { uvec2 list[]; } lastRadiance;
@@ -15,7 +15,7 @@ layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
 #define MET_BRICKS lastBricks
 #define MET_BLOCKS lastBlocks
 #include "modules/bounce_trace.glsl"
-#include "cones/near.glsl"
+#include "surfels/trace.glsl"
 #include "bounce/gather.glsl"
 #include "bounce/queue.glsl"
 #include "bounce/placed.glsl"

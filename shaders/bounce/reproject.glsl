@@ -2,9 +2,9 @@
 #ifndef BOUNCE_REPROJECT_GLSL
 #define BOUNCE_REPROJECT_GLSL
 #include "common/scene.glsl"
-#include "common/sides.glsl"
-#include "common/surfels.glsl"
-#include "common/bricks.glsl"
+#include "surfels/sides.glsl"
+#include "surfels/surfels.glsl"
+#include "voxels/bricks.glsl"
 
 layout(std430) readonly buffer LastGathered { uvec2 list[]; } lastGathered;
 

@@ -4,8 +4,8 @@
 #ifndef CONE_GLSL
 #define CONE_GLSL
 #include "modules/lookup.glsl"
-#include "cones/near.glsl"
-#include "cones/emitters.glsl"
+#include "surfels/trace.glsl"
+#include "gather/emitters.glsl"
 
 // A cone that has met more than stop_transmittance leaves: what is left would hit something too, so it is spread over what
 // was hit.

@@ -1,7 +1,7 @@
 // Where cones start, off the surface.
 #ifndef CONE_ORIGIN_GLSL
 #define CONE_ORIGIN_GLSL
-#include "common/volume.glsl"
+#include "volume/volume.glsl"
 
 uniform sampler3D voxelRadiance; // premultiplied by opacity; border clamped
 

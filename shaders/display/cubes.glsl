@@ -1,7 +1,7 @@
 // The voxel view's list of cubes.
 #ifndef VOXEL_CUBES_GLSL
 #define VOXEL_CUBES_GLSL
-#include "common/volume.glsl"
+#include "volume/volume.glsl"
 
 layout(std430) buffer VoxelCubes {
     uvec4 draw; // VkDrawIndirectCommand: 36, cubes, 0, 0

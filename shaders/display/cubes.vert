@@ -3,7 +3,7 @@
 // The voxel view: a cube of 36 vertices for each listed cell of the shown level.
 #include "params.glsl"
 #include "common/scene.glsl"
-#include "common/volume.glsl"
+#include "volume/volume.glsl"
 #include "display/cubes.glsl"
 #include "modules/cube_color.glsl"
 

@@ -3,7 +3,7 @@
 // The scene coloured by the density of its voxels (thesis, Figure 5.7).
 #include "params.glsl"
 #include "common/scene.glsl"
-#include "common/volume.glsl"
+#include "volume/volume.glsl"
 #include "display/density.glsl"
 
 layout(location = 0) in vec2 uv;

@@ -3,8 +3,8 @@
 // Filtered levels that know directions (Crassin et al. 2011, Section 6): each cell has what rays along +x, -x, +y, -y,
 // +z and -z meet in it, composited front to back in pairs and averaged over the four columns. The six lie side by side.
 #include "params.glsl"
-#include "common/directions.glsl"
-#include "common/bricks.glsl"
+#include "voxels/directions.glsl"
+#include "voxels/bricks.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 

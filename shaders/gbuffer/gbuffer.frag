@@ -3,8 +3,8 @@
 // The G-buffer, for passes that shade it. Costs 28 bytes a pixel, and no cone is traced for the
 // uncovered pixels of a triangle's quads.
 #include "params.glsl"
-#include "common/fragment_surface.glsl"
-#include "common/gbuffer.glsl"
+#include "gbuffer/fragment_surface.glsl"
+#include "gbuffer/packing.glsl"
 
 layout(location = 0) out vec4 gbufferBase;
 layout(location = 1) out vec4 gbufferNormals;

@@ -4,7 +4,7 @@
 // (Moller and Trumbore 1997) gives attributes and the gradients of textures (Schied and Dachsbacher 2015).
 #include "common/scene.glsl"
 #include "common/materials.glsl"
-#include "common/gbuffer.glsl"
+#include "gbuffer/packing.glsl"
 #include "common/normals.glsl"
 #include "raster/triangles.glsl"
 

@@ -4,7 +4,7 @@
 #ifndef HISTORY_AGE_GLSL
 #define HISTORY_AGE_GLSL
 #include "common/ggx.glsl"
-#include "common/gbuffer_read.glsl"
+#include "gbuffer/read.glsl"
 #include "common/pattern.glsl"
 
 // Fraction of an age that marks disoccluded pixels, which have gathered with few rays. Other ages are whole

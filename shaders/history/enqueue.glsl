@@ -4,7 +4,7 @@
 #ifndef HISTORY_ENQUEUE_GLSL
 #define HISTORY_ENQUEUE_GLSL
 #define QUEUE_WRITES
-#include "shade/queue.glsl"
+#include "gather/queue.glsl"
 
 const ivec2 REGION = ivec2(64, 32);
 const uint REGION_PIXELS = REGION.x * REGION.y;

@@ -1,7 +1,7 @@
 // Reprojection: the pixel of the last frame that saw the same surface.
 #ifndef HISTORY_REPROJECT_GLSL
 #define HISTORY_REPROJECT_GLSL
-#include "common/gbuffer_read.glsl"
+#include "gbuffer/read.glsl"
 #include "common/pattern.glsl"
 
 uniform sampler2D lastDiffuse;

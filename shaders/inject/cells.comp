@@ -2,12 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 // What leaves a cell by direction, all its sides together, premultiplied by opacity: for filtered levels, and who looks at voxels.
 #include "params.glsl"
-#include "common/volume.glsl"
-#include "common/directions.glsl"
-#include "common/sides.glsl"
-#include "common/surfels.glsl"
-#include "common/bricks.glsl"
-#include "common/emitters.glsl"
+#include "volume/volume.glsl"
+#include "voxels/directions.glsl"
+#include "surfels/sides.glsl"
+#include "surfels/surfels.glsl"
+#include "voxels/bricks.glsl"
+#include "lights/emitters.glsl"
 
 layout(local_size_x = 128) in;
 

@@ -3,7 +3,7 @@
 // Takes what last frame left in its voxels out of them, once nothing needs it any more: of the settings of now, cells that were set;
 // else all. Clearing the whole volume would cost more than voxelizing. Bricks and `volume` are last frame's.
 #include "params.glsl"
-#include "common/bricks.glsl"
+#include "voxels/bricks.glsl"
 
 layout(local_size_x = 128) in;
 

@@ -4,12 +4,12 @@
 // mean radiance that the side has gathered, plus emission. Runs over the voxel list, so each surface is lit once.
 #include "params.glsl"
 #include "common/math.glsl"
-#include "common/volume.glsl"
-#include "common/sides.glsl"
-#include "common/surfels.glsl"
-#include "common/shadow_layers.glsl"
+#include "volume/volume.glsl"
+#include "surfels/sides.glsl"
+#include "surfels/surfels.glsl"
+#include "shadow/layers.glsl"
 #include "common/scene.glsl"
-#include "common/emitters.glsl"
+#include "lights/emitters.glsl"
 #include "modules/shadow_lookup.glsl"
 
 layout(local_size_x = 128) in;

@@ -4,8 +4,8 @@
 // into the voxel it hits: its base colour, not the light that it reflects, and from the texel's corner, not its centre.
 // Writes of several texels, and of several lights, race: the last one stays.
 #include "params.glsl"
-#include "common/volume.glsl"
-#include "common/shadow_views.glsl"
+#include "volume/volume.glsl"
+#include "shadow/views.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
 

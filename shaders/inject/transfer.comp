@@ -3,8 +3,8 @@
 // Transfer of opacity into the radiance texture (thesis, Section 4.3), before the lit voxels are written;
 // emission comes along.
 #include "params.glsl"
-#include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "volume/volume.glsl"
+#include "voxels/voxels.glsl"
 
 layout(local_size_x = 128) in;
 

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "params.glsl"
-#include "common/sky.glsl"
+#include "lights/sky.glsl"
 #include "common/view_ray.glsl"
 #include "preview/preview.glsl"
 

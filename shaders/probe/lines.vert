@@ -4,7 +4,7 @@
 // it read, if it found anything there. Coloured by level, as strong as the sample counts.
 #include "params.glsl"
 #include "common/scene.glsl"
-#include "common/volume.glsl"
+#include "volume/volume.glsl"
 #include "probe/samples.glsl"
 
 layout(location = 0) flat out vec4 color;

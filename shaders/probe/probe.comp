@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The cone probe where pixels are shaded by threads.
 #include "params.glsl"
-#include "common/gbuffer_read.glsl"
+#include "gbuffer/read.glsl"
 #include "probe/record.glsl"
 
 layout(local_size_x = 1) in;

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // The cone probe: shading's own cones at the pixel under the pointer, with every sample written down.
 #include "params.glsl"
-#include "common/fragment_surface.glsl"
+#include "gbuffer/fragment_surface.glsl"
 #include "probe/record.glsl"
 
 // Stores would otherwise move the depth test behind the shader.

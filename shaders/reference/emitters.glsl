@@ -1,6 +1,6 @@
 // Light of emitting surfaces, found both by drawing places on them and by the rays that a surface sends out: each way of finding a place
 // has the share of it that its density has of both (multiple importance sampling, balance heuristic; Veach and Guibas 1995).
-#include "common/emitters.glsl"
+#include "lights/emitters.glsl"
 
 // Share of emission that a ray has met. density: of the ray's direction.
 float shareOfRay(float density, SurfaceHit h, float distance) {

@@ -3,7 +3,7 @@
 #define HIT_GLSL
 #include "reference/trace.glsl"
 #include "common/brdf.glsl"
-#include "common/emitters.glsl"
+#include "lights/emitters.glsl"
 #include "common/normals.glsl"
 
 struct SurfaceHit {

@@ -6,7 +6,7 @@
 // that diffuse and specular light are known apart. Emission and the sky are met by the rays too; of emission (reference/emitters.glsl) and of
 // a sky's picture (reference/sky.glsl) both ways of finding it share the light.
 #include "params.glsl"
-#include "common/direct.glsl"
+#include "lights/direct.glsl"
 #include "reference/hit.glsl"
 #include "common/ggx.glsl"
 #include "reference/sky.glsl"

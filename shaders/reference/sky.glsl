@@ -3,7 +3,7 @@
 #ifndef REFERENCE_SKY_GLSL
 #define REFERENCE_SKY_GLSL
 #include "common/ggx.glsl"
-#include "common/sky.glsl"
+#include "lights/sky.glsl"
 
 // Width, height, two words of nothing; radiance around the sun and nothing; sums up to each row, from 0 to 1; in each row sums up to each
 // texel; texels in halves, two words each, of which bit 48 says that it is the sun's.

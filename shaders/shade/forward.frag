@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Final shading in the fragments of the triangles, each contribution to its own output (thesis, Section 4.5).
 #include "params.glsl"
-#include "common/fragment_surface.glsl"
+#include "gbuffer/fragment_surface.glsl"
 #include "shade/shade.glsl"
 
 layout(location = 0) out vec4 radiance; // everything, emission included

@@ -4,10 +4,10 @@
 // (thesis, Algorithm 3). Indirect diffuse light is albedo times the mean radiance over the hemisphere, sky
 // included where it is open.
 #include "params.glsl"
-#include "common/gbuffer_read.glsl"
-#include "common/shadow.glsl"
-#include "common/direct.glsl"
-#include "common/sky.glsl"
+#include "gbuffer/read.glsl"
+#include "shadow/visibility.glsl"
+#include "lights/direct.glsl"
+#include "lights/sky.glsl"
 #include "shade/filter.glsl"
 #include "shade/demodulate.glsl"
 

@@ -3,8 +3,8 @@
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 #include "modules/trace.glsl"
-#include "common/shadow.glsl"
-#include "common/direct.glsl"
+#include "shadow/visibility.glsl"
+#include "lights/direct.glsl"
 
 // Radiance towards the viewer by contribution, without emission.
 struct Shading {

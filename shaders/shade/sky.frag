@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Background: the sky's radiance.
-#include "common/sky.glsl"
+#include "lights/sky.glsl"
 #include "common/view_ray.glsl"
 
 layout(location = 0) in vec2 uv;

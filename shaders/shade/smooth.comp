@@ -3,7 +3,7 @@
 // First half of the filter over gathered light: the mean of every other pixel in 8x8. Shading averages 2x2 of
 // these means. Together they read each pixel of the pattern once, with 20 lookups instead of 64.
 #include "params.glsl"
-#include "common/gbuffer_read.glsl"
+#include "gbuffer/read.glsl"
 #include "shade/filter.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -3,8 +3,8 @@
 // for Large-scale Virtual Environments", but around the eye: turning it moves no map).
 #include "params.glsl"
 #include "common/scene.glsl"
-#include "common/shadow_views.glsl"
-#include "common/shadow_layers.glsl"
+#include "shadow/views.glsl"
+#include "shadow/layers.glsl"
 
 layout(local_size_x = 1) in;
 

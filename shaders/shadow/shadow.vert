@@ -3,7 +3,7 @@
 // Depth from a light (thesis, Section 4.2); pass.index is the layer.
 #include "params.glsl"
 #include "common/scene.glsl"
-#include "common/shadow_layers.glsl"
+#include "shadow/layers.glsl"
 
 layout(location = 0) out vec4 uv;
 layout(location = 1) flat out uint material;

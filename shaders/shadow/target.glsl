@@ -1,6 +1,6 @@
 // The shadow maps as words: depths as floats, whose bits compare like integers. The least stays.
 #include "params.glsl"
-#include "common/shadow_layers.glsl"
+#include "shadow/layers.glsl"
 
 layout(r32ui) uniform uimage2DArray shadowWords;
 

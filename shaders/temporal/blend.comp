@@ -3,8 +3,8 @@
 // Blends last frame's radiance into this frame's (thesis, Section 4.7.2), looked up where the cell was last
 // frame, so that a moving volume does not smear. The history is rgba16f: in 8 bits the decay would stick.
 #include "params.glsl"
-#include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "volume/volume.glsl"
+#include "voxels/voxels.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 

@@ -3,7 +3,7 @@
 // World coordinates of the borders of a cascade's cells (voxel_view_cascade), for who looks at the voxels
 // from outside: the warp is declared once.
 #include "params.glsl"
-#include "common/volume.glsl"
+#include "volume/volume.glsl"
 
 layout(local_size_x = 64) in;
 

@@ -1,8 +1,8 @@
 // Where the volume lies this frame (thesis, Section 4.1). VOLUME_FOLLOWS: the camera, or last frame's volume, from which cells are
 // kept; without it neither is read, and where they change nothing, nothing is done again.
 #include "common/scene.glsl"
-#include "common/volume.glsl"
-#include "common/voxels.glsl"
+#include "volume/volume.glsl"
+#include "voxels/voxels.glsl"
 #include "modules/follow.glsl"
 
 layout(local_size_x = 1) in;

@@ -3,7 +3,7 @@
 use crate::scene::Material;
 use glam::Vec4;
 
-/// As many as the G-buffer can number (`shaders/common/gbuffer.glsl`).
+/// As many as the G-buffer can number (`shaders/gbuffer/packing.glsl`).
 const MOST: usize = 64;
 
 /// Reflectances at normal incidence and, in w, at grazing angles. The first is the default.

@@ -1,4 +1,4 @@
-//! Emitting triangles as shaders draw places on them (`shaders/common/emitters.glsl`).
+//! Emitting triangles as shaders draw places on them (`shaders/lights/emitters.glsl`).
 
 use super::attributes::{Attributes, color_of, uv_of};
 use super::bvh::Soup;
@@ -193,7 +193,7 @@ fn power_of(block: &EmitterBlock) -> f64 {
     if power.is_finite() { power } else { 0.0 }
 }
 
-/// As `luminance` of `common/emitters.glsl`.
+/// As `luminance` of `lights/emitters.glsl`.
 fn luminance(c: Vec3) -> f32 {
     c.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }

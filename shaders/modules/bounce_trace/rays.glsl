@@ -1,6 +1,6 @@
 // Voxels gather with rays that meet others' surfaces, and with rays to places on emitters.
 #include "modules/lookup.glsl"
-#include "cones/rays.glsl"
+#include "surfels/rays.glsl"
 
 #define BOUNCE_DRAWS_EMITTERS (!WARPED && !CURVED) // others know no emitters
 

@@ -1,7 +1,7 @@
 // Surfels gather with rays that hit other surfels, and with rays to emitter samples. Rays bend in warped cells, where narrow cones take
 // their place.
 #include "modules/cone.glsl"
-#include "cones/rays.glsl"
+#include "surfels/rays.glsl"
 
 #define BOUNCE_DRAWS_EMITTERS (!WARPED && !CURVED)
 

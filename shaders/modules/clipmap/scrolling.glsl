@@ -2,7 +2,7 @@
 #define CASCADE_COUNT params.cascade_count
 #define SCROLLS VOLUME_SCROLL
 
-#include "common/cascades.glsl"
+#include "volume/cascades.glsl"
 
 // Whether a place in cells is one whose content stays as it was.
 bool isKept(VolumeMap map, vec3 at) {

@@ -2,7 +2,7 @@
 #define CASCADE_COUNT params.cascade_count
 const bool SCROLLS = false;
 
-#include "common/cascades.glsl"
+#include "volume/cascades.glsl"
 
 bool isKept(VolumeMap map, vec3 at) {
     return false;

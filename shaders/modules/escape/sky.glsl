@@ -1,5 +1,5 @@
 // What escapes a cone sees the sky, the mean over the solid angle that the cone stands for.
-#include "common/sky.glsl"
+#include "lights/sky.glsl"
 
 vec3 coneRadiance(vec4 cone, vec3 d, float spread) {
     vec3 seen = cone.rgb;

@@ -2,7 +2,7 @@
 // lookups a sample.
 #ifndef MIPS_GLSL
 #define MIPS_GLSL
-#include "common/directions.glsl"
+#include "voxels/directions.glsl"
 
 vec3 directionWeights(vec3 dir);
 

@@ -3,7 +3,7 @@
 // The base gets what the lobe leaves: 1 minus the lobe's directional albedo at the viewer. The specification's sample
 // weight, 1 - F(v.h), returns up to 1.9 times the light of a white sky at a dielectric's rim; this one returns exactly 1.
 // The price is reciprocity: the weight depends on the viewer and not on the light.
-#include "common/lobe_albedo.glsl"
+#include "shade/lobe_albedo.glsl"
 
 #ifndef SINGLE_SCATTERING
 const bool MULTIPLE_SCATTERING = true;

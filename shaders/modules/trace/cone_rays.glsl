@@ -1,6 +1,6 @@
 // Rays that fill the same cones evenly, voxel by voxel: what filtered levels and steps cost.
 #include "modules/lookup.glsl"
-#include "cones/rays.glsl"
+#include "surfels/rays.glsl"
 #include "common/frame.glsl"
 
 #define DRAWS_EMITTERS false
@@ -22,4 +22,4 @@ vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     return sum / float(params.exact_rays);
 }
 
-#include "cones/interleaved.glsl"
+#include "gather/interleaved.glsl"

@@ -5,4 +5,4 @@ vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number) {
     return traceCone(o, d, tan_half, steps);
 }
 
-#include "cones/gather.glsl"
+#include "gather/cones.glsl"

@@ -1,7 +1,7 @@
 // Without cones: rays through every voxel over the whole lobe.
 #include "modules/lookup.glsl"
-#include "cones/rays.glsl"
-#include "cones/light.glsl"
+#include "surfels/rays.glsl"
+#include "gather/radiance.glsl"
 #include "common/ggx.glsl"
 
 // As dense as the cosine.

@@ -9,4 +9,4 @@ vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     return traceCone(o, d, tan_half, steps, use);
 }
 
-#include "cones/interleaved.glsl"
+#include "gather/interleaved.glsl"

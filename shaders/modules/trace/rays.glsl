@@ -1,6 +1,6 @@
 // Rays that meet voxels' surfaces, however far, and rays to places on emitters.
 #include "modules/lookup.glsl"
-#include "cones/rays.glsl"
+#include "surfels/rays.glsl"
 
 #define DRAWS_EMITTERS (!WARPED && !CURVED) // others know no emitters
 
@@ -12,4 +12,4 @@ vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     return traceVoxels(o, d, use);
 }
 
-#include "cones/interleaved.glsl"
+#include "gather/interleaved.glsl"

@@ -1,5 +1,5 @@
 // Cells of one size.
 const bool WARPED = false;
 
-#include "common/unwarped.glsl"
-#include "common/boxes.glsl"
+#include "volume/unwarped.glsl"
+#include "volume/boxes.glsl"

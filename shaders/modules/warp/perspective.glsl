@@ -73,4 +73,4 @@ vec3 curvedEye(vec3 position, vec3 cell) {
 const vec3 CURVED_BORDERS = vec3(1.0);
 const bool CURVED_SEAM = false;
 
-#include "common/curved.glsl"
+#include "volume/curved.glsl"

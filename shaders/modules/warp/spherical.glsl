@@ -197,4 +197,4 @@ vec3 curvedEye(vec3 position, vec3 cell) {
 const vec3 CURVED_BORDERS = vec3(0.0, 0.0, 1.0);
 const bool CURVED_SEAM = true;
 
-#include "common/curved.glsl"
+#include "volume/curved.glsl"

@@ -21,4 +21,4 @@ vec3 unwarp(vec3 y) {
     return mix(x, 1.0 - x, greaterThan(y, vec3(0.5)));
 }
 
-#include "common/boxes.glsl"
+#include "volume/boxes.glsl"

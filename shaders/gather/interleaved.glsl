@@ -1,0 +1,140 @@
+// A few narrow cones or rays a pixel, other ones in each pixel of a block of 8x8: shading filters over the block, so
+// that each surface sees up to 64 times as many (Segovia et al. 2006). What traces one is in modules/trace, which includes this after
+// saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use), and whether places on emitters are drawn too.
+#include "gather/radiance.glsl"
+#include "gather/emitters.glsl"
+#include "common/ggx.glsl"
+#include "common/pattern.glsl"
+
+// Number of a point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
+uint pixelPointNumber(int i) {
+    return uint(i) * 64u + pixelNumber(uvec2(pixelCentre()));
+}
+
+vec2 pixelPoint(int i) {
+    return r2(pixelPointNumber(i));
+}
+
+// Other points in each block: what few directions cannot tell becomes noise and not a bias.
+uint blockNumber() {
+    uvec2 block = uvec2(pixelCentre()) >> 3;
+    return block.x * 37u + block.y * 101u;
+}
+
+vec2 blockPoint(int i) {
+    return fract(pixelPoint(i) + r2(blockNumber()));
+}
+
+float largest(vec3 v) {
+    return max(v.r, max(v.g, v.b));
+}
+
+// Rays into the lobe, beside those over the hemisphere: by its share of the light that the surface reflects.
+int specularRays(Surface s, vec3 v) {
+    float mirrored = largest(fresnel(s, max(dot(s.normal, v), 0.0)));
+    float share = mirrored / (mirrored + largest(s.albedo));
+    return clamp(int(ceil(params.lobe_share * share * float(gatherShare.rays))), 1, max(gatherShare.rays, 1));
+}
+
+// What a place on an emitter brings if nothing hides it.
+struct EmitterLight {
+    vec3 hemisphere; // as of `rays` rays
+    vec3 specular; // as of `lobe` rays
+};
+
+// Length of the exact part of cones [m]. There they hit emitters and share their light with emitter samples (multiple importance
+// sampling); filtered levels hold no emission.
+struct SharedRange {
+    float rays;
+    float lobe;
+};
+
+EmitterLight lightOfPlace(EmitterPlace place, Surface s, vec3 face, vec3 v, float rays, float lobe, float drawn, SharedRange range) {
+    float cosine = dot(s.normal, place.direction);
+    if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0) return EmitterLight(vec3(0.0), vec3(0.0));
+    float found = drawn * place.by_area * place.distance * place.distance;
+    vec3 light = place.radiance * place.cosine * cosine;
+    float by_rays = place.distance < range.rays ? rays * cosine / PI : 0.0;
+    float by_lobe = place.distance < range.lobe && lobe > 0.0 ? lobe * specularDensity(s, v, place.direction) : 0.0;
+    return EmitterLight(
+        rays > 0.0 ? light * (rays / PI) / (found + by_rays) : vec3(0.0),
+        lobe > 0.0 ? light * lobe * specularBrdf(s, v, place.direction) / (found + by_lobe) : vec3(0.0));
+}
+
+// A place of some that are drawn, and what it brings for all of them.
+EmitterPlace bestPlace(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe, float drawn, float tan_half, float tan_lobe, out EmitterLight light) {
+    float sum = 0.0, own = 0.0;
+    EmitterPlace best;
+    best.cosine = 0.0;
+    light = EmitterLight(vec3(0.0), vec3(0.0));
+    vec4 shift = evenPoint4(blockNumber(), vec4(0.5));
+    float choice = fract(shift.x + float(pixelPointNumber(number) & 0xffffu) * 0.6180339887);
+    for (int k = 0; k < CANDIDATES; k++) {
+        EmitterPlace place = drawEmitter(o.surface, evenPoint4(pixelPointNumber(number * CANDIDATES + k), shift));
+        SharedRange range = SharedRange(exactRange(o, place.direction, tan_half), exactRange(o, place.direction, tan_lobe));
+        EmitterLight found = lightOfPlace(place, s, face, v, rays, lobe, drawn, range);
+        float weight = luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
+        if (weight <= 0.0) continue;
+        sum += weight;
+        float chance = weight / sum;
+        if (choice < chance) {
+            choice /= chance;
+            best = place;
+            light = found;
+            own = weight;
+        } else {
+            choice = (choice - chance) / (1.0 - chance);
+        }
+    }
+    float scale = own > 0.0 ? sum / own : 0.0;
+    light.hemisphere *= scale;
+    light.specular *= scale;
+    return best;
+}
+
+// Cones over the hemisphere, then some directions of the lobe; a cone there has a sixty-fourth of it; then rays to emitters. One loop for
+// all: what traces them is large, and in the program once.
+Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
+    mat3 frame = frameOf(s.normal);
+    float tan_half = tan(radians(0.5 * params.cone_aperture)), tan_lobe = 0.25 * ggxAlpha(s.roughness);
+    int rays = gatherShare.rays, lobe = specularRays(s, v);
+    int drawn = DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
+    float candidates = float(drawn * CANDIDATES);
+    // What each of them stands for.
+    float spread = PI / float(max(rays, 1)), lobe_spread = lobeSolidAngle(s) / float(max(lobe, 1));
+    vec4 hemisphere = vec4(0.0);
+    vec3 specular = vec3(0.0);
+    for (int i = gatherShare.first; i < rays + lobe + drawn; i += gatherShare.of) {
+        bool mirrors = i >= rays && i < rays + lobe, is_drawn = i >= rays + lobe;
+        vec3 d, weight = vec3(0.0);
+        RayUse use = MEETS_ALL;
+        EmitterLight light = EmitterLight(vec3(0.0), vec3(0.0));
+        if (is_drawn) {
+            EmitterPlace place = bestPlace(o, s, face, v, i - rays - lobe, float(rays), float(lobe), candidates, tan_half, tan_lobe, light);
+            if (place.cosine == 0.0) continue;
+            d = place.direction;
+            use = rayTo(place, o.surface);
+        } else if (mirrors) {
+            LobeSample l = specularSample(s, face, v, blockPoint(i - rays));
+            d = l.direction;
+            weight = l.weight;
+            if (weight == vec3(0.0)) continue;
+            if (drawn > 0) use = RayUse(1e30, float(lobe) * specularDensity(s, v, d), candidates, 1e30);
+        } else {
+            d = frame * cosineSample(pixelPoint(i));
+            if (dot(d, face) <= 0.0) continue; // mapped normals lean
+            if (drawn > 0) use = RayUse(1e30, float(rays) * diffuseDensity(s, d), candidates, 1e30);
+        }
+        CONE_BEGINS(is_drawn ? uint(params.diffuse_cones + i - rays) : !mirrors ? uint(i) + 1u : i == rays ? 0u : uint(params.diffuse_cones + i - rays));
+        vec4 cone = traceAny(o, d, mirrors ? tan_lobe : tan_half, mirrors ? params.specular_steps : params.diffuse_steps, use);
+        if (is_drawn) {
+            hemisphere.rgb += (1.0 - cone.a) * light.hemisphere;
+            specular += (1.0 - cone.a) * light.specular;
+            continue;
+        }
+        vec3 found = coneRadiance(cone, d, mirrors ? lobe_spread : spread);
+        if (mirrors) specular += weight * found;
+        else hemisphere += vec4(found, 1.0 - cone.a);
+    }
+    return Gathered(hemisphere / float(max(rays, 1)), specular / float(max(lobe, 1)));
+}

@@ -1,0 +1,60 @@
+// What each layer of the shadow map shows: the lights' views, then finer ones of directional lights.
+#ifndef SHADOW_LAYERS_GLSL
+#define SHADOW_LAYERS_GLSL
+#include "lights/lights.glsl"
+
+struct ShadowLayer {
+    mat4 view_projection;
+    float width; // of the map in the world [m], at unit distance if perspective
+    float perspective; // 1, or 0
+    int finer; // the layer that shows a part of this one, -1: none
+    float rounding; // of depth, beyond what its format rounds
+    float near; // least w of what is drawn
+};
+
+layout(std430) buffer ShadowLayers { ShadowLayer layers[]; } shadowLayers;
+
+// Which of the six faces of a point light's shadow cube looks along d.
+int cubeFace(vec3 d) {
+    vec3 a = abs(d);
+    if (a.x >= a.y && a.x >= a.z) return d.x >= 0.0 ? 0 : 1;
+    if (a.y >= a.z) return d.y >= 0.0 ? 2 : 3;
+    return d.z >= 0.0 ? 4 : 5;
+}
+
+// World size of a shadow texel at p.
+float shadowTexel(int layer, Light light, vec3 p) {
+    ShadowLayer l = shadowLayers.layers[layer];
+    return l.width * (l.perspective > 0.0 ? distance(light.position, p) : 1.0) / float(params.shadow_dim);
+}
+
+// xy: shadow-map coordinates in [0,1]; z: depth, outside [0,1] beyond the map's ends.
+vec3 shadowPositionBeyond(int layer, vec3 p) {
+    vec4 c = shadowLayers.layers[layer].view_projection * vec4(p, 1.0);
+    vec3 q = c.xyz / max(c.w, 1e-6); // a spot light's plane has w = 0; behind it no light arrives
+    return vec3(q.xy * 0.5 + 0.5, q.z);
+}
+
+// The same, as the map has it.
+vec3 shadowPosition(int layer, vec3 p) {
+    vec3 q = shadowPositionBeyond(layer, p);
+    return vec3(q.xy, clamp(q.z, 0.0, 1.0));
+}
+
+// Texels at a finer map's edge that are not looked up, so that taps and offsets stay within it.
+const float SHADOW_BORDER = 8.0;
+
+// The finest layer of a light that shows p.
+int shadowLayerOf(Light light, vec3 p) {
+    if (light.kind == LIGHT_POINT) return light.shadow_view + cubeFace(p - light.position);
+    int layer = light.shadow_view;
+    if (params.nested_maps == 1 || light.kind != LIGHT_DIRECTIONAL) return layer;
+    for (int finer = shadowLayers.layers[layer].finer; finer >= 0; finer = shadowLayers.layers[layer].finer) {
+        vec3 aside = abs(shadowPositionBeyond(finer, p) - 0.5);
+        if (max(aside.x, max(aside.y, aside.z)) > 0.5 - SHADOW_BORDER / float(params.shadow_dim)) break;
+        layer = finer;
+    }
+    return layer;
+}
+
+#endif

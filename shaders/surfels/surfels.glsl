@@ -1,0 +1,110 @@
+// Surfels as rays read them: for each side the mean plane of its surfaces and their coverage mask, in few
+// words. Separate buffers hold data of each side that changes with the light: the radiance that leaves it,
+// and the light that it has gathered.
+#ifndef SURFELS_GLSL
+#define SURFELS_GLSL
+#include "voxels/voxels.glsl"
+#include "surfels/coverage_mask.glsl"
+
+layout(std430) buffer Surfels { uvec4 quads[]; } surfels;
+layout(std430) buffer SideRadiance { uvec2 list[]; } sideRadiance;
+layout(std430) buffer SideGathered { uvec2 list[]; } sideGathered;
+
+// Words of a surfel: a plane for each side; coverage masks, two words for each side; front layers, a word for
+// each side. In groups of four, because rays wait for every load.
+const uint SURFEL_WORDS = 4 * SIDES;
+const uint SURFEL_MASKS = SIDES; // the first word of what is merged and not made of sums
+
+struct Plane {
+    vec3 normal; // of side 0; not unit length: 1 along its axis
+    float offset; // from the cell's middle, along its axis
+};
+
+uint surfelBase(uint surfel) {
+    return surfel * SURFEL_WORDS;
+}
+
+uint surfelData(uint word) {
+    return surfels.quads[word >> 2][word & 3u];
+}
+
+void storeSurfelData(uint word, uint data) {
+    surfels.quads[word >> 2][word & 3u] = data;
+}
+
+// The unit vector of an axis.
+vec3 axisVector(uint axis) {
+    return vec3(equal(uvec3(axis), uvec3(0, 1, 2)));
+}
+
+// A vector by its axial and lateral coordinates.
+vec3 axialVector(uint axis, float axial, vec2 lateral) {
+    if (axis == 0) return vec3(axial, lateral);
+    return axis == 1 ? vec3(lateral.y, axial, lateral.x) : vec3(lateral, axial);
+}
+
+uint planeWord(uint base, uint side) {
+    return base + side;
+}
+
+// normal: positive along its axis. present: bits 0 and 1, whether side 0 and 1 have surfaces. A side without
+// is the back of the other.
+void storePlane(uint word, vec3 normal, uint axis, float offset, uint present) {
+    vec2 lateral = lateralOf(normal, axis);
+    uvec2 s = uvec2(clamp(lateral / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
+    storeSurfelData(word, s.x | s.y << 10 | storedOffset(offset) << 20 | present << 30);
+}
+
+Plane unpackPlane(uint w, uint axis) {
+    vec2 lateral = (vec2(w & 0x3ffu, w >> 10 & 0x3ffu) - 512.0) / 511.0;
+    return Plane(axialVector(axis, 1.0, lateral), offsetOfSum(float(w >> 20 & 0x3ffu), 1.0));
+}
+
+Plane planeOf(uint base, uint side, uint axis) {
+    return unpackPlane(surfelData(planeWord(base, side)), axis);
+}
+
+uint coverageMaskWord(uint base, uint side) {
+    return base + SURFEL_MASKS + 2 * side;
+}
+
+uint frontLayerWord(uint base, uint side) {
+    return base + 3 * SIDES + side;
+}
+
+uvec2 coverageMaskOf(uint base, uint side) {
+    uint word = coverageMaskWord(base, side);
+    return uvec2(surfelData(word), surfelData(word + 1));
+}
+
+// The point of a side's plane at lateral coordinates, and the middle of its surfaces; relative to the cell's
+// middle [cells].
+vec3 onPlane(uint base, uint side, uint axis, vec2 lateral) {
+    Plane plane = planeOf(base, side, axis);
+    return axialVector(axis, plane.offset - dot(lateralOf(plane.normal, axis), lateral), lateral);
+}
+
+vec3 planeMiddle(uint base, uint side, uint axis) {
+    return onPlane(base, side, axis, middleOf(coverageMaskOf(base, side)));
+}
+
+// Where a side's light is.
+uint sideNumber(uint surfel, uint side) {
+    return surfel * SIDES + side;
+}
+
+// And how often it was gathered; or, of what leaves a side, the share of it that emitters emit.
+uvec2 packLight(vec3 light, float times) {
+    light = min(light, 65504.0);
+    return uvec2(packHalf2x16(light.rg), packHalf2x16(vec2(light.b, times)));
+}
+
+vec3 lightOf(uvec2 packed) {
+    return vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x);
+}
+
+float timesOf(uvec2 packed) {
+    return unpackHalf2x16(packed.y).y;
+}
+
+#endif

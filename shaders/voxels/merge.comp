@@ -1,0 +1,127 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Merges the fragments into their voxels (thesis, Section 4.1.1, last paragraphs) under one of several rules: modules/merge.
+#include "params.glsl"
+#include "volume/volume.glsl"
+#include "voxels/bricks.glsl"
+#include "surfels/surfels.glsl"
+#include "common/scene.glsl"
+#include "common/materials.glsl"
+#include "surfels/cover.glsl"
+
+layout(local_size_x = 128) in;
+
+layout(std430) readonly buffer Indices { uint indices[]; } indices;
+
+// Neighbours in the list mostly hit the same voxel: neighbouring threads take fragments that lie far apart, so that
+// their atomics do not queue.
+const uint SHARES = 1u << 16;
+
+#include "modules/merge.glsl"
+
+// Merges a surface into the front layer of each quarter. Most sides have one surface, and the loop runs once.
+void mergeFrontLayer(uint word, uint side, Coverage coverage) {
+    uint mine = 0;
+    for (uint i = 0; i < 4; i++) {
+        uvec2 quarter = quarterOf(coverage.mask, i);
+        int count = bitCount(quarter.x) + bitCount(quarter.y);
+        if (count > 0) mine |= packFrontLayer(coverage.offset, side, count) << 8 * i;
+    }
+    uint found = surfelData(word);
+    for (;;) {
+        uint seen = atomicCompSwap(surfels.quads[word >> 2][word & 3u], found, frontOf(found, mine));
+        if (seen == found) return;
+        found = seen;
+    }
+}
+
+void merge(uint base, vec3 color, vec3 normal, float offset, uint emission, uint weight) {
+    mergeInto(base, color, normal, weight);
+    atomicAdd(surfelSums.words[base + SIDE_OFFSET], storedOffset(offset) * weight);
+    atomicAdd(surfelSums.words[base + 3], weight);
+    if (emission != 0) {
+        uvec3 e = uvec3(min(unpackRadiance(emission), EMISSION_MAX) * EMISSION_SCALE * float(weight) + 0.5);
+        for (uint i = 0; i < 3; i++) atomicAdd(surfelSums.words[base + 7 + i], e[i]);
+    }
+}
+
+// The triangle's corners in cells of a cascade.
+vec3 cornerOf(VolumeMap map, uvec2 triangle, uint i) {
+    vec3 p = toWorld(draws.draws[triangle.x].instance, loadPosition(indices.indices[triangle.y + i]));
+    return worldToVolume(map, p) * float(params.voxel_dim);
+}
+
+// Clears the parts whose middle lies in a hole of an alpha mask. If no part is covered, the triangle's middle decides. Corners in
+// cells. The weight is 0 if nothing is left.
+void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverage coverage) {
+    Material m = materials.materials[draws.draws[triangle.x].material];
+    if (m.alpha_cutoff <= 0.0) return;
+    VertexAttributes v[3];
+    vec2 p[3];
+    for (int i = 0; i < 3; i++) {
+        v[i] = loadAttributes(indices.indices[triangle.y + i]);
+        p[i] = 8.0 * lateralOf(corner[i] - vec3(cell), axis);
+    }
+    mat2 across = mat2(p[1] - p[0], p[2] - p[0]);
+    if (abs(determinant(across)) < 1e-6) return;
+    // Change of texture coordinates and vertex alpha from part to part.
+    mat2x4 step = mat2x4(v[1].uv - v[0].uv, v[2].uv - v[0].uv) * inverse(across);
+    vec2 alpha_step = vec2(v[1].color.a - v[0].color.a, v[2].color.a - v[0].color.a) * inverse(across);
+    Gradient g = Gradient(step[0], step[1]);
+    Place middle = Place((v[0].uv + v[1].uv + v[2].uv) / 3.0, vec4((v[0].color.a + v[1].color.a + v[2].color.a) / 3.0));
+    uint before = bitCount(coverage.mask.x) + bitCount(coverage.mask.y);
+    if (before == 0 && baseColor(m, middle, g).a < m.alpha_cutoff) coverage.weight = 0;
+    for (int word = 0; word < 2; word++) {
+        for (uint left = coverage.mask[word]; left != 0; left &= left - 1) {
+            int bit = findLSB(left);
+            vec2 at = vec2(bit & 7, 4 * word + (bit >> 3)) + 0.5;
+            Place part = Place(v[0].uv + step * (at - p[0]), vec4(v[0].color.a + dot(alpha_step, at - p[0])));
+            if (baseColor(m, part, g).a < m.alpha_cutoff) coverage.mask[word] &= ~(1u << bit);
+        }
+    }
+    uint after = bitCount(coverage.mask.x) + bitCount(coverage.mask.y);
+    if (before > 0) coverage.weight = after > 0 ? max(coverage.weight * after / before, 1u) : 0;
+}
+
+// Coverage of a stored cell by the triangle of a fragment. Computed here and not where fragments are made, so that the whole GPU
+// takes part.
+Coverage fragmentCoverage(uvec2 triangle, ivec3 stored, uint axis, float offset) {
+    if (triangle == NO_TRIANGLE) return fullCoverage(offset);
+    VolumeMap map = volume.maps[cascadeOf(stored)];
+    ivec3 cell = ivec3(cellCentre(stored) * float(params.voxel_dim));
+    vec3 corner[3] = vec3[3](cornerOf(map, triangle, 0), cornerOf(map, triangle, 1), cornerOf(map, triangle, 2));
+    Coverage coverage = triangleCoverage(corner[0], corner[1], corner[2], cell, axis, offset);
+    cutOut(triangle, corner, cell, axis, coverage);
+    return coverage;
+}
+
+void main() {
+    uint count = min(voxelCounter.fragments, voxelFragments.list.length());
+    uint share = (count + SHARES - 1) / SHARES;
+    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    for (uint t = gl_GlobalInvocationID.x; t < share * SHARES; t += stride) {
+        uint i = t % SHARES * share + t / SHARES;
+        if (i >= count) continue;
+        uvec4 fragment = voxelFragments.list[i];
+        ivec3 stored = unpackCell(fragment.x);
+        uint found = foundAtStored(stored);
+        vec3 normal = unpackDirection(fragment.z);
+        uint axis = axisOf(normal);
+        if (found == 0) {
+            atomicAdd(voxelCounter.overflow, 1);
+            continue;
+        }
+        uvec2 triangle = voxelTriangles.list[i];
+        Coverage coverage = fragmentCoverage(triangle, stored, axis, unpackOffset(fragment.z));
+        if (coverage.weight == 0) continue;
+        uint side = sideOf(normal, axis), surfel = surfelOf(found, axis), plane = surfelBase(surfel);
+        merge(sideBase(surfel, side), unpackColor(fragment.y), normal, coverage.offset, fragment.w, coverage.weight);
+        if (SIDES == 1) continue; // only sides have planes
+        // The offsets of points and samples are unknown.
+        if (triangle != NO_TRIANGLE) mergeFrontLayer(frontLayerWord(plane, side), side, coverage);
+        for (uint k = 0; k < 2; k++) {
+            uint word = coverageMaskWord(plane, side) + k;
+            if ((surfelData(word) & coverage.mask[k]) != coverage.mask[k]) atomicOr(surfels.quads[word >> 2][word & 3u], coverage.mask[k]);
+        }
+    }
+}

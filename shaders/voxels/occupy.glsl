@@ -1,0 +1,16 @@
+// Notes that a cell of a stored brick has surfaces along an axis.
+#ifndef OCCUPY_GLSL
+#define OCCUPY_GLSL
+#include "voxels/bricks.glsl"
+
+void occupy(ivec3 stored, uint axis) {
+    int cascade = cascadeOf(stored);
+    ivec3 cell = cellOfStored(stored, cascade);
+    uvec4 block = voxelBlocks.list[blockNumber(cell, cascade)];
+    uint brick = placeOf(cell >> 2), place = placeOf(cell);
+    if (!isStored(block, brick)) return;
+    uint word = 2 * brickNumber(block, brick) + wordOf(place);
+    if ((voxelBricks.words[word][axis] & bitOf(place)) == 0) atomicOr(voxelBricks.words[word][axis], bitOf(place));
+}
+
+#endif

@@ -1,0 +1,74 @@
+// What the geometry shaders of the raster voxelizer share: attributes, and the projection of a triangle along the dominant
+// axis of its face normal, taken in cells (thesis, Section 4.1.1).
+#ifndef VOXELIZE_PROJECT_GLSL
+#define VOXELIZE_PROJECT_GLSL
+#include "voxels/raster.glsl"
+#include "common/math.glsl"
+#include "common/scene.glsl"
+
+layout(triangles) in;
+layout(triangle_strip, max_vertices = 4) out;
+
+layout(location = 0) in vec3 in_position[];
+layout(location = 1) in vec3 in_normal[];
+layout(location = 2) in vec4 in_uv[];
+layout(location = 3) flat in uint in_material[];
+layout(location = 4) flat in uint in_drawn[];
+layout(location = 5) in vec4 in_color[];
+
+layout(location = 0) out vec3 position;
+layout(location = 1) out vec3 normal;
+layout(location = 2) out vec4 uv;
+layout(location = 3) flat out uint material;
+layout(location = 4) flat out uint axis;
+layout(location = 5) flat out uvec2 triangle; // draw, first of its indices
+layout(location = 6) flat out vec3 corner[3]; // in cells
+layout(location = 9) out vec4 color;
+
+uint triangleAxis(VolumeMap map) {
+    vec3 face = cross(in_position[1] - in_position[0], in_position[2] - in_position[0]);
+    vec3 middle = (in_position[0] + in_position[1] + in_position[2]) / 3.0;
+    return dominantAxis(face * cellAxes(map, middle));
+}
+
+// What fragments say of their triangle.
+void nameTriangle() {
+    material = in_material[0];
+    triangle = uvec2(in_drawn[0], draws.draws[in_drawn[0]].first_index + 3 * gl_PrimitiveIDIn);
+}
+
+void emit(vec4 clip, vec3 b, uint flags, vec3 corners[3]) {
+    position = mat3(in_position[0], in_position[1], in_position[2]) * b;
+    normal = mat3(in_normal[0], in_normal[1], in_normal[2]) * b;
+    uv = mat3x4(in_uv[0], in_uv[1], in_uv[2]) * b;
+    color = mat3x4(in_color[0], in_color[1], in_color[2]) * b;
+    nameTriangle();
+    axis = flags;
+    corner = corners;
+    gl_Position = clip;
+    EmitVertex();
+}
+
+// A triangle as it is drawn.
+struct Projected {
+    uint along; // axis
+    vec4 clip[3];
+    vec3 raster[3]; // in [0,1], before warping
+    vec3 corners[3]; // in cells
+};
+
+// Whether any of it falls into cells that are not kept.
+bool projectTriangle(VolumeMap map, out Projected t) {
+    float dim = float(params.voxel_dim);
+    t.along = triangleAxis(map);
+    for (int i = 0; i < 3; i++) {
+        t.raster[i] = toRasterSpace(map, in_position[i]);
+        t.clip[i] = project(t.raster[i], t.along);
+        t.corners[i] = worldToVolume(map, in_position[i]) * dim;
+    }
+    vec3 lo = min(t.corners[0], min(t.corners[1], t.corners[2])), hi = max(t.corners[0], max(t.corners[1], t.corners[2]));
+    if (any(lessThan(hi, vec3(0.0))) || any(greaterThan(lo, vec3(dim)))) return false;
+    return !(isKept(map, lo) && isKept(map, hi));
+}
+
+#endif

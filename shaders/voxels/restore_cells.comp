@@ -1,0 +1,17 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Puts the cells of the kept surfels back, where they are now.
+#include "params.glsl"
+#include "volume/volume.glsl"
+#include "voxels/voxels.glsl"
+#include "voxels/occupy.glsl"
+#include "voxels/kept.glsl"
+
+layout(local_size_x = 128) in;
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= keptCounter.count) return;
+    uint word = voxelKept.words[i * KEPT_WORDS + SURFEL_CELL];
+    occupy(unpackCell(word), (word >> 30) - 1);
+}
