@@ -284,7 +284,7 @@ fn scrolling_ends_where_voxelizing_anew_does() {
                 let bytes = kept.buffer(buffer).unwrap();
                 u32::from_ne_bytes([0, 1, 2, 3].map(|b| bytes[4 * i + b]))
             };
-            let (slots_kept, fragments) = (word("keptCounter", 0), word("voxelCounter", FRAGMENTS));
+            let (slots_kept, fragments) = (word("scrolledCounter", 0), word("voxelCounter", FRAGMENTS));
             println!(
                 "{voxelizer}, {cascades} blocks, step {i}: {} voxels, {} anew, {same} alike; {} kept, {} fragments",
                 a.len(),

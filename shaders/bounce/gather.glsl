@@ -15,13 +15,13 @@ uint patternOf(uvec3 cell) {
 // Resampled importance sampling (Talbot et al. 2005): picks one of CANDIDATES emitter samples by unshadowed
 // contribution. light: the contribution of all of them to the mean radiance over the hemisphere. samples:
 // emitter samples of the side in all.
-EmitterPlace resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float samples, out vec3 light) {
+EmitterSample resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float samples, out vec3 light) {
     float sum = 0.0, picked = 0.0, xi = fract(shift.x + float(index & 0xffffu) * 0.6180339887);
-    EmitterPlace best;
+    EmitterSample best;
     best.cosine = 0.0;
     light = vec3(0.0);
     for (uint k = 0; k < uint(CANDIDATES); k++) {
-        EmitterPlace place = drawEmitter(p, evenPoint4(index * uint(CANDIDATES) + k, shift));
+        EmitterSample place = sampleEmitter(p, r4(index * uint(CANDIDATES) + k, shift));
         float cosine = dot(n, place.direction) / PI;
         float pdf = samples * place.by_area * place.distance * place.distance;
         if (cosine <= 0.0 || place.cosine == 0.0) continue;
@@ -44,7 +44,7 @@ EmitterPlace resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float sampl
 }
 
 int emitterRays() {
-    bool samples_emitters = BOUNCE_DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0;
+    bool samples_emitters = BOUNCE_SAMPLES_EMITTERS && SCENE_EMITS && emitters.count > 0;
     return samples_emitters ? params.bounce_emitter_rays : 0;
 }
 
@@ -58,7 +58,7 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
     float candidates = float(samples * CANDIDATES);
     float self = lamp && samples > 0 ? OWN_LAMP * 2.0 * o.reach : 0.0;
     for (int i = first; i < rays + samples; i += of) {
-        RayUse use = MEETS_ALL;
+        RayUse use = WHOLE_RAY;
         vec3 d, light;
         if (i < rays) {
             d = frame * cosineSample(r2(uint(i) * 64u + pattern));
@@ -66,7 +66,7 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
             if (samples > 0) use = RayUse(1e30, density, candidates, 1e30);
         } else {
             uint index = uint(i - rays) * 64u + pattern;
-            EmitterPlace place = resampleEmitter(o.surface, n, index, vec4(0.5), candidates, light);
+            EmitterSample place = resampleEmitter(o.surface, n, index, vec4(0.5), candidates, light);
             if (place.cosine == 0.0 || place.distance < self) continue;
             d = place.direction;
             use = rayTo(place, o.surface);

@@ -10,10 +10,10 @@ layout(std430) readonly buffer LastRadiance { uvec2 list[]; } lastRadiance;
 layout(std430) readonly buffer LastBricks { uvec4 words[]; } lastBricks;
 layout(std430) readonly buffer LastBlocks { uvec4 list[]; } lastBlocks;
 
-#define MET_PLANES lastSurfels
-#define MET_RADIANCE lastRadiance
-#define MET_BRICKS lastBricks
-#define MET_BLOCKS lastBlocks
+#define HIT_SURFELS lastSurfels
+#define HIT_RADIANCE lastRadiance
+#define HIT_BRICKS lastBricks
+#define HIT_BLOCKS lastBlocks
 #include "modules/bounce_trace.glsl"
 #include "surfels/trace.glsl"
 #include "bounce/gather.glsl"

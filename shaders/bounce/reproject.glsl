@@ -16,7 +16,7 @@ uvec2 reprojected(vec3 p, int cascade, uint axis, uint side) {
     ivec3 cell = min(ivec3(u * float(params.voxel_dim)), ivec3(params.voxel_dim - 1));
     uint found = foundAt(cell, cascade);
     if ((found >> axis & 1u) == 0) return uvec2(0);
-    return lastGathered.list[sideNumber(surfelOf(found, axis), side)];
+    return lastGathered.list[sideIndex(surfelOf(found, axis), side)];
 }
 
 #endif

@@ -22,7 +22,7 @@ uint phaseOf(uvec3 brick) {
 // has gathered in as many frames as there are phases, so that the first pictures have light.
 bool updateHistory(uint surfel, uint side, bool has_history) {
     if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return false;
-    uint index = sideNumber(surfel, side), phases = uint(params.bounce_frames);
+    uint index = sideIndex(surfel, side), phases = uint(params.bounce_frames);
     if (!has_history) {
         sideGathered.list[index] = uvec2(0);
         return false;

@@ -151,12 +151,12 @@ vec2 roughnessMetallic(Material m, Place at, Gradient g) {
     return rm;
 }
 
-uint dielectricNumber(Material m) {
+uint dielectricIndex(Material m) {
     return m.flags >> 8;
 }
 
 vec4 dielectric(Material m) {
-    return dielectrics.list[dielectricNumber(m)];
+    return dielectrics.list[dielectricIndex(m)];
 }
 
 // Tangent-space normal, not normalised. z is rebuilt, because two-channel formats (BC5) do not store it, and before x and

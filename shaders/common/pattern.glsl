@@ -12,7 +12,7 @@ vec2 r2(uint i) {
 }
 
 // Number of a pixel in its block of 8x8, 0 to 63: numbers that follow each other lie far apart.
-uint pixelNumber(uvec2 pixel) {
+uint patternIndex(uvec2 pixel) {
     uvec2 at = pixel & 7u;
     uint turn = (at.x ^ at.y) & 1u | (at.y & 1u) << 1 | ((at.x ^ at.y) & 2u) << 1 | (at.y & 2u) << 2 | ((at.x ^ at.y) & 4u) << 2 | (at.y & 4u) << 3;
     return bitfieldReverse(turn) >> 26;

@@ -31,8 +31,8 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     float along = params.cone_height * first_cell;
     bool to_emitter = use.range < 1e30;
     float range = to_emitter ? use.range : exactRange(o, d, tan_half);
-    if ((range > 0.0 || to_emitter) && meetsPlanes(o)) {
-        Met met = meetSurface(o, d, range);
+    if ((range > 0.0 || to_emitter) && hasSurfels(o)) {
+        SurfelHit met = traceSurfels(o, d, range);
         if (met.emitted > 0.5 && met.distance > use.lamp) met.light = vec4(0.0);
         if (to_emitter) return met.light;
         if (met.light.a > 0.0) {
@@ -66,7 +66,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
 }
 
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
-    return traceCone(o, d, tan_half, steps, MEETS_ALL);
+    return traceCone(o, d, tan_half, steps, WHOLE_RAY);
 }
 
 #endif

@@ -23,6 +23,6 @@ struct RayUse {
     float lamp; // emitters that lie farther hide nothing [m]
 };
 
-const RayUse MEETS_ALL = RayUse(1e30, 0.0, 0.0, 1e30);
+const RayUse WHOLE_RAY = RayUse(1e30, 0.0, 0.0, 1e30);
 
 #endif

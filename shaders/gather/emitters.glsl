@@ -32,12 +32,12 @@ float shareOfRay(RayUse use, vec3 light, float emitted, float distance) {
 }
 
 // Number `number` of points that fill the cube of four dimensions evenly, moved by a shift (Roberts 2018).
-vec4 evenPoint4(uint number, vec4 shift) {
+vec4 r4(uint number, vec4 shift) {
     return fract(shift + float(number & 0xffffu) * vec4(0.8566748838, 0.7338918566, 0.6287067210, 0.5385972572));
 }
 
 // A ray to a place.
-RayUse rayTo(EmitterPlace place, vec3 from) {
+RayUse rayTo(EmitterSample place, vec3 from) {
     float voxel;
     vec3 dir, p = from + place.distance * place.direction;
     cellAlong(volume.maps[cascadeAt(p)], p, place.direction, voxel, dir);

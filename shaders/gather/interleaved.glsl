@@ -7,22 +7,22 @@
 #include "common/pattern.glsl"
 
 // Number of a point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
-uint pixelPointNumber(int i) {
-    return uint(i) * 64u + pixelNumber(uvec2(pixelCentre()));
+uint pointIndex(int i) {
+    return uint(i) * 64u + patternIndex(uvec2(pixelCentre()));
 }
 
 vec2 pixelPoint(int i) {
-    return r2(pixelPointNumber(i));
+    return r2(pointIndex(i));
 }
 
 // Other points in each block: what few directions cannot tell becomes noise and not a bias.
-uint blockNumber() {
+uint patternBlock() {
     uvec2 block = uvec2(pixelCentre()) >> 3;
     return block.x * 37u + block.y * 101u;
 }
 
 vec2 blockPoint(int i) {
-    return fract(pixelPoint(i) + r2(blockNumber()));
+    return fract(pixelPoint(i) + r2(patternBlock()));
 }
 
 float largest(vec3 v) {
@@ -49,7 +49,7 @@ struct SharedRange {
     float lobe;
 };
 
-EmitterLight lightOfPlace(EmitterPlace place, Surface s, vec3 face, vec3 v, float rays, float lobe, float drawn, SharedRange range) {
+EmitterLight emitterSampleLight(EmitterSample place, Surface s, vec3 face, vec3 v, float rays, float lobe, float drawn, SharedRange range) {
     float cosine = dot(s.normal, place.direction);
     if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0) return EmitterLight(vec3(0.0), vec3(0.0));
     float found = drawn * place.by_area * place.distance * place.distance;
@@ -62,17 +62,17 @@ EmitterLight lightOfPlace(EmitterPlace place, Surface s, vec3 face, vec3 v, floa
 }
 
 // A place of some that are drawn, and what it brings for all of them.
-EmitterPlace bestPlace(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe, float drawn, float tan_half, float tan_lobe, out EmitterLight light) {
+EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe, float drawn, float tan_half, float tan_lobe, out EmitterLight light) {
     float sum = 0.0, own = 0.0;
-    EmitterPlace best;
+    EmitterSample best;
     best.cosine = 0.0;
     light = EmitterLight(vec3(0.0), vec3(0.0));
-    vec4 shift = evenPoint4(blockNumber(), vec4(0.5));
-    float choice = fract(shift.x + float(pixelPointNumber(number) & 0xffffu) * 0.6180339887);
+    vec4 shift = r4(patternBlock(), vec4(0.5));
+    float choice = fract(shift.x + float(pointIndex(number) & 0xffffu) * 0.6180339887);
     for (int k = 0; k < CANDIDATES; k++) {
-        EmitterPlace place = drawEmitter(o.surface, evenPoint4(pixelPointNumber(number * CANDIDATES + k), shift));
+        EmitterSample place = sampleEmitter(o.surface, r4(pointIndex(number * CANDIDATES + k), shift));
         SharedRange range = SharedRange(exactRange(o, place.direction, tan_half), exactRange(o, place.direction, tan_lobe));
-        EmitterLight found = lightOfPlace(place, s, face, v, rays, lobe, drawn, range);
+        EmitterLight found = emitterSampleLight(place, s, face, v, rays, lobe, drawn, range);
         float weight = luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
         if (weight <= 0.0) continue;
         sum += weight;
@@ -98,7 +98,7 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     mat3 frame = frameOf(s.normal);
     float tan_half = tan(radians(0.5 * params.cone_aperture)), tan_lobe = 0.25 * ggxAlpha(s.roughness);
     int rays = gatherShare.rays, lobe = specularRays(s, v);
-    int drawn = DRAWS_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
+    int drawn = SAMPLES_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
     float candidates = float(drawn * CANDIDATES);
     // What each of them stands for.
     float spread = PI / float(max(rays, 1)), lobe_spread = lobeSolidAngle(s) / float(max(lobe, 1));
@@ -107,10 +107,10 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     for (int i = gatherShare.first; i < rays + lobe + drawn; i += gatherShare.of) {
         bool mirrors = i >= rays && i < rays + lobe, is_drawn = i >= rays + lobe;
         vec3 d, weight = vec3(0.0);
-        RayUse use = MEETS_ALL;
+        RayUse use = WHOLE_RAY;
         EmitterLight light = EmitterLight(vec3(0.0), vec3(0.0));
         if (is_drawn) {
-            EmitterPlace place = bestPlace(o, s, face, v, i - rays - lobe, float(rays), float(lobe), candidates, tan_half, tan_lobe, light);
+            EmitterSample place = resampleEmitter(o, s, face, v, i - rays - lobe, float(rays), float(lobe), candidates, tan_half, tan_lobe, light);
             if (place.cosine == 0.0) continue;
             d = place.direction;
             use = rayTo(place, o.surface);

@@ -19,6 +19,6 @@ void main() {
     vec2 rm = roughnessMetallic(m, placeHere(), g);
     gbufferBase = vec4(baseColor(m, placeHere(), g).rgb, rm.x);
     gbufferNormals = vec4(packNormal(shadingNormal(m, g, face)), packNormal(face));
-    gbufferEmission = vec4(emission(m, placeHere(), g), packMetallic(rm.y, dielectricNumber(m)));
+    gbufferEmission = vec4(emission(m, placeHere(), g), packMetallic(rm.y, dielectricIndex(m)));
     gbufferDistance = length(to_viewer);
 }

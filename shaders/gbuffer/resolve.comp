@@ -65,6 +65,6 @@ void main() {
     vec2 rm = roughnessMetallic(m, place, g);
     imageStore(gbufferBase, pixel, vec4(baseColor(m, place, g).rgb, rm.x));
     imageStore(gbufferNormals, pixel, vec4(packNormal(mappedNormal(m, place, g, normal, tangent, face)), packNormal(face)));
-    imageStore(gbufferEmission, pixel, vec4(emission(m, place, g), packMetallic(rm.y, dielectricNumber(m))));
+    imageStore(gbufferEmission, pixel, vec4(emission(m, place, g), packMetallic(rm.y, dielectricIndex(m))));
     imageStore(gbufferDistance, pixel, vec4(depth * length(ray)));
 }

@@ -44,7 +44,7 @@ void main() {
     beginRegion();
     for (uint i = gl_LocalInvocationIndex; i < REGION_PIXELS; i += REGION_THREADS) {
         ivec2 pixel = regionPixel(i);
-        uint index = pixelNumber(uvec2(pixel)), mode = GATHER_NOTHING;
+        uint index = patternIndex(uvec2(pixel)), mode = GATHER_NOTHING;
         if (all(lessThan(pixel, ivec2(camera.size)))) mode = updateHistory(pixel, index);
         enqueue(i, mode, index);
     }

@@ -36,7 +36,7 @@ void main() {
     for (uint i = 0; i < surfelCount(found) * SIDES; i++) {
         uint side = i % SIDES;
         Side s = sideOfSurfel(surfel + i / SIDES, side);
-        uvec2 packed = sideRadiance.list[sideNumber(surfel, i)];
+        uvec2 packed = sideRadiance.list[sideIndex(surfel, i)];
         vec3 radiance = lightOf(packed);
         if (!WARPED && params.levels_emit == 0 && emitters.count > 0) radiance *= 1.0 - timesOf(packed);
         // Opacity is the projected area: the coverage along the axis times the cosine ratio of the direction and the axis.

@@ -16,7 +16,7 @@ void main() {
     bool all = volume.signature != params.voxel_signature;
     if (!all && !isStored(block, brick % 64)) return;
     for (uint word = 0; word < 2; word++) {
-        uint cells = all ? ~0u : occupiedCells(voxelBricks.words[2 * brickNumber(block, brick % 64) + word]);
+        uint cells = all ? ~0u : occupiedCells(voxelBricks.words[2 * brickIndex(block, brick % 64) + word]);
         for (; cells != 0; cells &= cells - 1) {
             int cascade;
             ivec3 cell = cellAt(brick, 32 * word + findLSB(cells), cascade);

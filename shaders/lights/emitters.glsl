@@ -27,7 +27,7 @@ float luminance(vec3 c) {
 }
 
 // A place on an emitter as it is seen from somewhere.
-struct EmitterPlace {
+struct EmitterSample {
     vec3 direction; // to it
     float distance; // m
     vec3 radiance;
@@ -45,7 +45,7 @@ bool isOuter(uint sides, bool front) {
 }
 
 // u: four numbers in [0, 1). There is an emitter.
-EmitterPlace drawEmitter(vec3 from, vec4 u) {
+EmitterSample sampleEmitter(vec3 from, vec4 u) {
     uint index = min(uint(u.x * float(emitters.count)), emitters.count - 1);
     if (u.y >= emitters.list[index].chance) index = emitters.list[index].other;
     Emitter e = emitters.list[index];
@@ -55,7 +55,7 @@ EmitterPlace drawEmitter(vec3 from, vec4 u) {
     vec3 d = to / max(distance, 1e-20), n = cross(e.to_b, e.to_c);
     float cosine = dot(n, d) / max(length(n), 1e-20);
     bool seen = distance > 0.0 && abs(cosine) > 1e-6 && isOuter(e.sides, cosine < 0.0);
-    return EmitterPlace(d, distance, e.radiance, seen ? abs(cosine) : 0.0, e.density);
+    return EmitterSample(d, distance, e.radiance, seen ? abs(cosine) : 0.0, e.density);
 }
 
 // Of a place that a ray has hit. flags: the number of the first part and 1, and from bit 24 on the parts of an edge.

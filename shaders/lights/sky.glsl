@@ -8,7 +8,7 @@
 uniform sampler2DArray skyTexture; // layer 0: without the sun that is among the lights; the last layer: with it
 
 // Where the picture has direction d (unit length).
-vec2 skyPlace(vec3 d) {
+vec2 skyDirection(vec3 d) {
     float azimuth = d.xz == vec2(0.0) ? 0.0 : atan(d.x, -d.z); // not defined straight up and down
     return vec2(0.5 + azimuth / (2.0 * PI) + sceneInfo.sky_turn, acos(clamp(d.y, -1.0, 1.0)) / PI);
 }
@@ -25,7 +25,7 @@ float skyLevel(vec3 d, float spread) {
 vec3 skyLookup(vec3 d, float spread, int layer) {
     if (sceneInfo.sky_turn < 0.0) return sceneInfo.sky;
     float level = skyLevel(d, spread);
-    vec2 place = skyPlace(d);
+    vec2 place = skyDirection(d);
     // It goes round, but ends above and below. Not from textureSize: Mesa's software device takes one invocation's level for all.
     float margin = 0.5 / float(max(textureSize(skyTexture, 0).y >> int(ceil(level)), 1));
     place.y = clamp(place.y, margin, 1.0 - margin);

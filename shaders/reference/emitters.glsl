@@ -19,7 +19,7 @@ LobeLight emitterLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 rays, inout
     LobeLight none = LobeLight(vec3(0.0), vec3(0.0));
     if (emitters.count == 0) return none;
     vec3 from = offsetPoint(p, face);
-    EmitterPlace place = drawEmitter(from, next4(random));
+    EmitterSample place = sampleEmitter(from, next4(random));
     float cosine = dot(s.normal, place.direction);
     if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0) return none;
     Ray ray = Ray(from, place.direction, 1e30);

@@ -61,7 +61,7 @@ SkyShine skyTexel(uvec2 at, float polar) {
 // What a ray along d that leaves the scene meets.
 SkyShine skyShine(vec3 d) {
     uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
-    vec2 place = skyPlace(d);
+    vec2 place = skyDirection(d);
     return skyTexel(min(uvec2(vec2(fract(place.x), place.y) * vec2(size)), size - 1u), place.y * PI);
 }
 

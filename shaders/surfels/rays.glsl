@@ -24,7 +24,7 @@ vec2 rayPoint(int i, vec2 shift) {
 // The first surface that a straight ray hits: crossings of cells are exact (Amanatides and Woo 1987), and so are the planes of
 // their surfaces. Returns radiance and 1, or 0 if the ray misses.
 vec4 traceStraight(ConeOrigin o, vec3 d, RayUse use) {
-    Met met = meetSurface(o, d, use.range);
+    SurfelHit met = traceSurfels(o, d, use.range);
     if (met.emitted > 0.5 && met.distance > use.lamp) met.light = vec4(0.0);
     met.light.rgb *= shareOfRay(use, met.light.rgb, met.emitted, met.distance);
     CONE_SAMPLED(0, met.distance, ConeSample(o.surface + met.distance * d, 0.0, 0.0, 2.0 * o.reach, 2.0 * o.reach, 0.0, met.light, false, true), met.light.a, 1.0 - met.light.a);

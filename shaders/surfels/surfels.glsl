@@ -89,7 +89,7 @@ vec3 planeMiddle(uint base, uint side, uint axis) {
 }
 
 // Where a side's light is.
-uint sideNumber(uint surfel, uint side) {
+uint sideIndex(uint surfel, uint side) {
     return surfel * SIDES + side;
 }
 

@@ -6,17 +6,17 @@
 #include "voxels/bricks.glsl"
 
 // What rays meet, unless the shader has other names for it.
-#ifndef MET_PLANES
-#define MET_PLANES surfels
-#define MET_RADIANCE sideRadiance
-#define MET_BRICKS voxelBricks
-#define MET_BLOCKS voxelBlocks
+#ifndef HIT_SURFELS
+#define HIT_SURFELS surfels
+#define HIT_RADIANCE sideRadiance
+#define HIT_BRICKS voxelBricks
+#define HIT_BLOCKS voxelBlocks
 #endif
 
 // How far planes reach beyond their cell, so that rays find no gaps where neighbours lean differently [voxels].
-const float NEAR_MARGIN = 0.05;
+const float PLANE_MARGIN = 0.05;
 
-struct Met {
+struct SurfelHit {
     float distance; // of what is met, or so far nothing is [m]
     vec4 light; // radiance of what is met, and 1; or 0
     float emitted; // share of it that is emitted by what is drawn as an emitter
@@ -24,23 +24,23 @@ struct Met {
 
 // Which surface of a cell a ray from `at` along `dir` meets between `enter` and `leave`: its distance, less than `end`, or `end`
 // [cells]. `facing`: the normal of the surface that the ray leaves. `met`: the number of the side that it meets.
-float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float enter, float leave, float end, out uint met) {
+float intersectCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float enter, float leave, float end, out uint met) {
     uint surfel = firstSurfel(found), met_behind = 0;
     float nearest = end, behind = end;
     met = 0;
     for (uint axis = 0; axis < 3; axis++) {
         if ((found >> axis & 1u) == 0) continue;
-        uint quad = surfelBase(surfel) >> 2, number = sideNumber(surfel++, 0);
-        uvec4 first = MET_PLANES.quads[quad];
+        uint quad = surfelBase(surfel) >> 2, number = sideIndex(surfel++, 0);
+        uvec4 first = HIT_SURFELS.quads[quad];
         uint own = first.x >> 30;
         for (uint side = 0; side < SIDES; side++) {
             if ((own >> side & 1u) == 0) continue;
             Plane plane = unpackPlane(first[side], axis);
             vec3 middle = vec3(cell) + 0.5 + plane.offset * axisVector(axis);
             float slope = dot(plane.normal, dir), t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
-            if (t < 0.0 || t < enter - NEAR_MARGIN || t > leave + NEAR_MARGIN || t >= nearest) continue;
+            if (t < 0.0 || t < enter - PLANE_MARGIN || t > leave + PLANE_MARGIN || t >= nearest) continue;
             vec2 place = lateralOf(at + t * dir - vec3(cell), axis);
-            if (!isCovered(SIDES == 1 ? first.yz : side == 0 ? first.zw : MET_PLANES.quads[quad + 1].xy, place)) continue;
+            if (!isCovered(SIDES == 1 ? first.yz : side == 0 ? first.zw : HIT_SURFELS.quads[quad + 1].xy, place)) continue;
             if ((side == 0) == (slope < 0.0)) {
                 nearest = t;
                 met = number + side;
@@ -48,7 +48,7 @@ float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float ent
             }
             // From behind: where the other side has a surface, back to back, the ray meets that one. Nor the back of the surface
             // that is left: within a voxel or two its plane may lie before it.
-            if (t >= behind || own == 3 && isCovered(side == 0 ? MET_PLANES.quads[quad + 1].xy : first.zw, place)) continue;
+            if (t >= behind || own == 3 && isCovered(side == 0 ? HIT_SURFELS.quads[quad + 1].xy : first.zw, place)) continue;
             if (t < 1.5 && dot(plane.normal, facing) * slope > 0.0) continue;
             behind = t;
             met_behind = number + 1 - side;
@@ -61,13 +61,13 @@ float meetCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, float ent
 }
 
 // Whether the voxels around have planes that rays can meet: straight rays are not straight in curved cells.
-bool meetsPlanes(ConeOrigin o) {
+bool hasSurfels(ConeOrigin o) {
     return !CURVED || volume.maps[o.cascade].curved == 0;
 }
 
 // The first surface between `from` and `range` [m] along d that a cascade has. Cells one by one (Amanatides and Woo 1987), empty
 // bricks and blocks at once, and eights of cells.
-Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
+SurfelHit traceCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
     VolumeMap map = volume.maps[cascade];
     float voxel;
     vec3 dir;
@@ -81,15 +81,15 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
     uvec4 bricks = uvec4(0), cells = uvec4(0);
     uint last_block = ~0u, last = ~0u;
     for (int i = 0; i < 3 * params.voxel_dim && enter < end && inGrid(cell); i++) {
-        uint block = blockNumber(cell, cascade);
-        if (block != last_block) bricks = MET_BLOCKS.list[block];
+        uint block = blockIndex(cell, cascade);
+        if (block != last_block) bricks = HIT_BLOCKS.list[block];
         last_block = block;
         uint brick = placeOf(cell >> 2), stored = bricks[wordOf(brick)], bit = 0;
         // The edge of what is crossed at once, and where it begins; its borders that are crossed next.
         int edge = bricks.xy == uvec2(0) ? 16 : 4;
         if ((stored & bitOf(brick)) != 0) {
-            uint place = placeOf(cell), number = 2 * brickNumber(bricks, brick) + wordOf(place);
-            if (number != last) cells = MET_BRICKS.words[number];
+            uint place = placeOf(cell), number = 2 * brickIndex(bricks, brick) + wordOf(place);
+            if (number != last) cells = HIT_BRICKS.words[number];
             last = number;
             uint occupied = occupiedCells(cells);
             bit = occupied & bitOf(place);
@@ -100,10 +100,10 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
         float leave = min(borders.x, min(borders.y, borders.z));
         if (bit != 0) {
             uint met;
-            float t = meetCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, met);
+            float t = intersectCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, met);
             if (t < end) {
-                uvec2 packed = MET_RADIANCE.list[met];
-                return Met(t * voxel, vec4(lightOf(packed), 1.0), timesOf(packed));
+                uvec2 packed = HIT_RADIANCE.list[met];
+                return SurfelHit(t * voxel, vec4(lightOf(packed), 1.0), timesOf(packed));
             }
         }
         bvec3 crossed = equal(borders, vec3(leave));
@@ -111,14 +111,14 @@ Met meetInCascade(int cascade, ConeOrigin o, vec3 d, float from, float range) {
         cell = mix(next, mix(first - 1, first + edge, ahead), crossed);
         enter = leave;
     }
-    return Met(min(enter, end) * voxel, vec4(0.0), 0.0); // what lies behind the grid's border is not known here
+    return SurfelHit(min(enter, end) * voxel, vec4(0.0), 0.0); // what lies behind the grid's border is not known here
 }
 
 // The first surface within `range` [m] along d, from one cascade into the next coarser.
-Met meetSurface(ConeOrigin o, vec3 d, float range) {
-    Met met = Met(0.0, vec4(0.0), 0.0);
+SurfelHit traceSurfels(ConeOrigin o, vec3 d, float range) {
+    SurfelHit met = SurfelHit(0.0, vec4(0.0), 0.0);
     for (int k = o.cascade; k < CASCADE_COUNT && met.light.a == 0.0 && met.distance < range; k++)
-        met = meetInCascade(k, o, d, met.distance, range);
+        met = traceCascade(k, o, d, met.distance, range);
     return met;
 }
 

@@ -39,7 +39,7 @@ VolumeMap boxAround(vec3 p, vec3 size, VolumeMap g) {
 
 // The cells whose content of the last frame is still right: none unless scrolling, and none where anything else changed.
 VolumeMap keep(VolumeMap g, VolumeMap last, bool still) {
-    g.shift = g.kept_from = g.kept_to = ivec3(0);
+    g.shift = g.history_from = g.history_to = ivec3(0);
     if (!still || g.curved != 0 || last.curved != 0 || any(notEqual(g.cell, last.cell))) return g;
     vec3 cells = (g.minimum - last.minimum) / g.cell;
     // Warped cells do not become each other; and what moves by less than cells does so under its voxels.
@@ -47,8 +47,8 @@ VolumeMap keep(VolumeMap g, VolumeMap last, bool still) {
     if (any(greaterThan(abs(cells), vec3(params.voxel_dim))) || any(greaterThan(abs(cells - round(cells)), vec3(1e-3)))) return g;
     g.shift = ivec3(round(cells));
     g.minimum = last.minimum + vec3(g.shift) * g.cell; // so that what was neglected adds up, and is seen in the end
-    g.kept_from = max(ivec3(0), -g.shift);
-    g.kept_to = params.voxel_dim - max(ivec3(0), g.shift);
+    g.history_from = max(ivec3(0), -g.shift);
+    g.history_to = params.voxel_dim - max(ivec3(0), g.shift);
     return g;
 }
 
@@ -64,7 +64,7 @@ void main() {
     g.curved = 0;
     g.eye = g.seen_from = g.axis_x = g.axis_y = g.axis_z = vec3(0.0);
     g.range = vec2(0.0);
-    g.shift = g.kept_from = g.kept_to = ivec3(0);
+    g.shift = g.history_from = g.history_to = ivec3(0);
     g.last = coarsestLevel(false);
 #ifdef VOLUME_FOLLOWS
     vec3 position = followedPosition();

@@ -19,8 +19,8 @@ struct VolumeMap {
     vec3 axis_z; // view direction
     vec2 range; // near, far [m]
     vec3 seen_from; // the camera, which `eye` follows in steps; where nothing follows, 0
-    ivec3 kept_from; // cells from here ...
-    ivec3 kept_to; // ... to before here hold what they held last frame, wherever they were then
+    ivec3 history_from; // cells from here ...
+    ivec3 history_to; // ... to before here hold what they held last frame, wherever they were then
     ivec3 shift; // in cells, since last frame
 };
 
@@ -76,7 +76,7 @@ float cellReach(VolumeMap map, vec3 p, vec3 n) {
     return 0.5 * (a.x + a.y + a.z);
 }
 
-// CASCADE_COUNT, cascadeAt, storedCell, cascadeOf, isKept.
+// CASCADE_COUNT, cascadeAt, storedCell, cascadeOf, isReprojected.
 #include "modules/clipmap.glsl"
 
 // The middle of a stored cell, in its cascade's coordinates.

@@ -15,7 +15,7 @@ uint blocksAlong() {
     return (uint(params.voxel_dim) + 15u) / 16u;
 }
 
-uint blockNumber(ivec3 cell, int cascade) {
+uint blockIndex(ivec3 cell, int cascade) {
     uvec3 at = uvec3(cell) >> 4;
     uint edge = blocksAlong();
     return at.x + edge * (at.y + edge * (at.z + edge * uint(cascade)));
@@ -45,7 +45,7 @@ bool isStored(uvec4 block, uint brick) {
 }
 
 // The number of a block's brick.
-uint brickNumber(uvec4 block, uint brick) {
+uint brickIndex(uvec4 block, uint brick) {
     uint before = bitCount(block[wordOf(brick)] & (bitOf(brick) - 1u));
     return block.z + before + (wordOf(brick) == 0 ? 0 : bitCount(block.x));
 }
@@ -78,9 +78,9 @@ uint foundIn(uvec4 word, uint bit) {
 }
 
 uint foundAt(ivec3 cell, int cascade) {
-    uvec4 block = voxelBlocks.list[blockNumber(cell, cascade)];
+    uvec4 block = voxelBlocks.list[blockIndex(cell, cascade)];
     uint brick = placeOf(cell >> 2), place = placeOf(cell);
-    return isStored(block, brick) ? foundIn(voxelBricks.words[2 * brickNumber(block, brick) + wordOf(place)], bitOf(place)) : 0;
+    return isStored(block, brick) ? foundIn(voxelBricks.words[2 * brickIndex(block, brick) + wordOf(place)], bitOf(place)) : 0;
 }
 
 // Of a cell as textures hold it.

@@ -6,10 +6,10 @@
 void occupy(ivec3 stored, uint axis) {
     int cascade = cascadeOf(stored);
     ivec3 cell = cellOfStored(stored, cascade);
-    uvec4 block = voxelBlocks.list[blockNumber(cell, cascade)];
+    uvec4 block = voxelBlocks.list[blockIndex(cell, cascade)];
     uint brick = placeOf(cell >> 2), place = placeOf(cell);
     if (!isStored(block, brick)) return;
-    uint word = 2 * brickNumber(block, brick) + wordOf(place);
+    uint word = 2 * brickIndex(block, brick) + wordOf(place);
     if ((voxelBricks.words[word][axis] & bitOf(place)) == 0) atomicOr(voxelBricks.words[word][axis], bitOf(place));
 }
 

@@ -45,7 +45,7 @@ CellRange rangeOf(VolumeMap map, VoxelPiece p) {
     ivec3 last = ivec3(params.voxel_dim - 1);
     CellRange r = CellRange(ivec3(floor(clamp(low, -float(params.voxel_dim), 2.0 * float(params.voxel_dim)))),
         ivec3(floor(clamp(high, -float(params.voxel_dim), 2.0 * float(params.voxel_dim)))));
-    if (isKept(map, low) && isKept(map, high)) r.to = r.from - 1; // nothing is new
+    if (isReprojected(map, low) && isReprojected(map, high)) r.to = r.from - 1; // nothing is new
     ivec3 from = max(r.from, ivec3(0)), to = min(r.to, last);
     if (isFlat(map)) return CellRange(from, to);
     return CellRange(ivec3(r.from.x, from.yz), ivec3(min(r.to.x, r.from.x + last.x), to.yz));
@@ -61,7 +61,7 @@ bool touches(VolumeMap map, VoxelPiece p, ivec3 first, ivec3 edge, float margin)
 // Stores what a triangle leaves in a cell: its surface at the point that is nearest to the cell's middle, over the footprint of a cell.
 void storeCell(VolumeMap map, VoxelPiece p, ivec3 cell) {
     if (!isFlat(map)) cell.x = (cell.x + params.voxel_dim) % params.voxel_dim;
-    if (isKept(map, vec3(cell) + 0.5)) return;
+    if (isReprojected(map, vec3(cell) + 0.5)) return;
     uvec2 t = triangles.list[p.triangle];
     Draw d = draws.draws[t.x];
     uvec3 vertex = uvec3(indices.indices[t.y], indices.indices[t.y + 1], indices.indices[t.y + 2]);

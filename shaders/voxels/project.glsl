@@ -68,7 +68,7 @@ bool projectTriangle(VolumeMap map, out Projected t) {
     }
     vec3 lo = min(t.corners[0], min(t.corners[1], t.corners[2])), hi = max(t.corners[0], max(t.corners[1], t.corners[2]));
     if (any(lessThan(hi, vec3(0.0))) || any(greaterThan(lo, vec3(dim)))) return false;
-    return !(isKept(map, lo) && isKept(map, hi));
+    return !(isReprojected(map, lo) && isReprojected(map, hi));
 }
 
 #endif

@@ -8,14 +8,14 @@
 
 // Notes that a cell's brick has a surface. Most invocations find that another has said so.
 void store(ivec3 cell, int cascade) {
-    uint block = blockNumber(cell, cascade), brick = placeOf(cell >> 2);
+    uint block = blockIndex(cell, cascade), brick = placeOf(cell >> 2);
     if ((voxelBlocks.list[block][wordOf(brick)] & bitOf(brick)) == 0) atomicOr(voxelBlocks.list[block][wordOf(brick)], bitOf(brick));
 }
 
 // color in [0,1], normal unit, emission radiance. `cascade`: of the volume. `at`: a point of the surface near the cell's
 // middle, in cells. `triangle`: that may cover a part of the cell alone.
 void storeVoxel(ivec3 cell, int cascade, vec3 color, vec3 normal, vec3 emission, vec3 at, uvec2 triangle) {
-    if (isKept(volume.maps[cascade], vec3(cell) + 0.5)) return;
+    if (isReprojected(volume.maps[cascade], vec3(cell) + 0.5)) return;
     ivec3 stored = storedCell(cell, cascade);
     uint packed = packDirection(normal), axis = axisOf(unpackDirection(packed)); // as who reads it will
     packed |= packOffset(at[axis] - float(cell[axis]) - 0.5);

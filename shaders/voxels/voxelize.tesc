@@ -30,7 +30,7 @@ bool outside(VolumeMap map, vec3 a, vec3 b, vec3 c) {
     if (whole >= 0) return whole == 1;
     vec3 u = worldToVolume(map, a), v = worldToVolume(map, b), w = worldToVolume(map, c);
     vec3 low = min(u, min(v, w)), high = max(u, max(v, w));
-    if (isKept(map, low * float(params.voxel_dim)) && isKept(map, high * float(params.voxel_dim))) return true;
+    if (isReprojected(map, low * float(params.voxel_dim)) && isReprojected(map, high * float(params.voxel_dim))) return true;
     return any(lessThan(high, vec3(0.0))) || any(greaterThan(low, vec3(1.0)));
 }
 

@@ -2,7 +2,7 @@
 #include "modules/lookup.glsl"
 #include "surfels/rays.glsl"
 
-#define BOUNCE_DRAWS_EMITTERS (!WARPED && !CURVED) // others know no emitters
+#define BOUNCE_SAMPLES_EMITTERS (!WARPED && !CURVED) // others know no emitters
 
 vec4 traceBounce(ConeOrigin o, vec3 d, RayUse use) {
     return traceVoxels(o, d, use);

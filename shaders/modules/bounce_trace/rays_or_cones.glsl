@@ -3,7 +3,7 @@
 #include "modules/cone.glsl"
 #include "surfels/rays.glsl"
 
-#define BOUNCE_DRAWS_EMITTERS (!WARPED && !CURVED)
+#define BOUNCE_SAMPLES_EMITTERS (!WARPED && !CURVED)
 
 vec4 traceBounce(ConeOrigin o, vec3 d, RayUse use) {
     if (!WARPED && !CURVED) return traceStraight(o, d, use);

@@ -14,6 +14,6 @@ int cascadeOf(ivec3 stored) {
     return 0;
 }
 
-bool isKept(VolumeMap map, vec3 at) {
+bool isReprojected(VolumeMap map, vec3 at) {
     return false;
 }

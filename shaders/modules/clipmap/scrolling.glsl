@@ -5,6 +5,6 @@
 #include "volume/cascades.glsl"
 
 // Whether a place in cells is one whose content stays as it was.
-bool isKept(VolumeMap map, vec3 at) {
-    return SCROLLS && all(greaterThan(at, vec3(map.kept_from))) && all(lessThan(at, vec3(map.kept_to)));
+bool isReprojected(VolumeMap map, vec3 at) {
+    return SCROLLS && all(greaterThan(at, vec3(map.history_from))) && all(lessThan(at, vec3(map.history_to)));
 }

@@ -4,6 +4,6 @@ const bool SCROLLS = false;
 
 #include "volume/cascades.glsl"
 
-bool isKept(VolumeMap map, vec3 at) {
+bool isReprojected(VolumeMap map, vec3 at) {
     return false;
 }

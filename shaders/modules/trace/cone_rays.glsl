@@ -3,7 +3,7 @@
 #include "surfels/rays.glsl"
 #include "common/frame.glsl"
 
-#define DRAWS_EMITTERS false
+#define SAMPLES_EMITTERS false
 
 float exactRange(ConeOrigin o, vec3 d, float tan_half) {
     return 1e30;
@@ -17,7 +17,7 @@ vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     for (int i = 0; i < params.exact_rays; i++) {
         vec2 u = rayPoint(i, shift);
         float z = mix(1.0, least, u.x), r = sqrt(max(1.0 - z * z, 0.0)), angle = 6.28318530718 * u.y;
-        sum += traceVoxels(o, frame * vec3(r * cos(angle), r * sin(angle), z), MEETS_ALL);
+        sum += traceVoxels(o, frame * vec3(r * cos(angle), r * sin(angle), z), WHOLE_RAY);
     }
     return sum / float(params.exact_rays);
 }

@@ -12,7 +12,7 @@ vec4 gatherDiffuse(ConeOrigin o, vec3 n, vec3 face) {
     for (int i = 0; i < params.exact_rays; i++) {
         vec3 d = frame * cosineSample(rayPoint(i, shift));
         if (dot(d, face) <= 0.0) continue;
-        vec4 ray = traceVoxels(o, d, MEETS_ALL);
+        vec4 ray = traceVoxels(o, d, WHOLE_RAY);
         sum += vec4(coneRadiance(ray, d, PI / float(params.exact_rays)), 1.0 - ray.a);
     }
     return sum / float(params.exact_rays);
@@ -25,7 +25,7 @@ vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < params.exact_rays; i++) {
         LobeSample l = specularSample(s, face, v, rayPoint(i, shift));
-        if (l.weight != vec3(0.0)) sum += l.weight * coneRadiance(traceVoxels(o, l.direction, MEETS_ALL), l.direction, spread);
+        if (l.weight != vec3(0.0)) sum += l.weight * coneRadiance(traceVoxels(o, l.direction, WHOLE_RAY), l.direction, spread);
     }
     return sum / float(params.exact_rays);
 }

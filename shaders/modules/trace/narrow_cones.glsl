@@ -3,7 +3,7 @@
 #define NARROW_CONES true
 #include "modules/cone.glsl"
 
-#define DRAWS_EMITTERS (!WARPED && params.levels_emit == 0)
+#define SAMPLES_EMITTERS (!WARPED && params.levels_emit == 0)
 
 vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     return traceCone(o, d, tan_half, steps, use);

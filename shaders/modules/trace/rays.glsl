@@ -2,7 +2,7 @@
 #include "modules/lookup.glsl"
 #include "surfels/rays.glsl"
 
-#define DRAWS_EMITTERS (!WARPED && !CURVED) // others know no emitters
+#define SAMPLES_EMITTERS (!WARPED && !CURVED) // others know no emitters
 
 float exactRange(ConeOrigin o, vec3 d, float tan_half) {
     return 1e30;

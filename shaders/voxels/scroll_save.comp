@@ -4,7 +4,7 @@
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "surfels/surfels.glsl"
-#include "voxels/kept.glsl"
+#include "voxels/scrolled.glsl"
 
 layout(local_size_x = 128) in;
 
@@ -16,19 +16,19 @@ void main() {
         int cascade = cascadeOf(stored);
         VolumeMap map = volume.maps[cascade];
         ivec3 cell = cellOfStored(stored, cascade) - map.shift;
-        if (axis < 0 || !isKept(map, vec3(cell) + 0.5)) continue;
-        uint to = atomicAdd(keptCounter.count, 1);
+        if (axis < 0 || !isReprojected(map, vec3(cell) + 0.5)) continue;
+        uint to = atomicAdd(scrolledCounter.count, 1);
         if (to % 128 == 0) {
-            atomicAdd(keptCounter.groups.x, 1);
-            keptCounter.groups.yz = uvec2(1);
+            atomicAdd(scrolledCounter.groups.x, 1);
+            scrolledCounter.groups.yz = uvec2(1);
         }
-        uint first = to * KEPT_WORDS, base = surfelBase(i);
-        for (uint word = 0; word < SURFEL_CELL; word++) voxelKept.words[first + word] = surfelSums.words[i * SURFEL_SUM_WORDS + word];
-        voxelKept.words[first + SURFEL_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
+        uint first = to * SCROLLED_WORDS, base = surfelBase(i);
+        for (uint word = 0; word < SURFEL_CELL; word++) scrolledSurfels.words[first + word] = surfelSums.words[i * SURFEL_SUM_WORDS + word];
+        scrolledSurfels.words[first + SURFEL_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
         for (uint side = 0; side < SIDES; side++) {
             bool has_surfaces = surfelSums.words[sideBase(i, side) + 3] != 0; // else its parts are those of the other
-            for (uint k = 0; k < 2; k++) voxelKept.words[first + KEPT_MASKS + 2 * side + k] = has_surfaces ? surfelData(coverageMaskWord(base, side) + k) : 0;
-            voxelKept.words[first + KEPT_MASKS + 2 * SIDES + side] = surfelData(frontLayerWord(base, side));
+            for (uint k = 0; k < 2; k++) scrolledSurfels.words[first + SCROLLED_MASKS + 2 * side + k] = has_surfaces ? surfelData(coverageMaskWord(base, side) + k) : 0;
+            scrolledSurfels.words[first + SCROLLED_MASKS + 2 * SIDES + side] = surfelData(frontLayerWord(base, side));
         }
     }
 }

@@ -5,13 +5,13 @@
 #include "volume/volume.glsl"
 #include "voxels/voxels.glsl"
 #include "voxels/occupy.glsl"
-#include "voxels/kept.glsl"
+#include "voxels/scrolled.glsl"
 
 layout(local_size_x = 128) in;
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= keptCounter.count) return;
-    uint word = voxelKept.words[i * KEPT_WORDS + SURFEL_CELL];
+    if (i >= scrolledCounter.count) return;
+    uint word = scrolledSurfels.words[i * SCROLLED_WORDS + SURFEL_CELL];
     occupy(unpackCell(word), (word >> 30) - 1);
 }
