@@ -684,7 +684,10 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.click("", "picture");
     driver.click("Button", "all");
 
-    // What a pass writes is inspected by a click.
+    // What a pass writes is inspected by a click, once the drawing is large enough to read.
+    driver.click("TextInput", "find a pass, a texture");
+    driver.text("shadow map");
+    driver.click("Button", "find pass shadow map");
     driver.click("Button", "shadow map writes shadowMap");
     driver.texts_until("the inspected texture", |texts| texts.iter().any(|t| t == "texture shadowMap"));
     driver.close();

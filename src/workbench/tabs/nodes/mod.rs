@@ -39,6 +39,9 @@ pub struct Nodes {
     made: Option<(Arc<GraphInfo>, Vec2, Layout)>,
 }
 
+/// The least zoom at which a row's text is legible, about 7 points. Below it, a click anywhere on a pass opens the pass.
+const READABLE: f32 = 0.6;
+
 /// A part of the layout.
 #[derive(Clone, Copy)]
 struct Seen {
@@ -440,11 +443,13 @@ impl Canvas<'_> {
             let row = row_of(node.rect, i);
             let texture = info.graph.texture(resource).is_some();
             let name = format!("{} writes {resource}", node.name);
-            let Some(hit) = self.button(row, (node.pass, i), texture, name) else { continue };
-            let color = if hit.hovered() && texture { strong } else { Color32::from_gray(150) };
+            let is_readable = self.seen.zoom >= READABLE;
+            let hit = if is_readable { self.button(row, (node.pass, i), texture, name) } else { None };
+            let bright = texture && hit.as_ref().is_some_and(egui::Response::hovered);
+            let color = if bright { strong } else { Color32::from_gray(150) };
             let at = row.left_center() + Vec2::new(12.0, 0.0);
             self.text(self.place(row), at, Align2::LEFT_CENTER, resource, 10.5, color);
-            if hit.clicked() {
+            if hit.is_some_and(|h| h.clicked()) {
                 self.asked = Some(match texture {
                     true => Asked::Inspect(resource.clone()),
                     false => Asked::Choose(node.name.clone()),
