@@ -4,6 +4,7 @@
 mod common;
 
 use common::{assert_clean, experiment, floats, lab, prepare, root};
+use conelab::experiment::Experiment;
 use conelab::graph::table::{Cell, decode};
 use conelab::lab::Session;
 use glam::{DVec3, DVec4};
@@ -185,4 +186,29 @@ fn the_thesis_graph_traces_listing_4_1() {
     }
     println!("{compared} samples as Listing 4.1 has them");
     assert!(compared > 60, "{compared} samples");
+}
+
+#[test]
+fn the_exposure_of_injection_scales_what_lights_inject_and_leaves_emission() {
+    let lab = lab(root());
+    let diffuse = |scene: &str, exposure: &str| {
+        let settings = [("voxel_dim", "32"), ("radiance_format", "rgba16f"), ("injection_exposure", exposure)];
+        let experiment = Experiment { graph: "thesis.ron".into(), ..experiment(scene, (32, 24), &settings) };
+        let mut session = prepare(&lab, &experiment, &["diffuseIndirect"]);
+        session.frame(0.0).unwrap();
+        session.finish().unwrap();
+        floats(&mut session, "diffuseIndirect", 0)
+    };
+    // A power of two scales half floats exactly, except those below 6e-5.
+    let (one, four) = (diffuse("blinds", "1.0"), diffuse("blinds", "4.0"));
+    assert!(one.iter().any(|t| t[0] > 0.01), "no indirect light");
+    for (i, (a, b)) in one.iter().zip(&four).enumerate() {
+        for k in 0..3 {
+            assert!((4.0 * a[k] - b[k]).abs() <= 2e-3 * b[k].abs() + 1e-6, "pixel {i}: {a:?} and {b:?}");
+        }
+    }
+    let (one, four) = (diffuse("emitters", "1.0"), diffuse("emitters", "4.0"));
+    let [a, b] = [&one, &four].map(|texels| common::mean(texels));
+    assert!(a > 0.0 && (a / b - 1.0).abs() < 0.01, "emission changes with the exposure, {a} and {b}");
+    assert_clean(&lab);
 }

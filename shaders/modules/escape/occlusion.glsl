@@ -1,4 +1,4 @@
-// Light times the cone's openness, which darkens a second time (thesis, Algorithm 3); there is no sky.
+// Radiance times the cone's openness, which darkens a second time (thesis, Algorithm 3). The sky adds nothing.
 vec3 coneRadiance(vec4 cone, vec3 d, float spread) {
-    return cone.rgb * (1.0 - cone.a);
+    return params.injection_exposure * cone.rgb * (1.0 - cone.a);
 }
