@@ -1,14 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Assigns each cell a surfel for every axis that its surfaces face along. A thread handles a bit, 32 threads
-// a word of a brick.
+// Assigns surfels to cells: one for each axis that the cell's surfaces face. One thread per cell, 32 threads
+// per brick word.
 #include "params.glsl"
 #include "voxels/bricks.glsl"
 #include "voxels/chunks.glsl"
 
 layout(local_size_x = 128) in;
 
-// Writes cell and axis to the surfels of a cell.
+// Writes the cell and axis of each surfel of a cell.
 void nameSurfels(uint index, uvec4 word, uint bit) {
     ivec3 cell = storedCellAt(voxelPlaces.bricks[index / 2], 32 * (index & 1u) + bit);
     uint packed = packCell(cell), found = foundIn(word, 1u << bit);

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Counts the surfels before each word of a brick, in its chunk of words.
+// Prefix sum of the surfel counts of brick words, within each chunk.
 #include "params.glsl"
 #include "voxels/bricks.glsl"
 #define SUMS_CHUNKS

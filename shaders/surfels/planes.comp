@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Writes the mean plane of each side of a surfel. Coverage masks are merged already.
+// Writes the mean plane of each surfel side, and copies the coverage mask to a side without surfaces. Runs
+// after the coverage masks are merged.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/voxels.glsl"

@@ -1,5 +1,5 @@
-// What cones approximate: rays through the level-0 voxels, met one by one. Costs a hundred times a cone, and says what
-// of an image's error is the voxels', the cones' and the filtering's.
+// Alternative to cones: rays through the level-0 voxels, cell by cell. Costs about 100 times a cone, and
+// separates the error of the voxels from that of cones and filtering.
 #ifndef VOXEL_RAYS_GLSL
 #define VOXEL_RAYS_GLSL
 #include "cones/origin.glsl"
@@ -10,38 +10,43 @@
 
 vec2 pixelCentre();
 
-// A turn of the sample pattern for each pixel, so that few rays look like noise and not like bands.
+// Random shift of the sample pattern per pixel and cone, so that few rays give noise instead of banding.
 vec2 rayShift(uint cone) {
     Random random = Random(uvec4(uvec2(pixelCentre()), cone, 0u));
     return next4(random).xy;
 }
 
-// Point i of an additive recurrence that fills the square evenly (Roberts 2018, R2).
+// Point i of the R2 low-discrepancy sequence (Roberts 2018).
 vec2 rayPoint(int i, vec2 shift) {
     return fract(shift + float(i) * vec2(0.7548776662, 0.5698402910));
 }
 
-// The first surface that a straight ray hits: crossings of cells are exact (Amanatides and Woo 1987), and so are the planes of
-// their surfaces. Returns radiance and 1, or 0 if the ray misses.
+// First surface hit by a straight ray. Cell crossings (Amanatides and Woo 1987) and surfel planes are exact.
+// Returns radiance and 1, or 0 on a miss.
 vec4 traceStraight(ConeOrigin o, vec3 d, RayUse use) {
     SurfelHit met = traceSurfels(o, d, use.range);
     if (met.emitted > 0.5 && met.distance > use.lamp) met.light = vec4(0.0);
     met.light.rgb *= shareOfRay(use, met.light.rgb, met.emitted, met.distance);
-    CONE_SAMPLED(0, met.distance, ConeSample(o.surface + met.distance * d, 0.0, 0.0, 2.0 * o.reach, 2.0 * o.reach, 0.0, met.light, false, true), met.light.a, 1.0 - met.light.a);
+    CONE_SAMPLED(0, met.distance,
+        ConeSample(o.surface + met.distance * d, 0.0, 0.0, 2.0 * o.reach, 2.0 * o.reach, 0.0, met.light,
+            false, true),
+        met.light.a, 1.0 - met.light.a);
     return met.light;
 }
 
-// What a ray along d (unit length, in cells) finds in a cell, for each cell's length that it goes there.
+// Radiance and opacity of a cell along d (unit length, in cells), per cell length travelled.
 vec4 texelAlong(ivec3 cell, vec3 d) {
     if (params.radiance_faces == 1) return texelFetch(voxelRadiance, cell, 0);
     vec4 sum = vec4(0.0);
     for (int axis = 0; axis < 3; axis++)
-        sum += abs(d[axis]) * texelFetch(voxelRadiance, ivec3(cell.x + (2 * axis + (d[axis] < 0.0 ? 1 : 0)) * params.voxel_dim, cell.yz), 0);
+        sum += abs(d[axis]) * texelFetch(voxelRadiance,
+            ivec3(cell.x + (2 * axis + (d[axis] < 0.0 ? 1 : 0)) * params.voxel_dim, cell.yz), 0);
     return sum;
 }
 
-// A ray that bends in cells is followed in quarters of a cell. Every voxel on the way hides as much of it as its opacity says for
-// the length inside. Returns radiance premultiplied by opacity, and opacity.
+// Marches a ray that bends in warped or curved cells, in steps of a quarter cell. Each step subtracts the
+// voxel's opacity times the step length from the transmittance. Returns radiance premultiplied by opacity,
+// and opacity.
 vec4 traceBent(ConeOrigin o, vec3 d, RayUse use) {
     vec3 origin = o.position;
     vec3 color = vec3(0.0);

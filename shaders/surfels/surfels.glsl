@@ -1,6 +1,5 @@
-// Surfels as rays read them: for each side the mean plane of its surfaces and their coverage mask, in few
-// words. Separate buffers hold data of each side that changes with the light: the radiance that leaves it,
-// and the light that it has gathered.
+// Surfels as rays read them: a mean plane and a coverage mask for each side, in few words. Separate buffers
+// hold the data of each side that changes with the light: outgoing radiance and gathered light.
 #ifndef SURFELS_GLSL
 #define SURFELS_GLSL
 #include "voxels/voxels.glsl"
@@ -10,14 +9,14 @@ layout(std430) buffer Surfels { uvec4 quads[]; } surfels;
 layout(std430) buffer SideRadiance { uvec2 list[]; } sideRadiance;
 layout(std430) buffer SideGathered { uvec2 list[]; } sideGathered;
 
-// Words of a surfel: a plane for each side; coverage masks, two words for each side; front layers, a word for
-// each side. In groups of four, because rays wait for every load.
+// Words per surfel: one plane, two coverage mask words and one front layer word for each side. Stored in
+// groups of four, because rays wait for every load.
 const uint SURFEL_WORDS = 4 * SIDES;
-const uint SURFEL_MASKS = SIDES; // the first word of what is merged and not made of sums
+const uint SURFEL_MASKS = SIDES; // first word that is merged directly instead of derived from sums
 
 struct Plane {
-    vec3 normal; // of side 0; not unit length: 1 along its axis
-    float offset; // from the cell's middle, along its axis
+    vec3 normal; // points towards side 0; scaled so that its axial component is 1
+    float offset; // from the cell centre, along the axis [cells]
 };
 
 uint surfelBase(uint surfel) {
@@ -32,12 +31,12 @@ void storeSurfelData(uint word, uint data) {
     surfels.quads[word >> 2][word & 3u] = data;
 }
 
-// The unit vector of an axis.
+// Unit vector of an axis.
 vec3 axisVector(uint axis) {
     return vec3(equal(uvec3(axis), uvec3(0, 1, 2)));
 }
 
-// A vector by its axial and lateral coordinates.
+// Vector with the given axial and lateral coordinates.
 vec3 axialVector(uint axis, float axial, vec2 lateral) {
     if (axis == 0) return vec3(axial, lateral);
     return axis == 1 ? vec3(lateral.y, axial, lateral.x) : vec3(lateral, axial);
@@ -47,8 +46,8 @@ uint planeWord(uint base, uint side) {
     return base + side;
 }
 
-// normal: positive along its axis. present: bits 0 and 1, whether side 0 and 1 have surfaces. A side without
-// is the back of the other.
+// normal: its axial component is positive. present: bits 0 and 1 are set if side 0 and side 1 have surfaces.
+// A side without surfaces mirrors the other.
 void storePlane(uint word, vec3 normal, uint axis, float offset, uint present) {
     vec2 lateral = lateralOf(normal, axis);
     uvec2 s = uvec2(clamp(lateral / max(dot(normal, axisVector(axis)), 1e-6), -1.0, 1.0) * 511.0 + 512.5);
@@ -77,23 +76,23 @@ uvec2 coverageMaskOf(uint base, uint side) {
     return uvec2(surfelData(word), surfelData(word + 1));
 }
 
-// The point of a side's plane at lateral coordinates, and the middle of its surfaces; relative to the cell's
-// middle [cells].
+// Point on a side's plane at lateral coordinates, relative to the cell centre [cells].
 vec3 onPlane(uint base, uint side, uint axis, vec2 lateral) {
     Plane plane = planeOf(base, side, axis);
     return axialVector(axis, plane.offset - dot(lateralOf(plane.normal, axis), lateral), lateral);
 }
 
+// Centroid of a side's surfaces, relative to the cell centre [cells].
 vec3 planeMiddle(uint base, uint side, uint axis) {
     return onPlane(base, side, axis, middleOf(coverageMaskOf(base, side)));
 }
 
-// Where a side's light is.
+// Index of a side in the light buffers.
 uint sideIndex(uint surfel, uint side) {
     return surfel * SIDES + side;
 }
 
-// And how often it was gathered; or, of what leaves a side, the share of it that emitters emit.
+// Packs light and a number: the updates of gathered light, or the emitted share of outgoing radiance.
 uvec2 packLight(vec3 light, float times) {
     light = min(light, 65504.0);
     return uvec2(packHalf2x16(light.rg), packHalf2x16(vec2(light.b, times)));
