@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Numbers the bricks that have a surface, in the order of their blocks, a chunk of blocks a group; and the arguments of the passes that
-// run over bricks and fragments.
+// Numbers the bricks that have a surface, in block order, one chunk of blocks per group. Also writes the
+// dispatch arguments of passes over bricks and fragments.
 #include "params.glsl"
 #include "voxels/bricks.glsl"
 #define SUMS_CHUNKS
@@ -10,11 +10,12 @@
 const uint CHUNK_BLOCKS = CHUNK_THREADS * 4;
 
 uint bricksOf(uint block) {
-    return block < voxelBlocks.list.length() ? bitCount(voxelBlocks.list[block].x) + bitCount(voxelBlocks.list[block].y) : 0;
+    return block < voxelBlocks.list.length() ?
+        bitCount(voxelBlocks.list[block].x) + bitCount(voxelBlocks.list[block].y) : 0;
 }
 
-// A block's bricks as far as there is room for them. Where there is none, groups count what others may have taken out meanwhile or not:
-// either way no room is left.
+// Numbers a block's bricks, and drops those beyond the capacity. Another group may count a block before or
+// after its bricks are dropped: either result leaves it no room.
 void assignIndices(uint block, uint first) {
     uint next = first, room = voxelPlaces.bricks.length();
     for (uint word = 0; word < 2; word++) {
@@ -29,7 +30,7 @@ void assignIndices(uint block, uint first) {
 
 void main() {
     uint chunk = gl_WorkGroupID.x * CHUNK_BLOCKS, thread = gl_LocalInvocationIndex, before = 0;
-    // Each group counts all before its chunk anew: few blocks, and nobody waits for another pass.
+    // Each group counts all bricks before its chunk. There are few blocks, and this saves a pass.
     for (uint block = thread; block < chunk; block += CHUNK_THREADS) before += bricksOf(block);
     uint start = groupSum(before), total = 0;
     for (uint i = 0; i < 4; i++) total += bricksOf(chunk + 4 * thread + i);
@@ -40,7 +41,8 @@ void main() {
         first += count;
     }
     if (gl_WorkGroupID.x < gl_NumWorkGroups.x - 1 || thread < CHUNK_THREADS - 1) return;
-    uint bricks = min(first, voxelPlaces.bricks.length()), fragments = min(voxelCounter.fragments, voxelFragments.list.length());
+    uint bricks = min(first, voxelPlaces.bricks.length()),
+        fragments = min(voxelCounter.fragments, voxelFragments.list.length());
     voxelCounter.bricks = bricks;
     voxelCounter.fragment_groups = uvec3(min((fragments + 127) / 128, 32768u), 1, 1);
     voxelCounter.chunk_groups = uvec3((2 * bricks + CHUNK_WORDS - 1) / CHUNK_WORDS, 1, 1);

@@ -1,9 +1,9 @@
-// Prefix sums over the words of bricks: the order of surfels is deterministic.
+// Prefix sums over brick words. They make the order of surfels deterministic.
 #ifndef VOXELIZE_CHUNKS_GLSL
 #define VOXELIZE_CHUNKS_GLSL
 
-layout(std430) buffer VoxelChunks { uint surfels[]; } voxelChunks; // of each chunk
-layout(std430) buffer VoxelStarts { uint surfels[]; } voxelStarts; // of all before it
+layout(std430) buffer VoxelChunks { uint surfels[]; } voxelChunks; // per chunk
+layout(std430) buffer VoxelStarts { uint surfels[]; } voxelStarts; // in all chunks before
 
 const uint CHUNK_THREADS = 256;
 const uint THREAD_WORDS = 4;

@@ -1,15 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Triangles dilated by half a pixel (Hasselgren et al. 2005), projected along their dominant axes: every touched cell gets a
-// fragment, which tests itself.
+// Dilates triangles by half a pixel (Hasselgren et al. 2005) and projects them along their dominant axis.
+// Every touched cell gets a fragment, which runs the exact overlap test.
 #include "params.glsl"
 #include "voxels/project.glsl"
 
-// Too thin to dilate: the bounding rectangle, half a pixel wider. The fragments are tested exactly.
+// Bounding rectangle plus half a pixel, for triangles too thin to dilate.
 void emitRectangle(VolumeMap map, Projected t) {
     ivec3 axes = planeAxes(t.along);
     float half_pixel = 0.505 / float(params.raster_size);
-    vec3 lo = min(t.raster[0], min(t.raster[1], t.raster[2])) - half_pixel, hi = max(t.raster[0], max(t.raster[1], t.raster[2])) + half_pixel;
+    vec3 lo = min(t.raster[0], min(t.raster[1], t.raster[2])) - half_pixel,
+        hi = max(t.raster[0], max(t.raster[1], t.raster[2])) + half_pixel;
     vec3 middle = (t.raster[0] + t.raster[1] + t.raster[2]) / 3.0;
     for (int i = 0; i < 4; i++) {
         vec3 at = clamp(middle, 0.0, 1.0);
@@ -33,8 +34,8 @@ void main() {
     Projected t;
     if (!projectTriangle(map, t)) return;
 
-    // Edges as homogeneous lines, moved outwards by half a pixel's extent; their intersections are the new
-    // corners, and barycentric coordinates put those back onto the triangle's plane.
+    // Moves the edges, as homogeneous lines, outwards by half a pixel's extent. Their intersections are the
+    // new corners. Barycentric coordinates put these back on the triangle's plane.
     mat3 m = mat3(t.clip[0].xyw, t.clip[1].xyw, t.clip[2].xyw);
     float area = determinant(m);
     float half_pixel = 1.01 / float(params.raster_size);

@@ -1,4 +1,4 @@
-// A fragment of the raster voxelizer, and what it samples.
+// Inputs of the raster voxelizer's fragment stage, and its texture footprint.
 #ifndef VOXELIZE_FRAGMENT_GLSL
 #define VOXELIZE_FRAGMENT_GLSL
 #include "common/materials.glsl"
@@ -15,8 +15,8 @@ layout(location = 5) flat in uvec2 triangle;
 layout(location = 6) flat in vec3 corner[3];
 layout(location = 9) in vec4 color;
 
-// Texture footprint of a cell, not of a pixel: under a warp function a pixel may be a part of a cell, or have several. `at`:
-// the fragment in cells.
+// Scales the texture footprint from a pixel to a cell. Under a warp function a pixel may be smaller or larger
+// than a cell. `at`: the fragment in cells.
 float footprintScale(vec3 at) {
     if (EVEN) return 1.0;
     vec3 across = dFdx(at), down = dFdy(at);

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Merges the fragments into their voxels (thesis, Section 4.1.1, last paragraphs) under one of several rules: modules/merge.
+// Merges fragments into their surfels (thesis, Section 4.1.1, last paragraphs). modules/merge has the rules.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/bricks.glsl"
@@ -13,8 +13,8 @@ layout(local_size_x = 128) in;
 
 layout(std430) readonly buffer Indices { uint indices[]; } indices;
 
-// Neighbours in the list mostly hit the same voxel: neighbouring threads take fragments that lie far apart, so that
-// their atomics do not queue.
+// Consecutive fragments mostly hit the same voxel. Neighbouring threads therefore take fragments that are far
+// apart in the list, so that their atomics do not contend.
 const uint SHARES = 1u << 16;
 
 #include "modules/merge.glsl"
@@ -45,14 +45,14 @@ void merge(uint base, vec3 color, vec3 normal, float offset, uint emission, uint
     }
 }
 
-// The triangle's corners in cells of a cascade.
+// Corner i of a triangle in cells of a cascade.
 vec3 cornerOf(VolumeMap map, uvec2 triangle, uint i) {
     vec3 p = toWorld(draws.draws[triangle.x].instance, loadPosition(indices.indices[triangle.y + i]));
     return worldToVolume(map, p) * float(params.voxel_dim);
 }
 
-// Clears the parts whose middle lies in a hole of an alpha mask. If no part is covered, the triangle's middle decides. Corners in
-// cells. The weight is 0 if nothing is left.
+// Clears the mask texels with their centre in a hole of an alpha mask. If the mask is empty, the triangle's
+// centroid decides. Corners in cells. The weight becomes 0 if nothing is left.
 void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverage coverage) {
     Material m = materials.materials[draws.draws[triangle.x].material];
     if (m.alpha_cutoff <= 0.0) return;
@@ -64,11 +64,12 @@ void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverag
     }
     mat2 across = mat2(p[1] - p[0], p[2] - p[0]);
     if (abs(determinant(across)) < 1e-6) return;
-    // Change of texture coordinates and vertex alpha from part to part.
+    // Gradients of texture coordinates and vertex alpha per mask texel.
     mat2x4 step = mat2x4(v[1].uv - v[0].uv, v[2].uv - v[0].uv) * inverse(across);
     vec2 alpha_step = vec2(v[1].color.a - v[0].color.a, v[2].color.a - v[0].color.a) * inverse(across);
     Gradient g = Gradient(step[0], step[1]);
-    Place middle = Place((v[0].uv + v[1].uv + v[2].uv) / 3.0, vec4((v[0].color.a + v[1].color.a + v[2].color.a) / 3.0));
+    Place middle = Place((v[0].uv + v[1].uv + v[2].uv) / 3.0,
+        vec4((v[0].color.a + v[1].color.a + v[2].color.a) / 3.0));
     uint before = bitCount(coverage.mask.x) + bitCount(coverage.mask.y);
     if (before == 0 && baseColor(m, middle, g).a < m.alpha_cutoff) coverage.weight = 0;
     for (int word = 0; word < 2; word++) {
@@ -83,13 +84,14 @@ void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverag
     if (before > 0) coverage.weight = after > 0 ? max(coverage.weight * after / before, 1u) : 0;
 }
 
-// Coverage of a stored cell by the triangle of a fragment. Computed here and not where fragments are made, so that the whole GPU
-// takes part.
+// Coverage of a stored cell by a fragment's triangle. Computed here instead of at fragment creation, so that
+// the whole GPU takes part.
 Coverage fragmentCoverage(uvec2 triangle, ivec3 stored, uint axis, float offset) {
     if (triangle == NO_TRIANGLE) return fullCoverage(offset);
     VolumeMap map = volume.maps[cascadeOf(stored)];
     ivec3 cell = ivec3(cellCentre(stored) * float(params.voxel_dim));
-    vec3 corner[3] = vec3[3](cornerOf(map, triangle, 0), cornerOf(map, triangle, 1), cornerOf(map, triangle, 2));
+    vec3 corner[3] = vec3[3](cornerOf(map, triangle, 0), cornerOf(map, triangle, 1),
+        cornerOf(map, triangle, 2));
     Coverage coverage = triangleCoverage(corner[0], corner[1], corner[2], cell, axis, offset);
     cutOut(triangle, corner, cell, axis, coverage);
     return coverage;
@@ -115,13 +117,15 @@ void main() {
         Coverage coverage = fragmentCoverage(triangle, stored, axis, unpackOffset(fragment.z));
         if (coverage.weight == 0) continue;
         uint side = sideOf(normal, axis), surfel = surfelOf(found, axis), plane = surfelBase(surfel);
-        merge(sideBase(surfel, side), unpackColor(fragment.y), normal, coverage.offset, fragment.w, coverage.weight);
-        if (SIDES == 1) continue; // only sides have planes
-        // The offsets of points and samples are unknown.
+        merge(sideBase(surfel, side), unpackColor(fragment.y), normal, coverage.offset, fragment.w,
+            coverage.weight);
+        if (SIDES == 1) continue; // front layers and masks need two sides
+        // Points and samples have no exact offset.
         if (triangle != NO_TRIANGLE) mergeFrontLayer(frontLayerWord(plane, side), side, coverage);
         for (uint k = 0; k < 2; k++) {
             uint word = coverageMaskWord(plane, side) + k;
-            if ((surfelData(word) & coverage.mask[k]) != coverage.mask[k]) atomicOr(surfels.quads[word >> 2][word & 3u], coverage.mask[k]);
+            if ((surfelData(word) & coverage.mask[k]) != coverage.mask[k])
+                atomicOr(surfels.quads[word >> 2][word & 3u], coverage.mask[k]);
         }
     }
 }

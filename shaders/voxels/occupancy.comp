@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Notes the cells of the fragments, once their bricks are stored.
+// Marks the cells of all fragments, once their bricks are stored.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/voxels.glsl"

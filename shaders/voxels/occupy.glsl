@@ -1,4 +1,4 @@
-// Notes that a cell of a stored brick has surfaces along an axis.
+// Marks a cell of a stored brick as occupied by surfaces along an axis.
 #ifndef OCCUPY_GLSL
 #define OCCUPY_GLSL
 #include "voxels/bricks.glsl"
@@ -10,7 +10,8 @@ void occupy(ivec3 stored, uint axis) {
     uint brick = placeOf(cell >> 2), place = placeOf(cell);
     if (!isStored(block, brick)) return;
     uint word = 2 * brickIndex(block, brick) + wordOf(place);
-    if ((voxelBricks.words[word][axis] & bitOf(place)) == 0) atomicOr(voxelBricks.words[word][axis], bitOf(place));
+    if ((voxelBricks.words[word][axis] & bitOf(place)) == 0)
+        atomicOr(voxelBricks.words[word][axis], bitOf(place));
 }
 
 #endif

@@ -1,5 +1,5 @@
-// Exact overlap of a triangle and a unit cell (Schwarz and Seidel 2010): the plane, then the edges in each
-// of the three projections. Coordinates in cells.
+// Exact overlap of a triangle and a unit cell (Schwarz and Seidel 2010): tests the plane, then the edges in
+// each of the three projections. Coordinates in cells.
 #ifndef OVERLAP_GLSL
 #define OVERLAP_GLSL
 
@@ -11,7 +11,8 @@ bool edgeOverlaps(vec2 a, vec2 b, float orientation) {
 }
 
 bool projectionOverlaps(vec2 a, vec2 b, vec2 c, float orientation) {
-    return edgeOverlaps(a, b, orientation) && edgeOverlaps(b, c, orientation) && edgeOverlaps(c, a, orientation);
+    return edgeOverlaps(a, b, orientation) && edgeOverlaps(b, c, orientation)
+        && edgeOverlaps(c, a, orientation);
 }
 
 bool triangleOverlapsCell(vec3 a, vec3 b, vec3 c, ivec3 cell) {
@@ -19,9 +20,12 @@ bool triangleOverlapsCell(vec3 a, vec3 b, vec3 c, ivec3 cell) {
     b -= vec3(cell);
     c -= vec3(cell);
     vec3 lo = min(a, min(b, c)), hi = max(a, max(b, c));
-    if (any(greaterThan(lo, vec3(1.0 + OVERLAP_EPSILON))) || any(lessThan(hi, vec3(-OVERLAP_EPSILON)))) return false;
+    if (any(greaterThan(lo, vec3(1.0 + OVERLAP_EPSILON))) || any(lessThan(hi, vec3(-OVERLAP_EPSILON))))
+        return false;
     vec3 n = cross(b - a, c - a);
-    vec3 s = vec3(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0, n.z < 0.0 ? -1.0 : 1.0);
+    vec3 s = vec3(n.x < 0.0 ? -1.0 : 1.0,
+        n.y < 0.0 ? -1.0 : 1.0,
+        n.z < 0.0 ? -1.0 : 1.0);
     float reach = 0.5 * dot(abs(n), vec3(1.0));
     if (abs(dot(n, vec3(0.5) - a)) > reach + OVERLAP_EPSILON * length(n)) return false;
     return projectionOverlaps(a.xy, b.xy, c.xy, s.z) && projectionOverlaps(a.yz, b.yz, c.yz, s.x)

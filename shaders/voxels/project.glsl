@@ -1,5 +1,5 @@
-// What the geometry shaders of the raster voxelizer share: attributes, and the projection of a triangle along the dominant
-// axis of its face normal, taken in cells (thesis, Section 4.1.1).
+// Shared by the geometry shaders of the raster voxelizer: attributes, and the projection of a triangle along
+// the dominant axis of its face normal in cells (thesis, Section 4.1.1).
 #ifndef VOXELIZE_PROJECT_GLSL
 #define VOXELIZE_PROJECT_GLSL
 #include "voxels/raster.glsl"
@@ -21,7 +21,7 @@ layout(location = 1) out vec3 normal;
 layout(location = 2) out vec4 uv;
 layout(location = 3) flat out uint material;
 layout(location = 4) flat out uint axis;
-layout(location = 5) flat out uvec2 triangle; // draw, first of its indices
+layout(location = 5) flat out uvec2 triangle; // draw, first index
 layout(location = 6) flat out vec3 corner[3]; // in cells
 layout(location = 9) out vec4 color;
 
@@ -31,7 +31,7 @@ uint triangleAxis(VolumeMap map) {
     return dominantAxis(face * cellAxes(map, middle));
 }
 
-// What fragments say of their triangle.
+// Writes the attributes that identify the triangle.
 void nameTriangle() {
     material = in_material[0];
     triangle = uvec2(in_drawn[0], draws.draws[in_drawn[0]].first_index + 3 * gl_PrimitiveIDIn);
@@ -49,15 +49,15 @@ void emit(vec4 clip, vec3 b, uint flags, vec3 corners[3]) {
     EmitVertex();
 }
 
-// A triangle as it is drawn.
+// A projected triangle.
 struct Projected {
     uint along; // axis
     vec4 clip[3];
-    vec3 raster[3]; // in [0,1], before warping
+    vec3 raster[3]; // [0,1], before warping
     vec3 corners[3]; // in cells
 };
 
-// Whether any of it falls into cells that are not kept.
+// Projects a triangle. False if it is outside the volume or all its cells are reprojected.
 bool projectTriangle(VolumeMap map, out Projected t) {
     float dim = float(params.voxel_dim);
     t.along = triangleAxis(map);
@@ -66,7 +66,8 @@ bool projectTriangle(VolumeMap map, out Projected t) {
         t.clip[i] = project(t.raster[i], t.along);
         t.corners[i] = worldToVolume(map, in_position[i]) * dim;
     }
-    vec3 lo = min(t.corners[0], min(t.corners[1], t.corners[2])), hi = max(t.corners[0], max(t.corners[1], t.corners[2]));
+    vec3 lo = min(t.corners[0], min(t.corners[1], t.corners[2])),
+        hi = max(t.corners[0], max(t.corners[1], t.corners[2]));
     if (any(lessThan(hi, vec3(0.0))) || any(greaterThan(lo, vec3(dim)))) return false;
     return !(isReprojected(map, lo) && isReprojected(map, hi));
 }

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Sums to means over all surfaces of a cell, for who looks at the voxels: voxelColor (mean base colour, opacity) and
-// voxelNormal (direction * .5 + .5; alpha is the length of the mean normal, 1 where all agree and 0 where they cancel).
+// Resolves sums to means over all surfaces of a cell, for views and inspection: voxelColor (mean base colour,
+// opacity) and voxelNormal (direction * 0.5 + 0.5; alpha: length of the mean normal, 1 if all agree, 0 if
+// they cancel).
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/bricks.glsl"
@@ -30,7 +31,7 @@ void main() {
         normal += weight * n;
         count += weight;
     }
-    if (count == 0.0) return; // all was cut out
+    if (count == 0.0) return; // all surfaces were cut out
     color /= count;
     normal /= count;
     float agreement = length(normal);

@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Stores a fragment as a voxel in the cell that its sample
-// lies in.
+// Stores a fragment in the cell of its sample position.
 #include "params.glsl"
 #include "voxels/fragment.glsl"
 
@@ -14,9 +13,12 @@ void main() {
     Place here = Place(uv, color);
     vec4 base = baseColor(m, here, g);
     if (base.a < m.alpha_cutoff) return;
-    // With several samples the centre may lie outside the triangle: back into its box.
-    vec3 lo = min(corner[0], min(corner[1], corner[2])), hi = max(corner[0], max(corner[1], corner[2]));
+    // With multisampling the pixel centre may be outside the triangle: clamp it to the bounding box.
+    vec3 lo = min(corner[0], min(corner[1], corner[2])),
+        hi = max(corner[0], max(corner[1], corner[2]));
     ivec3 cell = ivec3(floor(clamp(at, lo, hi)));
     vec3 n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
-    if (inGrid(cell)) storeVoxel(cell, cascade, reflectanceOf(m, base.rgb, here, g), n, emission(m, here, g), at, NO_TRIANGLE);
+    if (inGrid(cell))
+        storeVoxel(cell, cascade, reflectanceOf(m, base.rgb, here, g), n, emission(m, here, g), at,
+            NO_TRIANGLE);
 }

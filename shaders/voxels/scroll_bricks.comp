@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Stores the bricks of the kept surfels, where they are now.
+// Stores the bricks of scrolled surfels at their new positions.
 #include "params.glsl"
 #include "voxels/store.glsl"
 #include "voxels/scrolled.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Puts the cells of the kept surfels back, where they are now.
+// Marks the cells of scrolled surfels at their new positions.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/voxels.glsl"

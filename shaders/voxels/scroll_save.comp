@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Sets aside the surfels that this frame's volume takes over from last frame's, before they are cleared. Planes are last frame's.
+// Saves the surfels that this frame reuses from the last, before they are cleared. Planes are last frame's.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "surfels/surfels.glsl"
@@ -23,12 +23,18 @@ void main() {
             scrolledCounter.groups.yz = uvec2(1);
         }
         uint first = to * SCROLLED_WORDS, base = surfelBase(i);
-        for (uint word = 0; word < SURFEL_CELL; word++) scrolledSurfels.words[first + word] = surfelSums.words[i * SURFEL_SUM_WORDS + word];
-        scrolledSurfels.words[first + SURFEL_CELL] = packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
+        for (uint word = 0; word < SURFEL_CELL; word++)
+            scrolledSurfels.words[first + word] = surfelSums.words[i * SURFEL_SUM_WORDS + word];
+        scrolledSurfels.words[first + SURFEL_CELL] =
+            packCell(storedCell(cell, cascade)) | uint(axis + 1) << 30;
         for (uint side = 0; side < SIDES; side++) {
-            bool has_surfaces = surfelSums.words[sideBase(i, side) + 3] != 0; // else its parts are those of the other
-            for (uint k = 0; k < 2; k++) scrolledSurfels.words[first + SCROLLED_MASKS + 2 * side + k] = has_surfaces ? surfelData(coverageMaskWord(base, side) + k) : 0;
-            scrolledSurfels.words[first + SCROLLED_MASKS + 2 * SIDES + side] = surfelData(frontLayerWord(base, side));
+            // A side without surfaces has a copy of the other side's mask: save an empty one.
+            bool has_surfaces = surfelSums.words[sideBase(i, side) + 3] != 0;
+            for (uint k = 0; k < 2; k++)
+                scrolledSurfels.words[first + SCROLLED_MASKS + 2 * side + k] =
+                    has_surfaces ? surfelData(coverageMaskWord(base, side) + k) : 0;
+            scrolledSurfels.words[first + SCROLLED_MASKS + 2 * SIDES + side] =
+                surfelData(frontLayerWord(base, side));
         }
     }
 }

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Sets triangles up, a thread a triangle and cascade: to flat coordinates, cut at the near side of the cells if they have one.
+// Triangle setup, one thread per triangle and cascade: converts to flat coordinates, and clips at the near
+// plane if the cells have one.
 #include "params.glsl"
 #include "voxels/pieces.glsl"
 
@@ -21,12 +22,13 @@ void place(VolumeMap map, VoxelPiece p) {
     storeCells(map, p, r);
 }
 
-// `before`, `behind`: corners; `from`, `to`: their depths.
+// Intersection of an edge with the near plane. `before`, `behind`: corners; `from`, `to`: their depths.
 vec3 cutBetween(vec3 before, vec3 behind, float from, float to, float near) {
     return mix(before, behind, (from - near) / (from - to));
 }
 
-// A triangle's part before the near side of the cells, if they have one: one or two triangles, or none.
+// Clips a triangle at the near plane of the cells, if they have one. Returns the number of triangles left, 0
+// to 2.
 int cutTriangle(VolumeMap map, vec3 p[3], out vec3 parts[6]) {
     uint before = 7;
     float near = map.range.x, w[3];
@@ -38,8 +40,10 @@ int cutTriangle(VolumeMap map, vec3 p[3], out vec3 parts[6]) {
     if (before == 7) return 1;
     if (before == 0) return 0;
     bool one = bitCount(before) == 1;
-    int odd = findLSB(one ? before : 7u & ~before), k = (odd + 1) % 3, l = (odd + 2) % 3; // the corner that is alone on its side
-    vec3 to_k = cutBetween(p[odd], p[k], w[odd], w[k], near), to_l = cutBetween(p[odd], p[l], w[odd], w[l], near);
+    int odd = findLSB(one ? before : 7u & ~before), // the corner alone on its side of the plane
+        k = (odd + 1) % 3, l = (odd + 2) % 3;
+    vec3 to_k = cutBetween(p[odd], p[k], w[odd], w[k], near),
+        to_l = cutBetween(p[odd], p[l], w[odd], w[l], near);
     if (one) {
         parts = vec3[6](p[odd], to_k, to_l, vec3(0.0), vec3(0.0), vec3(0.0));
         return 1;

@@ -1,23 +1,24 @@
-// What a fragment or a point leaves behind: an entry of the fragment list, merged into its voxel by
-// merge.comp. Six words and at most two atomics here; the sums are made where all of the chip can help.
+// Appends fragments or points to the fragment list. merge.comp merges them into voxels. Costs six words and
+// at most two atomics here; the sums are left to a pass that fills the whole GPU.
 #ifndef STORE_VOXEL_GLSL
 #define STORE_VOXEL_GLSL
 #include "volume/volume.glsl"
 #include "voxels/voxels.glsl"
 #include "voxels/bricks.glsl"
 
-// Notes that a cell's brick has a surface. Most invocations find that another has said so.
+// Marks a cell's brick as stored. Most invocations find it already marked.
 void store(ivec3 cell, int cascade) {
     uint block = blockIndex(cell, cascade), brick = placeOf(cell >> 2);
-    if ((voxelBlocks.list[block][wordOf(brick)] & bitOf(brick)) == 0) atomicOr(voxelBlocks.list[block][wordOf(brick)], bitOf(brick));
+    if ((voxelBlocks.list[block][wordOf(brick)] & bitOf(brick)) == 0)
+        atomicOr(voxelBlocks.list[block][wordOf(brick)], bitOf(brick));
 }
 
-// color in [0,1], normal unit, emission radiance. `cascade`: of the volume. `at`: a point of the surface near the cell's
-// middle, in cells. `triangle`: that may cover a part of the cell alone.
+// color: [0,1]. normal: unit length. emission: radiance. at: a point of the surface near the cell centre
+// [cells]. triangle: computes partial coverage; NO_TRIANGLE covers the whole cell.
 void storeVoxel(ivec3 cell, int cascade, vec3 color, vec3 normal, vec3 emission, vec3 at, uvec2 triangle) {
     if (isReprojected(volume.maps[cascade], vec3(cell) + 0.5)) return;
     ivec3 stored = storedCell(cell, cascade);
-    uint packed = packDirection(normal), axis = axisOf(unpackDirection(packed)); // as who reads it will
+    uint packed = packDirection(normal), axis = axisOf(unpackDirection(packed)); // as readers will see it
     packed |= packOffset(at[axis] - float(cell[axis]) - 0.5);
     uint i = atomicAdd(voxelCounter.fragments, 1);
     if (i >= voxelFragments.list.length()) return;

@@ -1,31 +1,30 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Stores a fragment of a triangle that covers too much: the cells of its column that the triangle passes through, each
-// tested.
+// Tests the cells that a dilated triangle's fragment may touch, and stores a voxel in each that overlaps.
 #include "params.glsl"
 #include "voxels/fragment.glsl"
 #include "voxels/overlap.glsl"
 
-// From cells to [0,1] before warping; outside the volume nothing is warped.
+// Converts cells to [0,1] before warping. Coordinates outside the volume are not warped.
 vec3 unwarped(vec3 cells) {
     vec3 u = cells / float(params.voxel_dim), in_volume = clamp(u, 0.0, 1.0);
     return mix(u, unwarp(in_volume), equal(in_volume, u));
 }
 
-// Where a border of cells lies before warping.
+// Position of a cell border before warping.
 float border(int i) {
     return unwarp(vec3(float(i) / float(params.voxel_dim))).x;
 }
 
-// Whether the triangle overlaps a cell, exactly wherever cells are boxes. Under a warp its corners and the cell's come
-// unwarped, and the test is made in the coordinates of the cell itself.
+// Whether the triangle overlaps a cell. Exact if cells are boxes. Under a warp, corners and cell are
+// unwarped, and the test uses the cell's own coordinates.
 bool overlapsCell(ivec3 cell, vec3 c[3], vec3 low, vec3 high) {
     if (EVEN) return triangleOverlapsCell(corner[0], corner[1], corner[2], cell);
     vec3 size = high - low;
     return triangleOverlapsCell((c[0] - low) / size, (c[1] - low) / size, (c[2] - low) / size, ivec3(0));
 }
 
-// Where the triangle's plane passes a cell's middle, along the axis that its surface faces.
+// Point of the triangle's plane over the cell centre, along the axis that its surface faces.
 vec3 pointNear(vec3 middle, vec3 n) {
     vec3 face = cross(corner[1] - corner[0], corner[2] - corner[0]);
     uint axis = axisOf(n);
@@ -40,13 +39,13 @@ void main() {
     vec3 at = worldToVolume(volume.maps[cascade], position) * dim;
     int depth = int(axis & 3u);
     ivec3 axes = planeAxes(axis & 3u);
-    bool whole = EVEN; // a pixel is a column
+    bool whole = EVEN; // a pixel is exactly one column
     float pixels = footprintScale(at);
     vec4 uv_across = dFdx(uv), uv_down = dFdy(uv), color_across = dFdx(color), color_down = dFdy(color);
     vec3 normal_across = dFdx(normal), normal_down = dFdy(normal);
     Gradient g = Gradient(uv_across * pixels, uv_down * pixels);
 
-    // A pixel that may have several cells looks at the surface in each.
+    // A pixel that may span several cells evaluates the surface in each.
     bool each = !whole;
     Material m = materials.materials[material];
     vec4 base;
@@ -54,37 +53,41 @@ void main() {
     if (!each) {
         Place here = Place(uv, color);
         base = baseColor(m, here, g);
-        if (base.a < (EVEN ? min(m.alpha_cutoff, 0.01) : m.alpha_cutoff)) return; // parts are cut out of cells when they are merged
+        // Where coverage masks are exact, the merge cuts out holes instead.
+        if (base.a < (EVEN ? min(m.alpha_cutoff, 0.01) : m.alpha_cutoff)) return;
         n = dot(normal, normal) > 0.0 ? normalize(normal) : vec3(0.0);
         reflected = reflectanceOf(m, base.rgb, here, g);
         light = emission(m, here, g);
     }
 
-    vec3 lo = min(corner[0], min(corner[1], corner[2])), hi = max(corner[0], max(corner[1], corner[2]));
+    vec3 lo = min(corner[0], min(corner[1], corner[2])),
+        hi = max(corner[0], max(corner[1], corner[2]));
     vec3 inside = clamp(at, lo, hi);
     ivec3 from = ivec3(floor(inside)), to = from;
     vec3 c[3] = vec3[3](unwarped(corner[0]), unwarped(corner[1]), unwarped(corner[2]));
-    // Attributes of fragments beside their triangle are extrapolated, and of thin triangles no more than noise: the
-    // columns are those that the pixel touches, the depth that of the corners' plane over the pixel.
+    // Attributes are extrapolated outside the triangle, and are noise for thin triangles. Columns therefore
+    // come from the pixel, and depth from the triangle's plane over the pixel.
     vec3 face = cross(c[1] - c[0], c[2] - c[0]);
-    vec2 slope = face[depth] != 0.0 ? -vec2(face[axes.x], face[axes.y]) / face[depth] : vec2(dim); // a line: any depth
+    vec2 slope = face[depth] != 0.0 ? -vec2(face[axes.x], face[axes.y]) / face[depth] :
+        vec2(dim); // edge-on: any depth
     float pixel = 1.0 / float(params.raster_size);
     vec2 first = floor(gl_FragCoord.xy) * pixel;
     float middle = c[0][depth] + dot(slope, first + 0.5 * pixel - vec2(c[0][axes.x], c[0][axes.y]));
     float reach = 0.5 * pixel * (abs(slope.x) + abs(slope.y)) + 0.01 / dim;
     vec3 least = vec3(first, middle - reach), most = vec3(first + pixel, middle + reach);
-    least.z = clamp(least.z, min(c[0][depth], min(c[1][depth], c[2][depth])), max(c[0][depth], max(c[1][depth], c[2][depth])));
+    least.z = clamp(least.z, min(c[0][depth], min(c[1][depth], c[2][depth])),
+        max(c[0][depth], max(c[1][depth], c[2][depth])));
     most.z = clamp(most.z, least.z, max(c[0][depth], max(c[1][depth], c[2][depth])));
     least = warp(clamp(least, 0.0, 1.0)) * dim;
     most = warp(clamp(most, 0.0, 1.0)) * dim;
-    // A corner exactly on a border belongs to both cells.
+    // A point exactly on a border belongs to both cells.
     from[depth] = int(floor(least.z - 1e-5));
     to[depth] = int(floor(most.z + 1e-5));
     from[axes.x] = whole ? int(gl_FragCoord.x) : int(floor(least.x));
     from[axes.y] = whole ? int(gl_FragCoord.y) : int(floor(least.y));
     to[axes.x] = whole ? from[axes.x] : int(floor(most.x));
     to[axes.y] = whole ? from[axes.y] : int(floor(most.y));
-    if (!whole) { // small triangles touch few of a pixel's cells
+    if (!whole) { // small triangles touch few of the pixel's cells
         from = max(from, ivec3(floor(lo - 1e-3)));
         to = min(to, ivec3(floor(hi + 1e-3)));
     }
@@ -110,8 +113,10 @@ void main() {
                 if (!overlapsCell(ivec3(x, y, z), c, low, high)) continue;
                 if (each) {
                     vec3 middle = 0.5 * (low + high);
-                    vec2 shift = clamp(vec2(middle[axes.x], middle[axes.y]) * float(params.raster_size) - gl_FragCoord.xy, -0.5, 0.5);
-                    Place there = Place(uv + uv_across * shift.x + uv_down * shift.y, color + color_across * shift.x + color_down * shift.y);
+                    vec2 shift = clamp(vec2(middle[axes.x], middle[axes.y]) * float(params.raster_size)
+                        - gl_FragCoord.xy, -0.5, 0.5);
+                    Place there = Place(uv + uv_across * shift.x + uv_down * shift.y,
+                        color + color_across * shift.x + color_down * shift.y);
                     base = baseColor(m, there, g);
                     if (base.a < m.alpha_cutoff) continue;
                     reflected = reflectanceOf(m, base.rgb, there, g);
@@ -119,7 +124,8 @@ void main() {
                     n = normal + normal_across * shift.x + normal_down * shift.y;
                     n = dot(n, n) > 0.0 ? normalize(n) : vec3(0.0);
                 }
-                storeVoxel(ivec3(x, y, z), cascade, reflected, n, light, pointNear(vec3(x, y, z) + 0.5, n), EVEN ? triangle : NO_TRIANGLE);
+                storeVoxel(ivec3(x, y, z), cascade, reflected, n, light, pointNear(vec3(x, y, z) + 0.5, n),
+                    EVEN ? triangle : NO_TRIANGLE);
             }
         }
     }

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Triangles as they are, projected along their dominant axes (thesis, Section 4.1.1).
+// Projects triangles along their dominant axis, without dilation (thesis, Section 4.1.1).
 #include "params.glsl"
 #include "voxels/project.glsl"
 

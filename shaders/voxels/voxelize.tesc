@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Tessellation levels by the length of edges in cells (thesis, Section 4.1.2).
+// Tessellation levels from edge lengths in cells (thesis, Section 4.1.2).
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/tessellated.glsl"
@@ -17,20 +17,22 @@ layout(location = 0) out vec3 position[];
 layout(location = 1) out vec3 normal[];
 layout(location = 2) out vec4 uv[];
 layout(location = 3) patch out uint material;
-layout(location = 4) patch out vec2 footprint; // texture coordinates a cell, of both sets
-layout(location = 5) patch out uint single; // 1: the whole triangle lies in one cell
-layout(location = 6) patch out float spacing; // of the points [m]
+layout(location = 4) patch out vec2 footprint; // texture coordinates per cell, of both sets
+layout(location = 5) patch out uint single; // 1: one cell contains the whole triangle
+layout(location = 6) patch out float spacing; // between points [m]
 layout(location = 7) out vec4 color[];
 
 #include "modules/tess_levels.glsl"
 
-// Whether a cascade gets nothing from a triangle: it lies outside, or wholly where content stays.
+// Whether a triangle adds nothing to a cascade: it is outside, or all its cells are reprojected.
 bool outside(VolumeMap map, vec3 a, vec3 b, vec3 c) {
     int whole = map.curved != 0 ? curvedOutside(map, a, b, c) : -1;
     if (whole >= 0) return whole == 1;
     vec3 u = worldToVolume(map, a), v = worldToVolume(map, b), w = worldToVolume(map, c);
     vec3 low = min(u, min(v, w)), high = max(u, max(v, w));
-    if (isReprojected(map, low * float(params.voxel_dim)) && isReprojected(map, high * float(params.voxel_dim))) return true;
+    if (isReprojected(map, low * float(params.voxel_dim))
+        && isReprojected(map, high * float(params.voxel_dim)))
+        return true;
     return any(lessThan(high, vec3(0.0))) || any(greaterThan(low, vec3(1.0)));
 }
 
@@ -41,16 +43,17 @@ void main() {
     color[gl_InvocationID] = in_color[gl_InvocationID];
     if (gl_InvocationID != 0) return;
 
-    // Only inputs are read below: other invocations' outputs would need a barrier.
+    // Reads inputs only: reading the outputs of other invocations would need a barrier.
     vec3 a = in_position[0], b = in_position[1], c = in_position[2];
     material = in_material[0];
-    // The cascade that asks for most points decides; all get their voxels in the same pass.
+    // The cascade that needs most points sets the levels. All cascades are voxelized in the same pass.
     int finest = -1;
     vec3 cells = vec3(0.0);
     for (int k = 0; k < tessellatedCascades(); k++) {
         VolumeMap map = volume.maps[k];
         if (outside(map, a, b, c)) continue;
-        vec3 along = vec3(cellsAlong(map, b, c), cellsAlong(map, c, a), cellsAlong(map, a, b)) * params.tess_rate;
+        vec3 along = vec3(cellsAlong(map, b, c), cellsAlong(map, c, a), cellsAlong(map, a, b))
+            * params.tess_rate;
         if (finest < 0 || max(along.x, max(along.y, along.z)) > max(cells.x, max(cells.y, cells.z))) {
             finest = k;
             cells = along;
@@ -67,7 +70,7 @@ void main() {
     VolumeMap map = volume.maps[finest];
     float longest = max(cells.x, max(cells.y, cells.z));
 
-    // Outer level i belongs to the edge opposite vertex i. A level of 0 would drop the patch, so small
+    // Outer level i belongs to the edge opposite vertex i. A level of 0 would discard the patch, so small
     // triangles get 1.
     gl_TessLevelOuter = float[4](max(cells.x, 1.0), max(cells.y, 1.0), max(cells.z, 1.0), 1.0);
     vec3 face = cross(b - a, c - a);
@@ -82,9 +85,10 @@ void main() {
         gl_TessLevelInner = float[2](1.0, 1.0);
     }
 
-    spacing = max(distance(a, b), max(distance(b, c), distance(c, a))) / clamp(gl_TessLevelInner[0], 1.0, 64.0);
+    spacing = max(distance(a, b), max(distance(b, c), distance(c, a)))
+        / clamp(gl_TessLevelInner[0], 1.0, 64.0);
 
-    // Square root of the ratio of areas: texture coordinates against cells.
+    // Square root of the area ratio of texture coordinates and surface, times the mean cell edge.
     vec4 s = in_uv[1] - in_uv[0], t = in_uv[2] - in_uv[0];
     vec3 size = cellSize(map, (a + b + c) / 3.0);
     float area = max(length(face), 1e-20);

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One point a tessellated vertex, stored without any rasterisation (thesis, Section 4.1.2).
+// Stores one point per tessellated vertex, without rasterisation (thesis, Section 4.1.2).
 #include "params.glsl"
 #include "common/materials.glsl"
 #include "modules/reflectance.glsl"
@@ -20,8 +20,9 @@ layout(location = 5) patch in uint single;
 layout(location = 6) patch in float spacing;
 layout(location = 7) in vec4 color[];
 
-// Points for the densest cells of a patch are far too many for its other cells, and for coarser cascades: what is left there
-// is about this many for each cell that the surface crosses, chosen by a hash of the place (one in 3,000 gets none).
+// The densest cells of a patch set its point count, which is far too high for other cells and coarser
+// cascades. A hash of the position thins the points to about this many per crossed cell (one cell in 3,000
+// gets none).
 const float POINTS_A_CELL = 8.0;
 
 bool chosen(VolumeMap g, vec3 p) {
@@ -37,7 +38,7 @@ bool chosen(VolumeMap g, vec3 p) {
 void main() {
     gl_Position = vec4(0.0);
     vec3 b = gl_TessCoord;
-    if (single != 0) { // one write for the whole triangle, from one of its three points
+    if (single != 0) { // one point for the whole triangle, from one of its three vertices
         if (b.x < 0.5) return;
         b = vec3(1.0 / 3.0);
     }
@@ -54,6 +55,7 @@ void main() {
     for (int k = 0; k < tessellatedCascades(); k++) {
         vec3 in_cells = worldToVolume(volume.maps[k], p) * float(params.voxel_dim);
         ivec3 cell = ivec3(floor(in_cells));
-        if (inGrid(cell) && (single != 0 || chosen(volume.maps[k], p))) storeVoxel(cell, k, reflected, n, light, in_cells, NO_TRIANGLE);
+        if (inGrid(cell) && (single != 0 || chosen(volume.maps[k], p)))
+            storeVoxel(cell, k, reflected, n, light, in_cells, NO_TRIANGLE);
     }
 }

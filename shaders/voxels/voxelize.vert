@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// World-space triangles for both voxelizers.
+// World-space vertices for the raster and tessellation voxelizers.
 #include "common/scene.glsl"
 
 layout(location = 0) out vec3 position;
