@@ -1,4 +1,4 @@
-// Cells in the frustum of a view.
+// Aligns curved cells with the frustum of a view along `ahead`.
 
 void aimAlong(inout VolumeMap map, vec3 ahead) {
     vec3 right = normalize(cross(ahead, camera.up));

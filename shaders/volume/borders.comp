@@ -1,17 +1,17 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// World coordinates of the borders of a cascade's cells (voxel_view_cascade), for who looks at the voxels
-// from outside: the warp is declared once.
+// Writes the world coordinates of a cascade's cell borders (voxel_view_cascade), for readers outside the
+// shaders, so that the warp is defined only once.
 #include "params.glsl"
 #include "volume/volume.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(std430) buffer VoxelBorders {
-    uint boxes; // 1: cells are boxes between the borders; 0: curved, and there are no borders
+    uint boxes; // 1: cells are boxes between the borders; 0: curved cells without borders
     uint first; // z of the cascade's first cell in the textures
     uint cells_x, cells_y, cells_z;
-    float at[]; // x, y, z: voxel_dim + 1 each [m]
+    float at[]; // x, y, z: voxel_dim + 1 values each [m]
 } voxelBorders;
 
 void main() {

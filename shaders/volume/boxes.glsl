@@ -1,8 +1,9 @@
-// Cells in a box, warped axis by axis. The warp function says: warp, a monotonic bijection of [0,1] with its densest point
-// at 0.5; warpSlope, its derivative, the local density of cells against no warp; unwarp, its exact inverse.
+// Cells in a box, warped axis by axis. The warp function defines: warp, a monotonic bijection of [0,1] with
+// its densest point at 0.5; warpSlope, its derivative, the cell density relative to no warp; unwarp, its
+// exact inverse.
 const bool CURVED = false;
 
-// Outside the volume the result is outside [0,1].
+// Points outside the volume give results outside [0,1].
 vec3 worldToVolume(VolumeMap map, vec3 p) {
     vec3 x = (p - map.minimum) / map.size;
     return mix(x, warp(x), equal(clamp(x, 0.0, 1.0), x));
@@ -12,13 +13,13 @@ vec3 volumeToWorld(VolumeMap map, vec3 u) {
     return map.minimum + unwarp(u) * map.size;
 }
 
-// Columns: the world vectors that span the level-0 cell at p [m].
+// Columns: world vectors that span the level-0 cell at p [m].
 mat3 cellAxes(VolumeMap map, vec3 p) {
     vec3 c = map.cell / warpSlope(clamp((p - map.minimum) / map.size, 0.0, 1.0));
     return mat3(c.x, 0, 0, 0, c.y, 0, 0, 0, c.z);
 }
 
-// Cells that a step of a metre along d crosses at p.
+// Cells crossed per metre along d at p.
 vec3 cellsPerMetre(VolumeMap map, vec3 p, vec3 d) {
     return d * warpSlope(clamp((p - map.minimum) / map.size, 0.0, 1.0)) / map.cell;
 }
@@ -27,7 +28,8 @@ bool holds(VolumeMap map, vec3 p) {
     return inVolume(worldToVolume(map, p));
 }
 
-// Coordinates in which triangles are flat and cells are boxes, as long as the volume has cells; and cells in these, axis by axis.
+// Flat coordinates, 0 to voxel_dim: triangles stay flat and cells are boxes. The next two functions
+// convert cells to and from them, axis by axis.
 vec3 flatFromWorld(VolumeMap map, vec3 p) {
     return (p - map.minimum) / map.size * float(params.voxel_dim);
 }
@@ -48,7 +50,7 @@ bool isFlat(VolumeMap map) {
     return true;
 }
 
-// How far along its depth a point lies, where cells have a near side that cuts triangles.
+// Near plane of the cells, which clips triangles, and depth of a point. Boxes have none.
 bool hasNear(VolumeMap map) {
     return false;
 }
@@ -57,7 +59,7 @@ float flatDepth(VolumeMap map, vec3 p) {
     return 1.0;
 }
 
-// What curved cells have, for code that knows both.
+// Stubs of the functions for curved cells.
 void curvedBounds(VolumeMap map, vec3 a, vec3 b, vec3 c, out vec3 low, out vec3 high) {
     low = high = vec3(0.0);
 }

@@ -1,10 +1,10 @@
-// A first cascade of curved cells, the others boxes of cells of one size. The module says: the four functions below for
-// the curved ones, and curvedHolds.
+// A first cascade of curved cells, followed by boxes with cells of equal size. The module defines
+// curvedFromWorld, curvedToWorld, curvedAxes and curvedHolds for the curved cells.
 const bool WARPED = true, CURVED = true;
 
 #include "volume/unwarped.glsl"
 
-// Outside the volume the result is outside [0,1].
+// Points outside the volume give results outside [0,1].
 vec3 worldToVolume(VolumeMap map, vec3 p) {
     return map.curved == 0 ? (p - map.minimum) / map.size : curvedFromWorld(map, p);
 }
@@ -13,20 +13,21 @@ vec3 volumeToWorld(VolumeMap map, vec3 u) {
     return map.curved == 0 ? map.minimum + u * map.size : curvedToWorld(map, u);
 }
 
-// Columns: the world vectors that span the level-0 cell at p [m].
+// Columns: world vectors that span the level-0 cell at p [m].
 mat3 cellAxes(VolumeMap map, vec3 p) {
     if (map.curved != 0) return curvedAxes(map, p);
     return mat3(map.cell.x, 0, 0, 0, map.cell.y, 0, 0, 0, map.cell.z);
 }
 
-// Cells that a step of a metre along d crosses at p.
+// Cells crossed per metre along d at p.
 vec3 cellsPerMetre(VolumeMap map, vec3 p, vec3 d) {
     if (map.curved == 0) return d / map.cell;
     return inverse(curvedAxes(map, p)) * d;
 }
 
-// Coordinates in which triangles are flat and cells are boxes, as long as the volume has cells; and cells in these, axis by axis.
-// The module says them for its curved cells, if there are such: curvedFlat, flatOfCurved, curvedOfFlat, FLAT.
+// Flat coordinates: triangles stay flat and cells are boxes, voxel_dim along an edge. The next two functions
+// convert cells to and from them, axis by axis. The module defines curvedFlat, flatOfCurved, curvedOfFlat and
+// FLAT, which is false if its cells have no flat coordinates.
 vec3 flatFromWorld(VolumeMap map, vec3 p) {
     return map.curved == 0 ? (p - map.minimum) / map.size * float(params.voxel_dim) : curvedFlat(map, p);
 }
@@ -43,7 +44,7 @@ bool isFlat(VolumeMap map) {
     return FLAT || map.curved == 0;
 }
 
-// How far along its depth a point lies, where cells have a near side that cuts triangles.
+// Near plane of the cells, which clips triangles, and depth of a point.
 bool hasNear(VolumeMap map) {
     return FLAT && map.curved != 0;
 }

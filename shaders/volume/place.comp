@@ -1,5 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A volume that stands still.
+// Places a volume that does not move.
 #include "params.glsl"
 #include "volume/place.glsl"

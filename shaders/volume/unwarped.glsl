@@ -1,4 +1,4 @@
-// No function before the volume: what function warps have, for passes that draw boxes before warping.
+// Identity warp, for volumes without one.
 
 vec3 warp(vec3 x) {
     return x;
