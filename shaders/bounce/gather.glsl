@@ -1,4 +1,4 @@
-// Light that a side of a voxel gathers.
+// Gathers the light of a voxel side.
 #ifndef BOUNCE_GATHER_GLSL
 #define BOUNCE_GATHER_GLSL
 #include "surfels/sides.glsl"
@@ -7,14 +7,14 @@
 #include "gather/radiance.glsl"
 #include "gather/emitters.glsl"
 
-// Index of a cell in 4x4x4, of 64 patterns of directions.
+// Direction pattern of a cell: one of 64, repeated every 4x4x4 cells.
 uint patternOf(uvec3 cell) {
     return ((cell.x & 3u | (cell.y & 3u) << 2 | (cell.z & 3u) << 4) * 37u) & 63u;
 }
 
 // Resampled importance sampling (Talbot et al. 2005): picks one of CANDIDATES emitter samples by unshadowed
-// contribution. light: the contribution of all of them to the mean radiance over the hemisphere. samples:
-// emitter samples of the side in all.
+// contribution. light: contribution of all candidates to the mean radiance over the hemisphere. samples:
+// total number of emitter samples of the side.
 EmitterSample resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float samples, out vec3 light) {
     float sum = 0.0, picked = 0.0, xi = fract(shift.x + float(index & 0xffffu) * 0.6180339887);
     EmitterSample best;
@@ -48,8 +48,8 @@ int emitterRays() {
     return samples_emitters ? params.bounce_emitter_rays : 0;
 }
 
-// This thread's share (rays first, first + of, ...) of the mean radiance over the hemisphere. lamp: the
-// surface is an emitter.
+// This thread's share (rays first, first + of, ...) of the mean radiance over the hemisphere. lamp: whether
+// the surface is an emitter.
 vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
     ConeOrigin o = coneOrigin(p, n, n);
     mat3 frame = frameOf(n);
@@ -78,7 +78,7 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
     return sum;
 }
 
-// Middle of the surfaces of a side, in the world.
+// World position of the centroid of a side's surfaces.
 vec3 surfelPosition(VolumeMap map, ivec3 cell, uint base, uint side, uint axis) {
     vec3 center = volumeToWorld(map, cellCentre(cell));
     return center + cellAxes(map, center) * planeMiddle(base, side, axis);

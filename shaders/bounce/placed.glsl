@@ -1,4 +1,4 @@
-// Where voxels lie now, where `volume` says where they lay last frame.
+// The current volume, in passes where `volume` is last frame's.
 layout(std430) readonly buffer Placed {
     VolumeMap maps[MAX_CASCADES];
     uint signature;

@@ -1,6 +1,6 @@
-// Gathers the light of the queued voxel sides with a few rays or narrow cones, several threads a side.
-// Neighbours take other directions. Injection reflects the light, so that each frame adds a bounce. All hits
-// read the last frame's data, `volume` too; `placed` is the current volume.
+// Gathers the light of queued voxel sides with a few rays or narrow cones, several threads per side.
+// Neighbouring cells use other directions. Injection reflects this light, so each frame adds a bounce. All
+// hits read last frame's data, including `volume`; `placed` is the current volume.
 #include "params.glsl"
 #include "voxels/voxels.glsl"
 #include "volume/volume.glsl"

@@ -1,4 +1,4 @@
-// Reprojection of gathered light: `volume` and bricks are the last frame's, `placed` the current volume.
+// Reprojection of gathered light. `volume` and the bricks are last frame's; `placed` is the current volume.
 #ifndef BOUNCE_REPROJECT_GLSL
 #define BOUNCE_REPROJECT_GLSL
 #include "common/scene.glsl"
@@ -8,8 +8,8 @@
 
 layout(std430) readonly buffer LastGathered { uvec2 list[]; } lastGathered;
 
-// The last frame's packed light at p, of the surface along an axis and side. Zero updates if no surface was
-// there.
+// Last frame's packed light at p, for the surface along an axis and side. If there was no surface, the update
+// count is 0.
 uvec2 reprojected(vec3 p, int cascade, uint axis, uint side) {
     vec3 u = worldToVolume(volume.maps[cascade], p);
     if (!inVolume(u)) return uvec2(0);

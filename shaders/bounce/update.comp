@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Updates the light that sides of voxels have gathered from the last frame's, and queues the sides that
-// gather again.
+// Reprojects the gathered light of voxel sides from the last frame, and queues the sides that gather again.
 #include "params.glsl"
 #include "bounce/reproject.glsl"
 #define QUEUE_WRITES
@@ -13,13 +12,13 @@ layout(local_size_x = 128) in;
 shared uint queued_here;
 shared uint first;
 
-// Interleaving phase of a brick: its voxels gather together, and neighbouring bricks in different frames.
+// Interleaving phase of a brick. Its voxels gather together, neighbouring bricks in different frames.
 uint phaseOf(uvec3 brick) {
     return (brick.x + 3u * brick.y + 5u * brick.z) % uint(params.bounce_frames);
 }
 
-// Stores a side's history, and returns whether the side gathers: in its phase, and in every frame until it
-// has gathered in as many frames as there are phases, so that the first pictures have light.
+// Stores a side's history and returns whether the side gathers: in its phase, and in every frame until it has
+// gathered once per phase, so that the first frames have light.
 bool updateHistory(uint surfel, uint side, bool has_history) {
     if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return false;
     uint index = sideIndex(surfel, side), phases = uint(params.bounce_frames);
@@ -37,7 +36,7 @@ bool updateHistory(uint surfel, uint side, bool has_history) {
     return due;
 }
 
-// All threads of a group.
+// Appends the sides that are due to the queue. All threads of a group must call it.
 void enqueue(bool due, uint i) {
     uint place = 0;
     if (gl_LocalInvocationIndex == 0) queued_here = 0;
