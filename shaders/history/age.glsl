@@ -1,18 +1,18 @@
-// Age of a pixel's gathered light, and when the pixel gathers again. Each of the 64 pixels of 8x8 has an
-// interleaving phase. A surface gathers once in params.phases frames, whichever pixels it moves through: no
-// light is older, and no ray refreshes light that is not due. A still picture converges to the bit.
+// Age of a pixel's gathered light, and when the pixel gathers again. Each of the 64 pixels of an 8x8 tile has
+// an interleaving phase. A surface gathers once in params.phases frames, whichever pixels it moves through:
+// light gets no older until it has converged, and rays only refresh light that is due. A still image
+// converges to the bit.
 #ifndef HISTORY_AGE_GLSL
 #define HISTORY_AGE_GLSL
 #include "common/ggx.glsl"
 #include "gbuffer/read.glsl"
 #include "common/pattern.glsl"
 
-// Fraction of an age that marks disoccluded pixels, which have gathered with few rays. Other ages are whole
-// frames.
+// Fraction of an age that marks disoccluded pixels, which have few samples. Other ages are whole frames.
 const float FEW_RAYS_AGE = 0.5;
 
-// Updates of all voxels without a change after which their light has nearly converged: if half the light is
-// reflected, less than a hundredth is missing.
+// Updates of all voxels without a change until their light counts as converged. If half the light is
+// reflected, less than 1% is missing.
 const int CONVERGED_UPDATES = 8;
 
 struct Age {
@@ -21,16 +21,16 @@ struct Age {
 };
 
 // Frames since the pixel's phase was last due; params.phases if it is due in this frame. index: of the pixel
-// in 8x8.
+// in its 8x8 tile.
 float ageInPhase(uint index) {
     uint phases = uint(params.phases), phase = index * phases / 64u;
     return float(phases - (phase + phases - camera.frame % phases) % phases);
 }
 
-// Whether light ages in this frame. Under a moving camera converged light ages in one of gather_rest frames;
-// more often if the surface's lobe turns by much within all phases.
+// Whether light ages in this frame. While the camera moves, converged light ages in one of gather_rest
+// frames, or more often if the view direction turns fast relative to the surface's lobe.
 bool ages(GBufferSurface seen, uint index, bool few_rays) {
-    // One round of all phases more: by then each pixel has gathered the converged light.
+    // One more round of all phases: by then each pixel has gathered the converged light.
     bool converged = camera.still_frames > uint(CONVERGED_UPDATES * params.bounce_frames + params.phases);
     if (few_rays || !converged || camera.view_projection == camera.previous_view_projection) return true;
     vec3 previous_to_viewer = normalize(camera.previous_position - seen.position);
@@ -40,20 +40,20 @@ bool ages(GBufferSurface seen, uint index, bool few_rays) {
     return (camera.frame + index) % interval == 0;
 }
 
-// Age of a disoccluded pixel: it gathers fully in its own phase.
+// Age of a disoccluded pixel. It gathers with all rays in its own phase.
 Age newAge(uint index) {
     float frames = ageInPhase(index) + FEW_RAYS_AGE;
     return Age(frames, floor(frames) >= float(params.phases));
 }
 
-// Age of light that had an age in the last frame.
+// Age of light with age `last` in the last frame.
 Age nextAge(GBufferSurface seen, uint index, float last) {
     float frames = ages(seen, index, fract(last) != 0.0) ? last + 1.0 : last;
     return Age(frames, floor(frames) >= float(params.phases));
 }
 
 // Age of light that is gathered in this frame. When the camera approaches, many pixels inherit from one and
-// would stay due together: those a little behind their own phase return to it.
+// would stay due together. Pixels slightly behind their own phase therefore return to it.
 float gatheredAge(uint index) {
     float in_phase = ageInPhase(index);
     return in_phase <= 0.25 * float(params.phases) ? in_phase : 0.0;

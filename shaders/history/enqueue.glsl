@@ -1,6 +1,5 @@
-// Compaction of the pixels that gather into a queue. A group takes a region and sorts its pixels by mode and
-// index in 8x8 (a counting sort in shared memory), so that neighbouring threads trace similar rays in similar
-// directions.
+// Compacts the pixels that gather into a queue. A group sorts the pixels of a region by mode and index in
+// their 8x8 tile (counting sort in shared memory), so that neighbouring threads trace similar rays.
 #ifndef HISTORY_ENQUEUE_GLSL
 #define HISTORY_ENQUEUE_GLSL
 #define QUEUE_WRITES
@@ -9,7 +8,7 @@
 const ivec2 REGION = ivec2(64, 32);
 const uint REGION_PIXELS = REGION.x * REGION.y;
 const uint REGION_THREADS = 256;
-const uint KINDS = 256; // GATHER_ mode and index in 8x8: one a thread
+const uint KINDS = 256; // GATHER_ mode and index in the 8x8 tile: one per thread
 #define SCAN_THREADS KINDS
 #include "common/scan.glsl"
 
@@ -17,15 +16,15 @@ layout(local_size_x = REGION_THREADS) in;
 
 const uint NOT_QUEUED = 0xffffffffu;
 
-shared uint region_pixels[REGION_PIXELS]; // kind; from bit 8: rank in the kind
-shared uint kind_starts[KINDS]; // count of each kind, then its first place
+shared uint region_pixels[REGION_PIXELS]; // bits 0-7: kind; from bit 8: rank in the kind
+shared uint kind_starts[KINDS]; // count of each kind, then its first position
 shared uint region_start; // in the queue
 
 ivec2 regionPixel(uint i) {
     return REGION * ivec2(gl_WorkGroupID.xy) + ivec2(i % REGION.x, i / REGION.x);
 }
 
-// Sums up the counts of the kinds before each, and reserves room in the queue.
+// Replaces the counts of kinds with their prefix sum, and reserves room in the queue.
 void reserveRegion() {
     uint kind = gl_LocalInvocationIndex, count = kind_starts[kind], sum = inclusiveSum(count);
     kind_starts[kind] = sum - count;
@@ -37,7 +36,7 @@ void beginRegion() {
     barrier();
 }
 
-// Pixel i of the region: gathers by `mode`, one of the GATHER_ constants. index: in 8x8.
+// Queues pixel i of the region. `mode`: one of the GATHER_ constants. index: in the 8x8 tile.
 void enqueue(uint i, uint mode, uint index) {
     region_pixels[i] = NOT_QUEUED;
     if (mode == GATHER_NOTHING) return;

@@ -1,4 +1,4 @@
-// Reprojection: the pixel of the last frame that saw the same surface.
+// Reprojection: finds the pixel of the last frame that saw the same surface.
 #ifndef HISTORY_REPROJECT_GLSL
 #define HISTORY_REPROJECT_GLSL
 #include "gbuffer/read.glsl"
@@ -10,10 +10,10 @@ uniform sampler2D lastDistance;
 
 // Whether the surface was visible in the last frame, and the pixel `at` that saw it.
 //
-// The lookup takes one pixel and filters nothing: history stays sharp. The point lies between pixels, and the
-// frame's offset decides which one is nearest. All pixels share the offset, so that neighbours stay
-// neighbours and keep their own directions. Offsets follow the R2 sequence (Roberts 2018): history never
-// drifts from its surface by more than about a pixel.
+// The lookup takes one pixel without filtering, so that history stays sharp. The point is between pixels, and
+// the frame's offset selects one of them. All pixels share the offset, so neighbours stay neighbours and keep
+// their own directions. Offsets follow the R2 sequence (Roberts 2018), which limits the drift of history from
+// its surface to about one pixel.
 bool reproject(GBufferSurface seen, out ivec2 at) {
     vec4 clip = camera.previous_view_projection * vec4(seen.position, 1.0);
     if (clip.w <= 0.0) return false;
@@ -21,7 +21,7 @@ bool reproject(GBufferSurface seen, out ivec2 at) {
     vec2 middle = (clip.xy / clip.w * 0.5 + 0.5) * vec2(camera.size) - 0.5;
     at = ivec2(floor(middle + 0.5 + 0.98 * offset));
     if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(camera.size)))) return false;
-    // Distances must agree, except for the depth that an oblique surface gains within two pixels.
+    // Distances must agree within 0.2%, plus the depth that an oblique surface spans in two pixels.
     float range = distance(seen.position, camera.previous_position);
     float last_range = texelFetch(lastDistance, at, 0).r;
     float pixel_angle = 2.0 * tan(0.5 * camera.fov_y) / float(camera.size.y);

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Updates gathered light from the last frame's where the same surface was visible, and queues the pixels that
-// gather again.
+// Reprojects gathered light from the last frame where the same surface was visible, and queues the pixels
+// that gather again.
 #include "params.glsl"
 #include "history/reproject.glsl"
 #include "history/age.glsl"
@@ -10,10 +10,10 @@
 uniform writeonly image2D gatheredDiffuse;
 uniform writeonly image2D gatheredSpecular;
 
-// Surfaces smoother than this gather their reflection in every frame: mirrors show what moves.
+// Smoother surfaces gather their reflection in every frame: mirrors show motion.
 const float MIRROR_ROUGHNESS = 0.1;
 
-// Stores the history of a pixel and its age. Returns how the pixel gathers. index: of the pixel in 8x8.
+// Stores the history of a pixel and its age. Returns how the pixel gathers. index: in the 8x8 tile.
 uint updateHistory(ivec2 pixel, uint index) {
     GBufferSurface seen = gbufferAt(pixel);
     if (!seen.any) {
