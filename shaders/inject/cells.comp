@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// What leaves a cell by direction, all its sides together, premultiplied by opacity: for filtered levels, and who looks at voxels.
+// Directional radiance of each cell, summed over its sides and premultiplied by opacity. Input of filtered
+// levels and of the voxel view.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/directions.glsl"
@@ -13,11 +14,11 @@ layout(local_size_x = 128) in;
 
 uniform writeonly image3D injected;
 
-// Fraction of the cell's face that a surfel covers, seen along its axis.
+// Fraction of the cell's face that a surfel covers, projected along its axis.
 float coverageOf(uint surfel, uint side) {
     uint base = surfelBase(surfel);
     uvec2 mask = coverageMaskOf(base, side);
-    if (mask == uvec2(0)) mask = coverageMaskOf(base, SIDES - 1 - side); // a mirrored side has no mask of its own
+    if (mask == uvec2(0)) mask = coverageMaskOf(base, SIDES - 1 - side); // a mirrored side may lack a mask
     return float(bitCount(mask.x) + bitCount(mask.y)) / 64.0;
 }
 
@@ -39,15 +40,18 @@ void main() {
         uvec2 packed = sideRadiance.list[sideIndex(surfel, i)];
         vec3 radiance = lightOf(packed);
         if (!WARPED && params.levels_emit == 0 && emitters.count > 0) radiance *= 1.0 - timesOf(packed);
-        // Opacity is the projected area: the coverage along the axis times the cosine ratio of the direction and the axis.
-        vec3 facing = normalize(axes * axisVector(uint(axisOfSurfel(surfel + i / SIDES)))) * (side == 0 ? 1.0 : -1.0);
+        // Opacity is the projected area: coverage along the axis, times the ratio of the mean cosines towards
+        // the direction and the axis.
+        vec3 facing = normalize(axes * axisVector(uint(axisOfSurfel(surfel + i / SIDES))))
+            * (side == 0 ? 1.0 : -1.0);
         float covered = coverageOf(surfel + i / SIDES, side), steepest = max(meanCosine(s, facing), 1e-3);
         for (int face = 0; face < 6; face++) {
             vec3 d = normalize(axes * mipDirection(face));
             float area = s.count * meanCosine(s, -d);
             light[face] += area * radiance;
             seen[face] += area;
-            if (area > 0.0) opacity[face] = min(opacity[face] + covered * min(meanCosine(s, -d) / steepest, 1.0), 1.0);
+            if (area > 0.0)
+                opacity[face] = min(opacity[face] + covered * min(meanCosine(s, -d) / steepest, 1.0), 1.0);
         }
     }
     if (params.radiance_faces == 1) {
@@ -57,9 +61,11 @@ void main() {
             sum += light[face];
             all += seen[face];
         }
-        imageStore(injected, cell, vec4(sum / max(all, 1e-6), all > 0.0 ? 1.0 : 0.0)); // 0: all was cut out
+        imageStore(injected, cell,
+            vec4(sum / max(all, 1e-6), all > 0.0 ? 1.0 : 0.0)); // 0: all surfaces were cut out
         return;
     }
     for (int face = 0; face < 6; face++)
-        imageStore(injected, ivec3(cell.x + face * params.voxel_dim, cell.yz), vec4(light[face] / max(seen[face], 1e-6) * opacity[face], opacity[face]));
+        imageStore(injected, ivec3(cell.x + face * params.voxel_dim, cell.yz),
+            vec4(light[face] / max(seen[face], 1e-6) * opacity[face], opacity[face]));
 }

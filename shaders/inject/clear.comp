@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Takes what last frame left in its voxels out of them, once nothing needs it any more: of the settings of now, cells that were set;
-// else all. Clearing the whole volume would cost more than voxelizing. Bricks and `volume` are last frame's.
+// Clears last frame's radiance once no pass reads it any more: only the occupied cells, or all cells if the
+// settings have changed. Clearing the whole volume would cost more than voxelizing. Bricks and `volume` are
+// last frame's.
 #include "params.glsl"
 #include "voxels/bricks.glsl"
 

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Radiance leaving each side of a voxel: albedo / pi * E * max(0, n.l) * visibility, summed over all lights, plus albedo times the
-// mean radiance that the side has gathered, plus emission. Runs over the voxel list, so each surface is lit once.
+// Outgoing radiance of each voxel side: albedo / pi * E * max(0, n.l) * visibility, summed over all lights,
+// plus albedo times the gathered mean radiance, plus emission. Runs over the list of surfels, so each surface
+// is lit once.
 #include "params.glsl"
 #include "common/math.glsl"
 #include "volume/volume.glsl"
@@ -14,16 +15,17 @@
 
 layout(local_size_x = 128) in;
 
-// Surfaces that lie nearer to each other are one [cells].
+// Surfaces closer to each other count as one [cells].
 const float LAYER = 0.12;
 
-// Points on a side's surfaces in each covered quarter, relative to the cell's middle [cells]: on the mean plane, and on the front layer. If
-// a cell holds two layers, the front layer is lit and shadows the mean plane.
+// Sample points on a side's surfaces in each covered quarter, relative to the cell centre [cells]: on the
+// mean plane and on the front layer. If a cell has two layers, the front layer is lit and shadows the mean
+// plane.
 struct Taps {
     vec3 middle;
     vec3 places[4];
-    float lift[4]; // of the front layer over the mean, along the axis [cells]
-    float share[4]; // of the front layer
+    float lift[4]; // of the front layer over the mean plane, along the axis [cells]
+    float share[4]; // covered by the front layer
     vec3 outwards;
     int count;
 };
@@ -57,7 +59,7 @@ float lookUp(Light light, vec3 p) {
     return shadowBlended(layer, shadowPosition(layer, p));
 }
 
-// Share of the surface around `center` that sees the light, each place moved off it a little.
+// Fraction of the surface around `center` that the light reaches. Lookups are biased off the surface.
 float voxelVisibility(Light light, vec3 center, Taps taps, mat3 axes, vec3 n, vec3 to_light) {
     if (light.shadow_view < 0) return 1.0;
     float cell = pow(abs(determinant(axes)), 1.0 / 3.0);
@@ -69,7 +71,8 @@ float voxelVisibility(Light light, vec3 center, Taps taps, mat3 axes, vec3 n, ve
     for (int i = 0; i < taps.count; i++) {
         float share = taps.share[i];
         if (share < 1.0) sum += (1.0 - share) * lookUp(light, base + axes * taps.places[i]);
-        if (share > 0.0) sum += share * lookUp(light, base + axes * (taps.places[i] + taps.lift[i] * taps.outwards));
+        if (share > 0.0)
+            sum += share * lookUp(light, base + axes * (taps.places[i] + taps.lift[i] * taps.outwards));
     }
     return sum / float(taps.count);
 }
@@ -81,13 +84,15 @@ vec3 radianceOf(Side s, vec3 gathered, vec3 center, Taps taps, mat3 axes) {
         Incident incident = incidentLight(light, middle);
         float cosine = meanCosine(s, incident.to_light);
         if (cosine > 0.0 && incident.irradiance != vec3(0.0))
-            irradiance += incident.irradiance * cosine * voxelVisibility(light, center, taps, axes, s.normal, incident.to_light);
+            irradiance += incident.irradiance * cosine
+                * voxelVisibility(light, center, taps, axes, s.normal, incident.to_light);
     }
     return s.color * (irradiance / PI + gathered) + s.emission;
 }
 
 void main() {
-    for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.count * SIDES; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
+    for (uint i = gl_GlobalInvocationID.x; i < voxelCounter.count * SIDES;
+            i += gl_NumWorkGroups.x * gl_WorkGroupSize.x) {
         uint surfel = i / SIDES, side = i % SIDES;
         if (axisOfSurfel(surfel) < 0) continue;
         ivec3 cell = cellOfSurfel(surfel);

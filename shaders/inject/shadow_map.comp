@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Radiance injection from the shadow maps (thesis, Section 4.3 and Algorithm 2): one thread a texel writes
-// into the voxel it hits: its base colour, not the light that it reflects, and from the texel's corner, not its centre.
-// Writes of several texels, and of several lights, race: the last one stays.
+// Radiance injection from the shadow maps (thesis, Section 4.3 and Algorithm 2). One thread per texel writes
+// the voxel that the texel hits. As in the thesis, it writes the base colour instead of the reflected light,
+// at the texel's corner instead of its centre. Writes of several texels and lights race: the last one stays.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "shadow/views.glsl"

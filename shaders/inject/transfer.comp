@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Transfer of opacity into the radiance texture (thesis, Section 4.3), before the lit voxels are written;
-// emission comes along.
+// Copies opacity and emission into the radiance texture (thesis, Section 4.3), before the lit voxels are
+// written.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/voxels.glsl"
