@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Blends last frame's radiance into this frame's (thesis, Section 4.7.2), looked up where the cell was last
-// frame, so that a moving volume does not smear. The history is rgba16f: in 8 bits the decay would stick.
+// Blends last frame's radiance into this frame's (thesis, Section 4.7.2). Looks it up at the cell's position
+// in last frame's volume, so that a moving volume does not smear. The history is rgba16f: with 8 bits the
+// decay would stall.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/voxels.glsl"
@@ -14,7 +15,8 @@ layout(std430) readonly buffer LastVolume { VolumeMap maps[MAX_CASCADES]; uint s
 uniform writeonly image3D voxelHistory;
 uniform writeonly image3D voxelRadiance;
 
-// A camera that jumps has cut: what lies where it is now was not looked at before, or from farther.
+// A camera that moves more than temporal_cut counts as a cut. It may not have seen this volume before, or
+// only from farther away.
 bool isCut(VolumeMap g, VolumeMap last) {
     return distance(g.seen_from, last.seen_from) > params.temporal_cut;
 }
@@ -29,7 +31,7 @@ void main() {
     VolumeMap g = volume.maps[cascade], last = lastVolume.maps[cascade];
     if (lastVolume.signature == volume.signature && !isCut(g, last)) {
         vec3 u = worldToVolume(last, volumeToWorld(g, cellCentre(cell)));
-        // A volume that moved by whole voxels finds its cell's centre again, to rounding.
+        // After a move by whole voxels, the lookup hits a cell centre up to rounding.
         if (inVolume(u)) {
             float half_cell = 0.5 / float(params.voxel_dim);
             u.x = (float(face) + clamp(u.x, half_cell, 1.0 - half_cell)) / float(params.radiance_faces);
@@ -37,7 +39,8 @@ void main() {
             value = mix(value, textureLod(lastHistory, u, 0.0), params.temporal_factor);
         }
     }
-    value = mix(vec4(0.0), value, greaterThan(value, vec4(1e-6))); // let the tail die: halves slow down near 0
+    // Ends the tail: half floats decay slowly near 0.
+    value = mix(vec4(0.0), value, greaterThan(value, vec4(1e-6)));
     imageStore(voxelHistory, texel, value);
     imageStore(voxelRadiance, texel, value);
 }
