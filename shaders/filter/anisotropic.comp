@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Filtered levels that know directions (Crassin et al. 2011, Section 6): each cell has what rays along +x, -x, +y, -y,
-// +z and -z meet in it, composited front to back in pairs and averaged over the four columns. The six lie side by side.
+// Anisotropic filtering (Crassin et al. 2011, Section 6): each cell stores radiance and opacity for rays
+// along +x, -x, +y, -y, +z and -z. Cells are composited front to back in pairs and averaged over four
+// columns. The six directions are next to each other along x.
 #include "params.glsl"
 #include "voxels/directions.glsl"
 #include "voxels/bricks.glsl"
@@ -11,14 +12,14 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 uniform sampler3D src; // one level
 uniform writeonly image3D dst;
 
-// What rays along `direction` see of a texel of the finer level.
+// Texel of the finer level for rays along `direction`.
 vec4 child(ivec3 cell, int direction, int dim) {
     cell.xy = min(cell.xy, ivec2(dim - 1)); // a level of one cell
     if (CASCADE_COUNT == 1) cell.z = min(cell.z, dim - 1);
     return texelFetch(src, ivec3(cell.x + direction * dim, cell.yz), 0);
 }
 
-// Whether a cell of level 1 belongs to a brick that is not stored. Its texels hold no light and need not be read.
+// Whether a cell of level 1 belongs to a brick that is not stored. Its texels are empty and need not be read.
 bool isEmpty(ivec3 cell, int fine) {
     if (params.light_in_bricks == 0 || fine != params.voxel_dim) return false;
     ivec3 stored = 2 * cell;

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One mip of the radiance from the finer one (thesis, Section 4.4). Texels are premultiplied by opacity, so
-// a plain mean is right. Odd sizes use three taps with the weights of the exact box.
+// Computes one mip of the radiance from the finer one (thesis, Section 4.4). Texels are premultiplied by
+// opacity, so a plain mean is correct. Odd sizes use three taps per axis, weighted like the exact box.
 #include "params.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
@@ -9,7 +9,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 uniform sampler3D src; // one mip, border clamped
 uniform writeonly image3D dst;
 
-// Weights of the texels 2i, 2i + 1, 2i + 2 in texel i of a row of n halved to m.
+// Weights of texels 2i, 2i + 1 and 2i + 2 in texel i, for a row of n texels halved to m.
 vec3 boxWeights(int i, int n, int m) {
     if (n == 2 * m) return vec3(0.5, 0.5, 0.0);
     return n == 1 ? vec3(1.0, 0.0, 0.0) : vec3(float(m - i), float(m), float(i + 1)) / float(n);
@@ -31,7 +31,8 @@ void main() {
     ivec3 m = imageSize(dst), n = textureSize(src, 0);
     if (any(greaterThanEqual(cell, m))) return;
     vec4 value;
-    if (all(equal(n, 2 * m))) value = textureLod(src, (vec3(cell) + 0.5) / vec3(m), 0.0); // the 8 texels, in hardware
+    if (all(equal(n, 2 * m)))
+        value = textureLod(src, (vec3(cell) + 0.5) / vec3(m), 0.0); // mean of 8 texels by the texture unit
     else value = box(cell, n, m);
     imageStore(dst, cell, value);
 }
