@@ -1,4 +1,4 @@
-// What the voxel view colours its cubes by.
+// Colour of the voxel view's cubes.
 uniform sampler3D shown; // the shown level of voxelAttribute
 
 vec3 cellColor(ivec3 cell, vec3 center, int face) {

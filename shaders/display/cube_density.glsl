@@ -1,4 +1,4 @@
-// Cubes by the density of cells, on request.
+// Colours cubes by the density of cells if params.density selects voxels.
 #include "display/density.glsl"
 #define cellColor plainColor
 #include "display/cube_color.glsl"

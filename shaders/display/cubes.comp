@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Lists the cells of the shown level that hold anything, one cube each.
+// Lists the non-empty cells of the shown level, one cube each.
 #include "params.glsl"
 #include "display/cubes.glsl"
 

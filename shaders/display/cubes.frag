@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// A little light from the viewer, so that the cubes' faces are told apart.
+// Shades the cubes by face orientation, so that their faces can be distinguished.
 #include "common/scene.glsl"
 
 layout(location = 0) flat in vec4 color;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The scene coloured by the density of its voxels (thesis, Figure 5.7).
+// Colours the scene by the density of its voxels (thesis, Figure 5.7).
 #include "params.glsl"
 #include "common/scene.glsl"
 #include "volume/volume.glsl"
@@ -12,7 +12,7 @@ layout(location = 0) out vec4 inspected;
 uniform sampler2D seenDepth;
 uniform sampler2D surfaceNormal;
 
-const float NOTHING = 1e-30; // depth of the background, but for a position that is finite
+const float NOTHING = 1e-30; // background depth, above 0 to keep positions finite
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -23,5 +23,6 @@ void main() {
     float light = 0.35 + 0.65 * abs(dot(n, normalize(camera.position - p)));
     int cascade = cascadeAt(p);
     vec3 u = worldToVolume(volume.maps[cascade], p);
-    inspected = vec4(z > NOTHING && inVolume(u) ? densityColor(volume.maps[cascade], p) * light : vec3(0.0), 1.0);
+    inspected = vec4(z > NOTHING && inVolume(u) ?
+        densityColor(volume.maps[cascade], p) * light : vec3(0.0), 1.0);
 }

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Distance along the view direction, as a share of the scene's size.
+// Distance along the view direction, as a fraction of the diagonal of the scene's bounding box.
 #include "common/scene.glsl"
 
 layout(location = 0) in vec2 uv;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Exposure, tone map and encoding: linear radiance to the 8-bit picture.
+// Applies exposure, tone map and encoding: linear radiance to the 8-bit image.
 #include "params.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2D source;
 uniform writeonly image2D display;
 
-// Texels whose light is no finite number: the 8-bit picture would hide them.
+// Counts pixels with NaN or infinity, which the 8-bit image would hide.
 layout(std430) buffer PictureErrors { uint not_finite; } pictureErrors;
 
 vec3 toneMap(vec3 c) {
