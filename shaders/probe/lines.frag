@@ -1,5 +1,5 @@
 #version 460
-// Lines with smooth edges; those behind what is seen are faint.
+// Draws antialiased lines. Parts behind visible surfaces are faint.
 
 layout(location = 0) flat in vec4 color;
 layout(location = 1) in float across;

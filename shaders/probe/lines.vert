@@ -1,26 +1,27 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The recorded cones over the picture: for each sample the line that led to it and the outline of the cell that
-// it read, if it found anything there. Coloured by level, as strong as the sample counts.
+// Draws the recorded cones over the image: for each sample the line that leads to it, and the outline of the
+// cell that it read if that was not empty. Colour shows the level, opacity the sample's weight.
 #include "params.glsl"
 #include "common/scene.glsl"
 #include "volume/volume.glsl"
 #include "probe/samples.glsl"
 
 layout(location = 0) flat out vec4 color;
-layout(location = 1) out float across; // distance from the line's middle [pixels]
+layout(location = 1) out float across; // signed distance from the line's centre [pixels]
 layout(location = 2) flat out float half_width; // [pixels]
 
 const vec4 NOWHERE = vec4(0.0, 0.0, -1.0, 1.0);
 
-// Green for the finest level, then blue, violet, red.
+// Green for the finest level, then blue, violet and red.
 vec3 levelColor(float level) {
     float hue = 0.36 + 0.09 * level;
     vec3 pure = clamp(abs(fract(hue + vec3(1.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
     return mix(pure, vec3(1.0), 0.2);
 }
 
-// A corner of the quad that stands for a line from a to b (clip space), `half_width` and a pixel's edge wide.
+// Corner of the quad for a line from a to b (clip space). Extends `half_width` plus half a pixel to each
+// side.
 vec4 lineCorner(vec4 a, vec4 b, int corner) {
     float least = camera.near;
     if (a.w < least && b.w < least) return NOWHERE;
@@ -46,7 +47,7 @@ void main() {
         half_width = s.cone == 0 ? 1.75 : 1.0;
         color = vec4(mix(levelColor(s.level), vec3(1.0), 0.4), 0.25 + 0.75 * (s.transmittance + s.alpha));
     } else {
-        // The edge along an axis, at one of the four corners of the other two.
+        // Edge along an axis, at one of the four corners of the other two axes.
         int axis = line / 4;
         vec3 at = vec3(-0.5);
         at[(axis + 1) % 3] += float(line & 1);
@@ -57,6 +58,7 @@ void main() {
         half_width = 0.75;
         color = vec4(levelColor(s.level), sqrt(clamp(s.alpha, 0.0, 1.0)));
     }
-    gl_Position = lineCorner(camera.view_projection * vec4(a, 1.0), camera.view_projection * vec4(b, 1.0), corner);
+    gl_Position = lineCorner(camera.view_projection * vec4(a, 1.0), camera.view_projection * vec4(b, 1.0),
+        corner);
     if (color.a < 0.01) gl_Position = NOWHERE;
 }

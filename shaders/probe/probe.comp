@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The cone probe where pixels are shaded by threads.
+// Cone probe for pixels that compute shaders shade.
 #include "params.glsl"
 #include "gbuffer/read.glsl"
 #include "probe/record.glsl"

@@ -1,4 +1,4 @@
-// Every sample of the cones that are traced, written down.
+// Records every sample of the traced cones.
 #ifndef CONE_RECORD_GLSL
 #define CONE_RECORD_GLSL
 #include "probe/samples.glsl"
@@ -14,7 +14,8 @@ uint rows = 0;
 void recordSample(int number, float along, ConeSample x, float a, float transmittance) {
     if (rows >= coneSamples.list.length()) return;
     vec3 radiance = a > 0.0 ? x.texel.rgb * (a / x.texel.a) : vec3(0.0);
-    coneSamples.list[rows] = RecordedSample(cone, uint(number), along, x.advance, x.position, x.level, radiance, x.cell, x.texel.a, a, transmittance, x.radius);
+    coneSamples.list[rows] = RecordedSample(cone, uint(number), along, x.advance, x.position, x.level,
+        radiance, x.cell, x.texel.a, a, transmittance, x.radius);
     rows++;
 }
 
