@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Base colour in the light of a lamp at the camera.
+// Base colour lit by a lamp at the camera, plus emission.
 #include "params.glsl"
 #include "common/scene.glsl"
 #include "common/materials.glsl"
@@ -19,6 +19,6 @@ void main() {
     Place at = Place(uv, color);
     vec4 base = baseColor(m, at, g);
     if (base.a < m.alpha_cutoff) discard;
-    float facing = abs(dot(normalize(normal), normalize(camera.position - position))); // surfaces have two sides
+    float facing = abs(dot(normalize(normal), normalize(camera.position - position))); // two-sided
     display = encoded(base.rgb * (0.2 + 0.8 * facing) + emission(m, at, g));
 }

@@ -1,4 +1,4 @@
-// The preview's way to the screen: exposure, Reinhard's curve, and a power for the encoding.
+// Display transform of the preview: exposure, Reinhard tone map and a gamma of 2.2.
 #ifndef PREVIEW_GLSL
 #define PREVIEW_GLSL
 
