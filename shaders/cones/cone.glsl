@@ -1,21 +1,21 @@
-// Voxel cone tracing (thesis, Section 4.5.2): a march in world space with lengths in local level-0 cells, so that it is the
-// same under every warp. Where samples lie and what they read: modules/lookup. How much of a cone a step hides:
-// modules/opacity.
+// Voxel cone tracing (thesis, Section 4.5.2): marches in world space, with lengths in local level-0 cells, so
+// that warps do not change it. modules/lookup places and reads the samples, modules/opacity computes the
+// opacity of a step.
 #ifndef CONE_GLSL
 #define CONE_GLSL
 #include "modules/lookup.glsl"
 #include "surfels/trace.glsl"
 #include "gather/emitters.glsl"
 
-// A cone that has met more than stop_transmittance leaves: what is left would hit something too, so it is spread over what
-// was hit.
+// Ends a cone with its transmittance below stop_transmittance. The rest would hit something too, so the
+// result is normalised to full opacity.
 vec4 stopped(vec3 color, float alpha) {
     return vec4(color / alpha, 1.0);
 }
 
-// Length of the exact part of a cone [m]: as long as the cone would read level 0, its axis is tested against surfels. The cells of
-// the next cascade are up to eight times as large, so narrow cones stay exact until this holds in the coarsest cascade. Warped
-// cells bend rays, so the exact part is short there.
+// Length of the exact part of a cone [m]: surfels are tested along its axis as long as the cone would read
+// level 0. Cells of the next cascade are up to eight times as large, so narrow cones stay exact until this
+// holds in the coarsest cascade. Warped cells bend rays, so their exact part is short.
 float exactRange(ConeOrigin o, vec3 d, float tan_half) {
     float near = params.near_cells * cellLength(volume.maps[o.cascade], o.surface, d);
     if (WARPED || params.near_cells == 0.0) return near;
@@ -23,8 +23,8 @@ float exactRange(ConeOrigin o, vec3 d, float tan_half) {
     return max(near, exp2(-params.lod_offset) * cell / (2.0 * tan_half));
 }
 
-// Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture. Rays to emitter samples are
-// exact along their whole length, because filtered levels blur the shadows of lamps.
+// Mean radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture. Rays to
+// emitter samples are exact along their whole length, because filtered levels blur the shadows of lamps.
 vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
     float first_cell;
     Cone cone = coneFrom(o, d, tan_half, first_cell);
@@ -38,7 +38,10 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
         if (met.light.a > 0.0) {
             met.light.rgb *= shareOfRay(use, met.light.rgb, met.emitted, met.distance);
             vec3 position = o.surface + met.distance * d;
-            CONE_SAMPLED(0, met.distance, ConeSample(position, met.distance * tan_half, 0.0, first_cell, first_cell, 0.0, met.light, false, true), 1.0, 0.0);
+            CONE_SAMPLED(0, met.distance,
+                ConeSample(position, met.distance * tan_half, 0.0, first_cell, first_cell, 0.0, met.light,
+                    false, true),
+                1.0, 0.0);
             return met.light;
         }
         along = max(met.distance, min(along, range));

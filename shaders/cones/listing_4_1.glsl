@@ -1,7 +1,7 @@
-// Cone tracing as Listing 4.1 of the thesis has it: a start `bias` voxels along the shading normal, a level as wide as the
-// cone, opacity as stored, steps as long as the cone's radius. Lengths are
-// world lengths; the listing's are in voxels. Not in the listing: a cone ends where it leaves the volume (the listing goes on
-// through the border's zeros), a step is at least a twentieth of a voxel, and texels with next to no opacity add nothing.
+// Cone tracing as in Listing 4.1 of the thesis: starts `bias` voxels along the shading normal, reads the
+// level as wide as the cone, uses opacity as stored, and steps by the cone's radius. Lengths are in world
+// units; the listing's are in voxels. Additions: a cone ends at the volume's border (the listing reads on
+// through zeros), a step is at least 0.05 voxels, and nearly transparent texels add nothing.
 #ifndef CONE_GLSL
 #define CONE_GLSL
 #include "cones/origin.glsl"
@@ -10,7 +10,8 @@
 
 // The shading normal can point into the geometry.
 ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
-    return ConeOrigin(p + params.bias * cellLength(volume.maps[0], p, shading) * shading, geometric, 0.0, 0.0, 0, vec3(0.0), 1.0);
+    return ConeOrigin(p + params.bias * cellLength(volume.maps[0], p, shading) * shading, geometric, 0.0, 0.0,
+        0, vec3(0.0), 1.0);
 }
 
 // Radiance (premultiplied) and opacity along a cone. tan_half: tangent of half the aperture.
@@ -30,7 +31,9 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps) {
         float a = texel.a > 1e-5 ? (1.0 - alpha) * texel.a : 0.0, advance = max(radius, 0.05 * voxel);
         if (a > 0.0) color += texel.rgb * (a / texel.a);
         alpha += a;
-        CONE_SAMPLED(i, along, ConeSample(p, radius, level, voxel, voxel * exp2(level), advance, texel, false, false), a, 1.0 - alpha);
+        CONE_SAMPLED(i, along,
+            ConeSample(p, radius, level, voxel, voxel * exp2(level), advance, texel, false, false),
+            a, 1.0 - alpha);
         if (1.0 - alpha < params.stop_transmittance) break;
         along += advance;
     }

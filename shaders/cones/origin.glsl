@@ -1,4 +1,4 @@
-// Where cones start, off the surface.
+// Cone origins, offset from the surface.
 #ifndef CONE_ORIGIN_GLSL
 #define CONE_ORIGIN_GLSL
 #include "volume/volume.glsl"
@@ -7,20 +7,22 @@ uniform sampler3D voxelRadiance; // premultiplied by opacity; border clamped
 
 struct ConeOrigin {
     vec3 position; // off the surface
-    vec3 normal; // geometric: the plane that cones must stay above
+    vec3 normal; // geometric; cones must stay above its plane
     float height; // of position above the surface [m]
     float reach; // half the local cell's extent across the surface [m]
-    int cascade; // that the surface lies in
-    vec3 surface; // a little off it
-    float weight; // of it; of the next one, the rest: so that no seam shows where a cascade ends
+    int cascade; // that contains the surface
+    vec3 surface; // position with a small offset, for rays
+    float weight; // of this cascade; the next one gets the rest, which hides the seam between them
 };
 
-// What a ray is for.
+// Purpose of a ray.
 struct RayUse {
-    float range; // what lies farther is not met [m]
-    float density; // of such rays [1/sr], where places on emitters are drawn too and share their light with them; 0: the ray has all of it
-    float drawn; // such places
-    float lamp; // emitters that lie farther hide nothing [m]
+    float range; // hits beyond it are ignored [m]
+    // Number of such rays times their pdf [1/sr], for multiple importance sampling with emitter samples. 0:
+    // the ray gets all of the light.
+    float density;
+    float drawn; // number of emitter samples
+    float lamp; // emitters beyond it do not occlude [m]
 };
 
 const RayUse WHOLE_RAY = RayUse(1e30, 0.0, 0.0, 1e30);
