@@ -1,5 +1,5 @@
-// The light that a surface's cones gather (thesis, Section 4.5.2). What traces a cone is in modules/trace, which includes
-// this after saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number).
+// Light gathered by the cones of a surface (thesis, Section 4.5.2). The including module of modules/trace
+// defines vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number).
 #include "cones/sets.glsl"
 #include "gather/radiance.glsl"
 #include "modules/specular_lobe.glsl"
@@ -10,7 +10,9 @@ vec4 gatherDiffuse(ConeOrigin o, vec3 n) {
     vec4 sum = vec4(0.0);
     for (int i = 0; i < set.count; i++) {
         float angle = 2.0 * PI * float(i) / float(set.count - 1);
-        vec3 d = i == 0 ? n : frame * vec3(set.sin_tilt * cos(angle), set.sin_tilt * sin(angle), set.cos_tilt);
+        vec3 d = i == 0
+            ? n
+            : frame * vec3(set.sin_tilt * cos(angle), set.sin_tilt * sin(angle), set.cos_tilt);
         float weight = i == 0 ? set.axial_weight : (1.0 - set.axial_weight) / float(set.count - 1);
         CONE_BEGINS(uint(i) + 1u);
         vec4 cone = traceAny(o, d, set.tan_half, params.diffuse_steps, uint(i) + 1u);
@@ -24,10 +26,11 @@ vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     d = normalize(d + face * max(0.02 - dot(d, face), 0.0)); // mapped normals may reflect into the surface
     CONE_BEGINS(0u);
     float tan_half = tan(specularHalfAngle(s));
-    return coneRadiance(traceAny(o, d, tan_half, params.specular_steps, 0u), d, coneSolidAngle(tan_half)) * specularWeight(s, v);
+    return coneRadiance(traceAny(o, d, tan_half, params.specular_steps, 0u), d, coneSolidAngle(tan_half))
+        * specularWeight(s, v);
 }
 
-// Two calls that trace cones: the compiler makes two loops of them, each the faster for it.
+// Two calls that trace cones: the compiler makes a separate, faster loop for each.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     return Gathered(gatherDiffuse(o, s.normal), gatherSpecular(o, s, face, v));
 }

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Every pixel gathers with its own set of cones, in every frame.
+// Gathers with a full set of cones for every pixel in every frame.
 #include "params.glsl"
 #include "gather/pixel.glsl"
 

@@ -1,12 +1,14 @@
-// A few narrow cones or rays a pixel, other ones in each pixel of a block of 8x8: shading filters over the block, so
-// that each surface sees up to 64 times as many (Segovia et al. 2006). What traces one is in modules/trace, which includes this after
-// saying: vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use), and whether places on emitters are drawn too.
+// Traces a few narrow cones or rays per pixel, different ones for each pixel of an 8x8 block. Shading filters
+// over the block, so each surface sees up to 64 times as many (Segovia et al. 2006). The including module of
+// modules/trace defines vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use),
+// exactRange and SAMPLES_EMITTERS.
 #include "gather/radiance.glsl"
 #include "gather/emitters.glsl"
 #include "common/ggx.glsl"
 #include "common/pattern.glsl"
 
-// Number of a point of the pixel's pattern; those of a pixel lie far apart, and those of neighbours too.
+// Index of a point in the pixel's pattern. Points of one pixel are far apart, and so are points of
+// neighbours.
 uint pointIndex(int i) {
     return uint(i) * 64u + patternIndex(uvec2(pixelCentre()));
 }
@@ -15,7 +17,7 @@ vec2 pixelPoint(int i) {
     return r2(pointIndex(i));
 }
 
-// Other points in each block: what few directions cannot tell becomes noise and not a bias.
+// Each block uses other points, which turns the bias of few directions into noise.
 uint patternBlock() {
     uvec2 block = uvec2(pixelCentre()) >> 3;
     return block.x * 37u + block.y * 101u;
@@ -29,40 +31,47 @@ float largest(vec3 v) {
     return max(v.r, max(v.g, v.b));
 }
 
-// Rays into the lobe, beside those over the hemisphere: by its share of the light that the surface reflects.
+// Number of rays into the specular lobe: lobe_share of the hemisphere's rays, scaled by the lobe's share of
+// the surface's reflectance.
 int specularRays(Surface s, vec3 v) {
     float mirrored = largest(fresnel(s, max(dot(s.normal, v), 0.0)));
     float share = mirrored / (mirrored + largest(s.albedo));
     return clamp(int(ceil(params.lobe_share * share * float(gatherShare.rays))), 1, max(gatherShare.rays, 1));
 }
 
-// What a place on an emitter brings if nothing hides it.
+// Unshadowed contribution of an emitter sample.
 struct EmitterLight {
-    vec3 hemisphere; // as of `rays` rays
-    vec3 specular; // as of `lobe` rays
+    vec3 hemisphere; // in units of a sum over `rays` rays
+    vec3 specular; // in units of a sum over `lobe` rays
 };
 
-// Length of the exact part of cones [m]. There they hit emitters and share their light with emitter samples (multiple importance
-// sampling); filtered levels hold no emission.
+// Length of the exact part of cones [m]. There they hit emitters and share their light with emitter samples
+// (multiple importance sampling); filtered levels hold no emission.
 struct SharedRange {
     float rays;
     float lobe;
 };
 
-EmitterLight emitterSampleLight(EmitterSample place, Surface s, vec3 face, vec3 v, float rays, float lobe, float drawn, SharedRange range) {
+EmitterLight emitterSampleLight(EmitterSample place, Surface s, vec3 face, vec3 v, float rays, float lobe,
+    float drawn, SharedRange range) {
     float cosine = dot(s.normal, place.direction);
-    if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0) return EmitterLight(vec3(0.0), vec3(0.0));
+    if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0)
+        return EmitterLight(vec3(0.0), vec3(0.0));
     float found = drawn * place.by_area * place.distance * place.distance;
     vec3 light = place.radiance * place.cosine * cosine;
     float by_rays = place.distance < range.rays ? rays * cosine / PI : 0.0;
-    float by_lobe = place.distance < range.lobe && lobe > 0.0 ? lobe * specularDensity(s, v, place.direction) : 0.0;
+    float by_lobe = place.distance < range.lobe && lobe > 0.0
+        ? lobe * specularDensity(s, v, place.direction)
+        : 0.0;
     return EmitterLight(
         rays > 0.0 ? light * (rays / PI) / (found + by_rays) : vec3(0.0),
         lobe > 0.0 ? light * lobe * specularBrdf(s, v, place.direction) / (found + by_lobe) : vec3(0.0));
 }
 
-// A place of some that are drawn, and what it brings for all of them.
-EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe, float drawn, float tan_half, float tan_lobe, out EmitterLight light) {
+// Resampled importance sampling: picks one of CANDIDATES emitter samples by unshadowed contribution. `light`
+// is the estimate for all of them.
+EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe,
+    float drawn, float tan_half, float tan_lobe, out EmitterLight light) {
     float sum = 0.0, own = 0.0;
     EmitterSample best;
     best.cosine = 0.0;
@@ -71,9 +80,11 @@ EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int nu
     float choice = fract(shift.x + float(pointIndex(number) & 0xffffu) * 0.6180339887);
     for (int k = 0; k < CANDIDATES; k++) {
         EmitterSample place = sampleEmitter(o.surface, r4(pointIndex(number * CANDIDATES + k), shift));
-        SharedRange range = SharedRange(exactRange(o, place.direction, tan_half), exactRange(o, place.direction, tan_lobe));
+        SharedRange range =
+            SharedRange(exactRange(o, place.direction, tan_half), exactRange(o, place.direction, tan_lobe));
         EmitterLight found = emitterSampleLight(place, s, face, v, rays, lobe, drawn, range);
-        float weight = luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
+        float weight =
+            luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
         if (weight <= 0.0) continue;
         sum += weight;
         float chance = weight / sum;
@@ -92,15 +103,15 @@ EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int nu
     return best;
 }
 
-// Cones over the hemisphere, then some directions of the lobe; a cone there has a sixty-fourth of it; then rays to emitters. One loop for
-// all: what traces them is large, and in the program once.
+// Traces cones over the hemisphere, then narrow cones in the specular lobe (each 1/64 of its solid angle),
+// then rays to emitters. One loop for all: the tracing code is large and is compiled only once.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     mat3 frame = frameOf(s.normal);
     float tan_half = tan(radians(0.5 * params.cone_aperture)), tan_lobe = 0.25 * ggxAlpha(s.roughness);
     int rays = gatherShare.rays, lobe = specularRays(s, v);
     int drawn = SAMPLES_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
     float candidates = float(drawn * CANDIDATES);
-    // What each of them stands for.
+    // Solid angle that each ray represents [sr].
     float spread = PI / float(max(rays, 1)), lobe_spread = lobeSolidAngle(s) / float(max(lobe, 1));
     vec4 hemisphere = vec4(0.0);
     vec3 specular = vec3(0.0);
@@ -110,7 +121,8 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
         RayUse use = WHOLE_RAY;
         EmitterLight light = EmitterLight(vec3(0.0), vec3(0.0));
         if (is_drawn) {
-            EmitterSample place = resampleEmitter(o, s, face, v, i - rays - lobe, float(rays), float(lobe), candidates, tan_half, tan_lobe, light);
+            EmitterSample place = resampleEmitter(o, s, face, v, i - rays - lobe, float(rays), float(lobe),
+                candidates, tan_half, tan_lobe, light);
             if (place.cosine == 0.0) continue;
             d = place.direction;
             use = rayTo(place, o.surface);
@@ -125,8 +137,13 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
             if (dot(d, face) <= 0.0) continue; // mapped normals lean
             if (drawn > 0) use = RayUse(1e30, float(rays) * diffuseDensity(s, d), candidates, 1e30);
         }
-        CONE_BEGINS(is_drawn ? uint(params.diffuse_cones + i - rays) : !mirrors ? uint(i) + 1u : i == rays ? 0u : uint(params.diffuse_cones + i - rays));
-        vec4 cone = traceAny(o, d, mirrors ? tan_lobe : tan_half, mirrors ? params.specular_steps : params.diffuse_steps, use);
+        CONE_BEGINS(is_drawn ? uint(params.diffuse_cones + i - rays)
+            : !mirrors ? uint(i) + 1u
+            : i == rays ? 0u
+            : uint(params.diffuse_cones + i - rays));
+        vec4 cone = traceAny(o, d,
+            mirrors ? tan_lobe : tan_half,
+            mirrors ? params.specular_steps : params.diffuse_steps, use);
         if (is_drawn) {
             hemisphere.rgb += (1.0 - cone.a) * light.hemisphere;
             specular += (1.0 - cone.a) * light.specular;

@@ -1,8 +1,8 @@
-// What the rays or cones of each pixel gather, to be filtered and reflected by shading.
+// Images of the light gathered for each pixel, before filtering and shading.
 #include "gbuffer/read.glsl"
 #include "modules/trace.glsl"
 
-uniform writeonly image2D gatheredDiffuse; // mean radiance over the hemisphere; a: how open it is
+uniform writeonly image2D gatheredDiffuse; // mean radiance over the hemisphere; a: openness
 // Radiance towards the viewer; a: age [frames].
 #ifdef READS_AGE
 layout(rgba16f) uniform image2D gatheredSpecular;

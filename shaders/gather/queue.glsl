@@ -2,13 +2,13 @@
 #ifndef SHADE_QUEUE_GLSL
 #define SHADE_QUEUE_GLSL
 
-const uint GATHER_PIXELS = 32; // of a group
+const uint GATHER_PIXELS = 32; // per group
 #define QUEUE_LIST gatherQueue
 #define QUEUE_COUNTER gatherCounter
 #define QUEUE_GROUP GATHER_PIXELS
 #include "common/queue.glsl"
 
-// How a pixel gathers.
+// Gathering modes of a pixel.
 const uint GATHER_FEW = 0; // FEW_RAYS: a disoccluded pixel before its phase
 const uint GATHER_ALL = 1; // all rays: the pixel is due
 const uint GATHER_MIRRORED = 2; // only its reflection

@@ -1,5 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// In a scene where nothing emits.
+// Scenes without emitters.
 #define SCENE_EMITS false
 #include "gather/queued.glsl"

@@ -6,7 +6,7 @@
 #include "gather/pixel.glsl"
 #include "shade/demodulate.glsl"
 
-const uint GATHER_THREADS = 4; // of a pixel
+const uint GATHER_THREADS = 4; // per pixel
 
 layout(local_size_x = GATHER_PIXELS, local_size_y = GATHER_THREADS) in;
 
@@ -32,7 +32,7 @@ void gatherQueued(uint word, bool gathers) {
     Gathered light = Gathered(vec4(0.0), vec3(0.0));
     if (gathers) {
         GBufferSurface seen = gbufferAt(gathering);
-        seen.surface.multiple = vec3(1.0); // cancels between here and the shading
+        seen.surface.multiple = vec3(1.0); // cancels in demodulation
         gatherShare = RayShare(rays, emitters, int(part), int(GATHER_THREADS));
         ConeOrigin origin = coneOrigin(seen.position, seen.face, seen.surface.normal);
         light = gather(origin, seen.surface, seen.face, seen.to_viewer);

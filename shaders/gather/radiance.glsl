@@ -1,9 +1,9 @@
-// What cones gather is told as.
+// Types shared by everything that gathers radiance.
 #ifndef CONE_LIGHT_GLSL
 #define CONE_LIGHT_GLSL
 
-// Before each cone; number 0 is the specular one, 1 the diffuse one on the normal or the first, then the others; last
-// come further ones of the lobe.
+// Hook before each cone. Number 0 is the specular cone, 1 the first or axial diffuse cone; then come the
+// other diffuse cones, then further cones of the lobe.
 #ifndef CONE_BEGINS
 #define CONE_BEGINS(number)
 #endif
@@ -14,23 +14,23 @@
 #include "lights/sky.glsl"
 #include "modules/escape.glsl"
 
-// What a surface's cones gather.
+// Light gathered by the cones of a surface.
 struct Gathered {
-    vec4 hemisphere; // rgb: mean radiance over the hemisphere, cosine-weighted; a: how open it is
+    vec4 hemisphere; // rgb: mean radiance over the hemisphere, cosine-weighted; a: openness
     vec3 specular; // radiance towards the viewer
 };
 
-// The rays of a surface that are gathered here: every `of`-th of `rays`, from `first` on, and of those into its lobe and to emitters. What
-// all threads gather is summed up.
+// Rays that this thread gathers: every `of`-th ray from `first` on, over the hemisphere, the lobe and the
+// emitter samples. The results of all threads are added.
 struct RayShare {
     int rays;
-    int emitters; // to places on them
+    int emitters; // rays to emitter samples
     int first;
     int of;
 };
 RayShare gatherShare = RayShare(params.diffuse_cones, params.emitter_rays, 0, 1);
 
-// Centre of the pixel that is shaded: defined by the shader.
+// Centre of the shaded pixel, defined by the shader.
 vec2 pixelCentre();
 
 #endif
