@@ -1,4 +1,4 @@
-// Voxels gather with narrow cones.
+// Surfels gather with narrow cones.
 #include "modules/cone.glsl"
 
 const bool BOUNCE_SAMPLES_EMITTERS = false;

@@ -1,8 +1,8 @@
-// Voxels gather with rays that meet others' surfaces, and with rays to places on emitters.
+// Surfels gather with rays through the voxels, and with rays to emitter samples.
 #include "modules/lookup.glsl"
 #include "surfels/rays.glsl"
 
-#define BOUNCE_SAMPLES_EMITTERS (!WARPED && !CURVED) // others know no emitters
+#define BOUNCE_SAMPLES_EMITTERS (!WARPED && !CURVED) // bent rays do not separate emission
 
 vec4 traceBounce(ConeOrigin o, vec3 d, RayUse use) {
     return traceVoxels(o, d, use);

@@ -1,5 +1,5 @@
-// Surfels gather with rays that hit other surfels, and with rays to emitter samples. Rays bend in warped cells, where narrow cones take
-// their place.
+// Surfels gather with rays that hit other surfels, and with rays to emitter samples. Rays bend in warped or
+// curved cells, where narrow cones replace them.
 #include "modules/cone.glsl"
 #include "surfels/rays.glsl"
 

@@ -1,4 +1,4 @@
-// A volume of one cascade, made anew each frame.
+// A volume of one cascade, rebuilt every frame.
 const int CASCADE_COUNT = 1;
 const bool SCROLLS = false;
 

@@ -1,4 +1,4 @@
-// A volume of several cascades, made anew each frame.
+// A volume of several cascades, rebuilt every frame.
 #define CASCADE_COUNT params.cascade_count
 const bool SCROLLS = false;
 

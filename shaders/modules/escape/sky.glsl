@@ -1,4 +1,5 @@
-// What escapes a cone sees the sky, the mean over the solid angle that the cone stands for.
+// The open part of a cone sees the sky, averaged over `spread`, the solid angle that the cone represents
+// [sr].
 #include "lights/sky.glsl"
 
 vec3 coneRadiance(vec4 cone, vec3 d, float spread) {

@@ -1,4 +1,4 @@
-// A volume that follows goes where the camera goes. No cells are curved.
+// Volumes follow the camera. No cells are curved.
 vec3 followedPosition() {
     return camera.position;
 }

@@ -1,4 +1,5 @@
-// Volumes follow a point away from the camera, and curved cells look past its view: voxels move under a picture that stands still.
+// Volumes follow a point offset from the camera, and curved cells turn away from its view: voxels move while
+// the image stays still.
 #include "volume/aim.glsl"
 
 vec3 followedPosition() {

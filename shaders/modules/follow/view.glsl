@@ -1,4 +1,4 @@
-// Volumes follow the camera, and curved cells look where it looks.
+// Volumes follow the camera, and curved cells point along its view.
 #include "volume/aim.glsl"
 
 vec3 followedPosition() {

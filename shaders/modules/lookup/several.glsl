@@ -1,21 +1,21 @@
-// Lookups of cones in a volume of several cascades: a sample reads the finest that holds it, and towards that one's border
-// turns into the next.
+// Cone lookups in a volume of several cascades: a sample reads the finest cascade that contains it, and
+// blends into the next one near the border.
 #include "cones/origin.glsl"
 #include "modules/opacity.glsl"
 #include "modules/mips.glsl"
 
-// Narrow cones read whole levels, which takes half of the texture reads, and cross empty space in double steps. Errors of both
-// are below the noise of neighbouring cones. Wide cones would band.
+// Narrow cones round to whole levels, which halves the texture reads, and cross empty space in double steps.
+// The errors of both are below the noise between neighbouring cones. Wide cones would show bands.
 #ifndef NARROW_CONES
 #define NARROW_CONES false
 #endif
 
-// A cone on its way.
+// State of a cone.
 struct Cone {
     ConeOrigin origin;
     vec3 direction;
     float tan_half; // of half the aperture
-    float rise; // above the surface for each metre
+    float rise; // above the surface per metre
     int cascade; // of the last sample
     float voxel; // length of its level-0 cell along the cone [m]
     vec3 dir; // direction in its cells, unit length
@@ -24,15 +24,16 @@ struct Cone {
 
 #include "cones/sample.glsl"
 
-// Towards a cascade's border, over so many cells of a level, lookups turn into the next one's.
+// Width of the blend into the next cascade at a border [cells of the level].
 const float BLEND_CELLS = 6.0;
 
 float cascadeWeight(vec3 u, float level) {
     vec3 inside = mix(vec3(1.0), min(u, 1.0 - u), CURVED_BORDERS);
-    return clamp(min(inside.x, min(inside.y, inside.z)) * float(params.voxel_dim) / (BLEND_CELLS * exp2(max(level, 0.0))), 0.0, 1.0);
+    return clamp(min(inside.x, min(inside.y, inside.z)) * float(params.voxel_dim)
+        / (BLEND_CELLS * exp2(max(level, 0.0))), 0.0, 1.0);
 }
 
-// Starts outside the voxels of the cone's own surface: `bias` cell extents off it.
+// Starts outside the voxels of the cone's own surface, `bias` cell extents off it.
 ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
     int cascade = cascadeAt(p);
     VolumeMap map = volume.maps[cascade];
@@ -42,7 +43,8 @@ ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
         reach = mix(cellReach(volume.maps[cascade + 1], p, geometric), reach, weight);
     }
     float height = 2.0 * params.bias * reach;
-    return ConeOrigin(p + height * geometric, geometric, height, reach, cascade, p + 2.0 * params.ray_bias * reach * geometric, weight);
+    return ConeOrigin(p + height * geometric, geometric, height, reach, cascade,
+        p + 2.0 * params.ray_bias * reach * geometric, weight);
 }
 
 Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {
@@ -54,7 +56,7 @@ Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {
     return cone;
 }
 
-// Between cascades and at their borders a lookup keeps half a cell of its level's distance.
+// Keeps a lookup half a cell of its level away from the seams between stored cascades.
 vec4 sampleCascade(vec3 u, int cascade, vec3 dir, float level) {
     if (CASCADE_COUNT > 1) {
         float margin = 0.5 * exp2(ceil(max(level, 0.0))) / float(params.voxel_dim);
@@ -63,21 +65,23 @@ vec4 sampleCascade(vec3 u, int cascade, vec3 dir, float level) {
     return sampleLevel(u, dir, level);
 }
 
-// The same; round the seam of spheres, where the first cells follow the last, both sides.
+// The same. At the seam of spheres, where the first cells follow the last, it blends both sides.
 vec4 sampleMap(vec3 u, int cascade, vec3 dir, float level) {
     if (!CURVED_SEAM || cascade > 0) return sampleCascade(u, cascade, dir, level);
     float half_cell = 0.5 * exp2(level) / float(params.voxel_dim);
     vec4 texel = sampleCascade(vec3(clamp(u.x, half_cell, 1.0 - half_cell), u.yz), cascade, dir, level);
     float over = max(half_cell - u.x, u.x - 1.0 + half_cell) / (2.0 * half_cell);
     if (over <= 0.0) return texel;
-    return mix(texel, sampleCascade(vec3(u.x < 0.5 ? 1.0 - half_cell : half_cell, u.yz), cascade, dir, level), over);
+    return mix(texel,
+        sampleCascade(vec3(u.x < 0.5 ? 1.0 - half_cell : half_cell, u.yz), cascade, dir, level), over);
 }
 
-// Cones wider than this read no level so coarse that it contains the surface they leave: an open plane would shadow itself.
-// Narrow cones stay clear of it. Tangent of half the aperture, 12 degrees.
+// Cones wider than this (tangent of half the aperture, 12 degrees) avoid coarse levels with cells that contain
+// the surface that they leave: an open plane would shadow itself. Narrow cones stay clear of it anyway.
 const float CLEARED = 0.105;
 
-// The coarsest level with a lookup, 1.5 cells to each side, that fits between p and the surface. `height` of p above its plane [m].
+// The coarsest level with a lookup, 1.5 cells to each side, that fits between p and the surface. height: of p
+// above the surface's plane [m].
 float clearLevel(Cone cone, int cascade, vec3 p, float height) {
     float reach = max(cellReach(volume.maps[cascade], p, cone.origin.normal), cone.origin.reach);
     return floor(log2(max(height / (3.0 * reach), 1.0)) + 1e-3);
@@ -89,7 +93,7 @@ float levelAt(Cone cone, int cascade, vec3 p, float voxel, float radius, float h
     return clamp(NARROW_CONES ? round(level) : level, 0.0, volume.maps[cascade].last);
 }
 
-// Turns a sample into the next cascade's by its weight there.
+// Blends a sample with the next cascade. weight: of the current one.
 void blendNext(Cone cone, inout ConeSample x, float height, float weight) {
     int next = cone.cascade + 1;
     vec3 u = worldToVolume(volume.maps[next], x.position), dir;
@@ -106,7 +110,8 @@ void blendNext(Cone cone, inout ConeSample x, float height, float weight) {
 bool isEmptyAround(vec3 u, Cone cone, float level) {
     float wide = level + 2.0;
     if (wide > volume.maps[cone.cascade].last) return false;
-    return (CASCADE_COUNT == 1 || cascadeWeight(u, wide) == 1.0) && sampleMap(u, cone.cascade, cone.dir, wide).a == 0.0;
+    return (CASCADE_COUNT == 1 || cascadeWeight(u, wide) == 1.0)
+        && sampleMap(u, cone.cascade, cone.dir, wide).a == 0.0;
 }
 
 ConeSample coneSample(inout Cone cone, int number, float along) {
@@ -117,12 +122,13 @@ ConeSample coneSample(inout Cone cone, int number, float along) {
     if (CASCADE_COUNT > 1) cone.cascade = cascadeAt(x.position);
     int k = cone.cascade;
     vec3 u = worldToVolume(volume.maps[k], x.position);
-    // Past the border of boxes the clamped lookup gives the border cells once more: a coarse cell that holds the outermost
-    // wall reaches to the border, and stopping short of it would let light out.
+    // Beyond the border of boxes, the clamped lookup repeats the border cells once. A coarse cell that holds
+    // the outermost wall reaches up to the border, and stopping short of it would leak light.
     x.last = !inVolume(u);
     x.outside = x.last && (number == 0 || k != before || CURVED && volume.maps[k].curved != 0);
     if (x.outside) return x;
-    if (WARPED || CASCADE_COUNT > 1) cellAlong(volume.maps[k], x.position, cone.direction, cone.voxel, cone.dir);
+    if (WARPED || CASCADE_COUNT > 1)
+        cellAlong(volume.maps[k], x.position, cone.direction, cone.voxel, cone.dir);
     x.voxel = cone.voxel;
     float height = cone.origin.height + along * cone.rise;
     x.level = levelAt(cone, k, x.position, x.voxel, x.radius, height);

@@ -1,4 +1,4 @@
-// The exact mean by area: sums of integers, which do not depend on the order.
+// Exact area-weighted mean: integer sums, which do not depend on the order.
 void mergeInto(uint base, vec3 color, vec3 normal, uint weight) {
     uvec3 c = uvec3(color * COLOR_SCALE * float(weight) + 0.5);
     ivec3 n = ivec3(round(normal * NORMAL_SCALE * float(weight)));
@@ -8,9 +8,11 @@ void mergeInto(uint base, vec3 color, vec3 normal, uint weight) {
     }
 }
 
-// The mean of what fell into a voxel.
+// Mean of the fragments in a surfel.
 void mergedMean(uint base, out vec3 color, out vec3 normal) {
     float weight = float(max(surfelSums.words[base + 3], 1u));
-    color = vec3(surfelSums.words[base], surfelSums.words[base + 1], surfelSums.words[base + 2]) / (COLOR_SCALE * weight);
-    normal = vec3(int(surfelSums.words[base + 4]), int(surfelSums.words[base + 5]), int(surfelSums.words[base + 6])) / (NORMAL_SCALE * weight);
+    color = vec3(surfelSums.words[base], surfelSums.words[base + 1], surfelSums.words[base + 2])
+        / (COLOR_SCALE * weight);
+    normal = vec3(int(surfelSums.words[base + 4]), int(surfelSums.words[base + 5]),
+        int(surfelSums.words[base + 6])) / (NORMAL_SCALE * weight);
 }

@@ -1,4 +1,4 @@
-// The largest packed word wins: blue is compared first.
+// The largest packed word wins; blue is the most significant channel.
 void mergeInto(uint base, vec3 color, vec3 normal, uint weight) {
     atomicMax(surfelSums.words[base], packUnorm4x8(vec4(color, 1.0)));
     atomicMax(surfelSums.words[base + 4], packUnorm4x8(vec4(normal * 0.5 + 0.5, 1.0)));

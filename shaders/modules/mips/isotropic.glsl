@@ -1,8 +1,8 @@
-// Filtered levels that shine and hide alike in all directions: one lookup a sample.
+// Filtered levels that are the same in all directions. Costs one lookup per sample.
 #ifndef MIPS_GLSL
 #define MIPS_GLSL
 
-// What one opacity is told for [m]: a voxel, because means thin surfaces out as cells grow.
+// Length that an opacity refers to [m]: a voxel, because averaging thins out surfaces as cells grow.
 float opacityLength(float voxel, float cell) {
     return voxel;
 }

@@ -1,4 +1,4 @@
-// One layer a cell of the level, corrected for the step alone: thin walls leak.
+// One layer per cell of the level, corrected for the step length only: thin walls leak.
 float stepAlpha(float a, float remaining, float advance, float voxel, float cell) {
     return remaining * (1.0 - pow(1.0 - min(a, 1.0), advance / cell));
 }

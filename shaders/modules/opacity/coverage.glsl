@@ -1,20 +1,20 @@
-// Surfaces one voxel thick that fill this share of the volume cover this much of the cone, side by side. Thin walls stay
-// closed at every level; corners darken a little too much.
+// Opacity is coverage: surfaces one voxel thick cover the cone side by side, in proportion to the volume that
+// they fill. Thin walls stay closed at every level; corners darken slightly too much.
 #include "modules/mips.glsl"
 
-// Opacity that a step adds to a cone of which `remaining` is left. `a`: of the texel; `advance` of the step, length of a
-// level-0 cell and of a cell of the level along the cone [m].
+// Opacity that a step adds to a cone with transmittance `remaining`. a: of the texel. advance: of the step.
+// voxel, cell: length of a cell of level 0 and of the sampled level along the cone [m].
 float stepAlpha(float a, float remaining, float advance, float voxel, float cell) {
     return min(a * advance / opacityLength(voxel, cell), remaining);
 }
 
-// Weights of the three directions' texels that a ray along dir crosses: crossings are added up.
+// Weights of the three directional texels along dir: the crossings along each axis add up.
 vec3 directionWeights(vec3 dir) {
     return abs(dir);
 }
 
-// Factor that tells a texel of another cascade (cells `other_voxel`, `other_cell`) as if it were of this one: opacity is a
-// density.
+// Factor that converts a texel of another cascade (cells `other_voxel`, `other_cell`) to this one: opacity is
+// a density.
 float opacityScale(float a, float voxel, float cell, float other_voxel, float other_cell) {
     return opacityLength(voxel, cell) / opacityLength(other_voxel, other_cell);
 }

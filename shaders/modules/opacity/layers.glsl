@@ -1,5 +1,5 @@
-// A mean opacity belongs to a voxel, and a step crosses advance / voxel of them, one behind the other. For levels without
-// directions.
+// A mean opacity belongs to one voxel, and a step crosses advance / voxel of them, one behind the other. For
+// isotropic levels.
 float stepAlpha(float a, float remaining, float advance, float voxel, float cell) {
     return remaining * (1.0 - pow(1.0 - min(a, 1.0), advance / voxel));
 }

@@ -1,5 +1,5 @@
-// A voxel reflects, in all directions alike, as much as its surfaces do: the diffuse albedo, and of the specular lobe the share
-// of light from all around that it reflects.
+// A surfel reflects diffusely the sum of its surfaces' diffuse albedo and the spherical albedo of their
+// specular lobe.
 #include "common/brdf.glsl"
 
 vec3 reflectanceOf(Material m, vec3 base, Place at, Gradient g) {

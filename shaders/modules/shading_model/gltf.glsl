@@ -1,8 +1,9 @@
 // The BRDF of glTF 2.0 (Appendix B): GGX microfacets with height-correlated masking over a diffuse base.
 //
-// The base gets what the lobe leaves: 1 minus the lobe's directional albedo at the viewer. The specification's sample
-// weight, 1 - F(v.h), returns up to 1.9 times the light of a white sky at a dielectric's rim; this one returns exactly 1.
-// The price is reciprocity: the weight depends on the viewer and not on the light.
+// The base receives the light that the lobe does not reflect: 1 minus the lobe's directional albedo at the
+// viewer. The specification's sample weight, 1 - F(v.h), returns up to 1.9 times the light of a white sky at
+// a dielectric's rim; this one returns exactly 1. It is not reciprocal: the weight depends on the viewer and
+// not on the light.
 #include "shade/lobe_albedo.glsl"
 
 #ifndef SINGLE_SCATTERING
@@ -16,8 +17,8 @@ float ggxAlpha(float roughness) {
     return roughness * roughness;
 }
 
-// Adds light that is scattered more than once between the facets (Turquin 2019, "Practical multiple scattering
-// compensation for microfacet models", Equation 16), then puts the lobe over the base.
+// Adds multiple scattering between the facets (Turquin 2019, "Practical multiple scattering compensation for
+// microfacet models", Equation 16), then puts the lobe over the base.
 Surface layered(Surface s, vec3 v) {
     vec2 albedo = lobeAlbedo(dot(s.normal, v), s.roughness);
     if (MULTIPLE_SCATTERING) s.multiple = 1.0 + s.f0 * (1.0 / (albedo.x + albedo.y) - 1.0);
@@ -25,10 +26,12 @@ Surface layered(Surface s, vec3 v) {
     return s;
 }
 
-// Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", Equation 99, over 4 n.l n.v.
+// Heitz 2014, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", Equation 99, over 4
+// n.l n.v.
 float correlatedVisibility(float n_l, float n_v, float alpha) {
     float a2 = alpha * alpha;
-    float of_view = n_l * sqrt(a2 + (1.0 - a2) * n_v * n_v), of_light = n_v * sqrt(a2 + (1.0 - a2) * n_l * n_l);
+    float of_view = n_l * sqrt(a2 + (1.0 - a2) * n_v * n_v),
+        of_light = n_v * sqrt(a2 + (1.0 - a2) * n_l * n_l);
     return 0.5 / max(of_view + of_light, 1e-7);
 }
 
@@ -42,15 +45,15 @@ vec3 specularBrdf(Surface s, vec3 v, vec3 l) {
     return seen * fresnel(s, v_h) * s.multiple;
 }
 
-// BRDF * cosine / density of a direction drawn by the visible normals: Fresnel times the masking of l where v sees the
-// facet. v, l and half_way are in the normal's frame; g1: Smith's masking of v.
+// BRDF * cosine / pdf of a direction sampled from the visible normals: Fresnel times the masking of l for
+// facets that v sees. v, l and half_way are in the normal's frame. g1: Smith's masking of v.
 vec3 lobeWeight(Surface s, mat3 frame, vec3 v, vec3 l, vec3 half_way, float g1) {
     float masking = correlatedVisibility(l.z, v.z, ggxAlpha(s.roughness)) * 4.0 * l.z * v.z / g1;
     return fresnel(s, dot(v, half_way)) * masking * s.multiple;
 }
 
-// Mean over all directions of light: the base, and f0 a + f90 b of single scattering. Fitted to the integral over
-// roughness with a largest error of 0.0025.
+// Mean over all light directions: the base, and f0 a + f90 b of single scattering. Fitted to the integral
+// over roughness with a largest error of 0.0025.
 vec3 sphericalAlbedo(vec3 base, vec3 f0, float f90, float roughness) {
     float r = clamp(roughness, 0.0, 1.0);
     float a = 0.9535 + r * (-0.0685 + r * (0.7963 + r * (-2.8194 + r * 1.5467)));

@@ -1,4 +1,4 @@
-// By the sampler, which blends four texels where it filters.
+// Depth comparison by the sampler, which blends four texels if it filters.
 uniform sampler2DArrayShadow shadowCompare;
 
 float shadowLit(int layer, vec3 at) {

@@ -1,11 +1,12 @@
-// Of one texel, or blended between four, whichever way the map was drawn. Beyond the map all is lit.
+// Depth comparison in the shader, for one texel or four blended ones. Works for rasterised and computed maps.
+// Everything outside the map is lit.
 uniform sampler2DArray shadowDepths;
 
 float shadowLit(int layer, vec3 at) {
     return at.z <= textureLod(shadowDepths, vec3(at.xy, layer), 0.0).r ? 1.0 : 0.0;
 }
 
-// Depths of the four texels around a place, in the order of textureGather: (0, 1), (1, 1), (1, 0), (0, 0).
+// Depths of the four texels around a position, in the order of textureGather: (0, 1), (1, 1), (1, 0), (0, 0).
 vec4 shadowDepthsAround(int layer, vec2 at) {
     return textureGather(shadowDepths, vec3(at, layer));
 }

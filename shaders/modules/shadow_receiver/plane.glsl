@@ -1,21 +1,24 @@
-// Compares with the depth of the receiver's plane at each texel (Isidoro 2006): a few hundredths of a texel off are enough.
+// Compares with the depth of the receiver's plane at each texel (Isidoro 2006), so an offset of a few
+// hundredths of a texel suffices.
 #include "common/frame.glsl"
 
-// How fast depth in the map grows over the plane through p [a map's width]. It is linear over a plane, in perspective too,
-// so it is taken from points far apart, which keeps digits. q: where p is in the map.
+// Slope of depth over the plane through p [depth per map width]. It is constant over a plane, in perspective
+// too, so distant points are used, which preserves digits. q: p in the map.
 vec2 planeSlope(int layer, vec3 p, vec3 q, vec3 n, vec3 to_light, float reach) {
     mat3 frame = frameOf(n);
-    vec3 a = shadowPositionBeyond(layer, p + reach * frame[0]) - q, b = shadowPositionBeyond(layer, p + reach * frame[1]) - q;
+    vec3 a = shadowPositionBeyond(layer, p + reach * frame[0]) - q,
+        b = shadowPositionBeyond(layer, p + reach * frame[1]) - q;
     float area = a.x * b.y - a.y * b.x;
     vec2 slope = vec2(a.z * b.y - b.z * a.y, b.z * a.x - a.z * b.x) / (abs(area) > 1e-20 ? area : 1e-20);
-    // A plane seen edge on has no depth of its own: at most 64 texels deep a texel.
+    // Limits the slope of a plane seen edge-on to a depth of 64 texels per texel.
     float towards = abs(shadowPositionBeyond(layer, p + reach * to_light).z - q.z) * 64.0;
     return slope * min(1.0, 64.0 * towards / max(length(slope), 1e-20));
 }
 
-// A bent surface hides itself along its edges: the texel shows the face beyond the edge. Of the four texels around a
-// point one shows the point's own face, so a blocker counts as the surface itself if one of the four is lit and the blocker
-// is this close [texels]. Real blockers as close lose up to a texel of their shadow.
+// Curved surfaces shadow themselves along their edges, because the texel holds the face beyond the edge. One
+// of the four texels around a point shows the point's own face. A blocker counts as the surface itself if one
+// of the four is lit and the blocker is this close [texels]. Real blockers as close lose up to a texel of
+// their shadow.
 const float CLOSE = 4.0;
 
 bool hiddenByItself(int layer, vec3 q, vec2 slope, float deep) {
@@ -40,10 +43,11 @@ float lightVisibility(Light light, vec3 p, vec3 n, vec3 to_light) {
     // 1/64 of the map's width.
     vec2 slope = planeSlope(layer, from, q, n, to_light, texel * float(params.shadow_dim) / 64.0);
     q.z = clamp(q.z, 0.0, 1.0) - params.shadow_rounding - shadowLayers.layers[layer].rounding;
-    // Taps at texels' centres, which a bilinear lookup gives alone.
+    // Samples at texel centres, where a bilinear lookup returns a single texel.
     vec2 centre = (floor(q.xy * float(params.shadow_dim)) + 0.5) * (1.0 / float(params.shadow_dim));
     float lit = shadowTaps(layer, vec3(centre, q.z + dot(slope, centre - q.xy)), slope);
     if (lit == 1.0) return lit;
-    float deep = abs(shadowPositionBeyond(layer, from + texel * to_light).z - shadowPositionBeyond(layer, from).z);
+    float deep =
+        abs(shadowPositionBeyond(layer, from + texel * to_light).z - shadowPositionBeyond(layer, from).z);
     return hiddenByItself(layer, q, slope, deep) ? 1.0 : lit;
 }

@@ -1,4 +1,4 @@
-// All surfaces of a cell are one, whichever way they face.
+// One surfel per cell, whatever direction its surfaces face.
 const uint SIDES = 1;
 
 uint axisOf(vec3 normal) {

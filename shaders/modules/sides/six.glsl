@@ -1,5 +1,5 @@
-// The surfaces of a cell by the way they face: those that face along x, y and z are apart, and of each the two sides. A wall
-// thinner than a voxel is lit on one side and dark on the other, and a floor keeps its light to itself where it meets a wall.
+// Six surfels per cell: three axes with two sides each. A wall thinner than a voxel is lit on one side and
+// dark on the other, and a floor keeps its light separate from an adjoining wall.
 #include "common/math.glsl"
 
 const uint SIDES = 2;

@@ -1,5 +1,5 @@
-// A cone in the mirror direction, 0.1 pi roughness wide, added as it is: everything shines (thesis, Section 4.5.2) that its
-// author has not told to shine less.
+// A cone in the mirror direction with an aperture of 0.1 pi roughness, weighted only by f90: every surface is
+// shiny unless its author dims it (thesis, Section 4.5.2).
 vec3 specularDirection(Surface s, vec3 v) {
     return reflect(-v, s.normal);
 }

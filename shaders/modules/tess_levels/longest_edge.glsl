@@ -1,4 +1,4 @@
-// Levels such that points lie at most one local cell apart: the inner one follows the longest edge.
+// Levels that place points at most one local cell apart. The inner level follows the longest edge.
 
 // Cells along an edge: its length over the smallest cell on the way.
 float cellsAlong(VolumeMap map, vec3 a, vec3 b) {
@@ -10,7 +10,7 @@ float cellsAlong(VolumeMap map, vec3 a, vec3 b) {
     return edge / cell;
 }
 
-// `longest`: points along the longest edge.
+// longest: points along the longest edge.
 float innerLevel(VolumeMap map, vec3 a, vec3 b, vec3 c, float longest) {
     return longest;
 }

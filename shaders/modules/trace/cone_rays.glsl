@@ -1,4 +1,5 @@
-// Rays that fill the same cones evenly, voxel by voxel: what filtered levels and steps cost.
+// Fills the same cones evenly with rays through the voxels, which isolates the error of filtered levels and
+// steps.
 #include "modules/lookup.glsl"
 #include "surfels/rays.glsl"
 #include "common/frame.glsl"

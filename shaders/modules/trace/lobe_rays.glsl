@@ -1,10 +1,10 @@
-// Without cones: rays through every voxel over the whole lobe.
+// Rays through every voxel over the whole lobe, without cones.
 #include "modules/lookup.glsl"
 #include "surfels/rays.glsl"
 #include "gather/radiance.glsl"
 #include "common/ggx.glsl"
 
-// As dense as the cosine.
+// Samples with a pdf proportional to the cosine.
 vec4 gatherDiffuse(ConeOrigin o, vec3 n, vec3 face) {
     mat3 frame = frameOf(n);
     vec2 shift = rayShift(1u);
@@ -18,14 +18,15 @@ vec4 gatherDiffuse(ConeOrigin o, vec3 n, vec3 face) {
     return sum / float(params.exact_rays);
 }
 
-// As dense as the visible normals of the lobe.
+// Samples the visible normals of the lobe.
 vec3 gatherSpecular(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     vec2 shift = rayShift(0u);
     float spread = lobeSolidAngle(s) / float(params.exact_rays);
     vec3 sum = vec3(0.0);
     for (int i = 0; i < params.exact_rays; i++) {
         LobeSample l = specularSample(s, face, v, rayPoint(i, shift));
-        if (l.weight != vec3(0.0)) sum += l.weight * coneRadiance(traceVoxels(o, l.direction, WHOLE_RAY), l.direction, spread);
+        if (l.weight != vec3(0.0))
+            sum += l.weight * coneRadiance(traceVoxels(o, l.direction, WHOLE_RAY), l.direction, spread);
     }
     return sum / float(params.exact_rays);
 }

@@ -1,5 +1,5 @@
-// Narrow cones at a reduced rate: exact surfels while the cone is thin, then filtered levels. Emitter samples replace the emission
-// that filtered levels would hold.
+// Narrow cones at a reduced rate: exact surfels while the cone is thin, then filtered levels. Emitter samples
+// replace the emission that filtered levels would hold.
 #define NARROW_CONES true
 #include "modules/cone.glsl"
 

@@ -1,8 +1,8 @@
-// Rays that meet voxels' surfaces, however far, and rays to places on emitters.
+// Rays through the voxels over any distance, and rays to emitter samples.
 #include "modules/lookup.glsl"
 #include "surfels/rays.glsl"
 
-#define SAMPLES_EMITTERS (!WARPED && !CURVED) // others know no emitters
+#define SAMPLES_EMITTERS (!WARPED && !CURVED) // bent rays do not separate emission
 
 float exactRange(ConeOrigin o, vec3 d, float tan_half) {
     return 1e30;

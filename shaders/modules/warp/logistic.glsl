@@ -1,5 +1,5 @@
-// Denser cells in the middle: a logistic curve (thesis, Section 4.6.1), 0.5 + 0.5 tanh(s/2 (x - 1/2)) / tanh(s/4), written
-// without the difference of tanh, which would cancel at the borders.
+// Denser cells in the middle: a logistic curve (thesis, Section 4.6.1), 0.5 + 0.5 tanh(s/2 (x - 1/2)) /
+// tanh(s/4), written without the difference of tanh, which would cancel at the borders.
 const bool WARPED = true;
 
 vec3 warp(vec3 x) {

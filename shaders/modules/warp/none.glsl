@@ -1,4 +1,4 @@
-// Cells of one size.
+// A uniform grid.
 const bool WARPED = false;
 
 #include "volume/unwarped.glsl"

@@ -1,5 +1,5 @@
-// Denser cells in the middle: a cubic whose slope is warp_alpha at the borders (thesis, Section 4.6.1).
-// At 1 cells are uniform.
+// Denser cells in the middle: a cubic with slope warp_alpha at the borders (thesis, Section 4.6.1). At 1 the
+// grid is uniform.
 #define WARPED (params.warp_alpha < 1.0)
 
 vec3 warp(vec3 x) {
@@ -12,7 +12,7 @@ vec3 warpSlope(vec3 x) {
     return a + x * (6.0 - 6.0 * a + x * (6.0 * a - 6.0));
 }
 
-// Newton on the convex lower half from its upper end: monotonic, no overshoot.
+// Newton's method on the convex lower half from its upper end: monotonic, no overshoot.
 vec3 unwarp(vec3 y) {
     if (!WARPED) return y;
     vec3 folded = 0.5 - abs(y - 0.5);
