@@ -3,16 +3,16 @@
 #define SHADE_FILTER_GLSL
 
 struct Filtered {
-    vec4 hemisphere; // rgb: mean radiance over the hemisphere, cosine-weighted; a: how open it is
+    vec4 hemisphere; // rgb: mean radiance over the hemisphere, cosine-weighted; a: openness
     vec3 specular; // radiance towards the viewer
 };
 
-// The surface of the filtered pixel, prepared for comparison with other pixels.
+// Surface of the filtered pixel, prepared for comparison with other pixels.
 struct EdgeStop {
-    vec2 origin, step; // of the pixels' rays: tangents of their angles
-    vec3 plane; // the surface's normal, of rays in view space
-    float away; // of the plane from the camera [m]
-    float scale; // of how far off the plane a surface may be [1/m]
+    vec2 origin, step; // map pixels to rays: tangents of their angles
+    vec3 plane; // the surface's normal in view space
+    float away; // signed distance of the plane from the camera [m]
+    float scale; // of the distance between a surface and the plane [1/m]
     vec3 normal;
 };
 
@@ -25,7 +25,7 @@ EdgeStop edgeStopOf(GBufferSurface seen) {
     return EdgeStop(0.5 * step - zoom, step, plane, away, scale, seen.surface.normal);
 }
 
-// Normal and distance [m] of the surface at a pixel. The distance is 0 outside the picture and for the sky.
+// Normal and distance [m] of the surface at a pixel. The distance is 0 outside the image and for the sky.
 vec4 seenAt(ivec2 at) {
     if (any(greaterThanEqual(uvec2(at), uvec2(camera.size)))) return vec4(0.0);
     return vec4(unpackNormal(texelFetch(gbufferNormals, at, 0).xy), texelFetch(gbufferDistance, at, 0).r);

@@ -1,16 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Final shading in the fragments of the triangles, each contribution to its own output (thesis, Section 4.5).
+// Final shading in the fragment shader, one output per light component (thesis, Section 4.5).
 #include "params.glsl"
 #include "gbuffer/fragment_surface.glsl"
 #include "shade/shade.glsl"
 
-layout(location = 0) out vec4 radiance; // everything, emission included
+layout(location = 0) out vec4 radiance; // total, including emission
 layout(location = 1) out vec4 direct;
 layout(location = 2) out vec4 diffuseIndirect;
 layout(location = 3) out vec4 specularIndirect;
 layout(location = 4) out vec4 occlusion; // 1: open
-layout(location = 5) out vec4 surfaceNormal; // * .5 + .5
+layout(location = 5) out vec4 surfaceNormal; // * 0.5 + 0.5
 
 vec2 pixelCentre() {
     return gl_FragCoord.xy;
@@ -21,7 +21,7 @@ void main() {
     Gradient g = gradientHere();
     vec3 v = normalize(camera.position - position);
     vec3 face = faceNormal(v);
-    // Derivatives end here. Helper invocations at the edges of triangles cover nothing and need no cones.
+    // No derivatives below. Helper invocations at triangle edges cover nothing and need no cones.
     if (gl_SampleMaskIn[0] == 0) return;
     Surface s = surfaceAt(m, g, face, v);
     Shading light = shade(s, position, face, v);

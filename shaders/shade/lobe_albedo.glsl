@@ -1,5 +1,5 @@
-// Directional albedo of the specular lobe, tabulated by cones/specular_albedo.comp.
-#include "common/brdf.glsl" // before the guard: a shading model includes this file in turn
+// Directional albedo of the specular lobe, tabulated by shade/specular_albedo.comp.
+#include "common/brdf.glsl" // before the guard: a shading model includes this file itself
 #ifndef LOBE_ALBEDO_GLSL
 #define LOBE_ALBEDO_GLSL
 
@@ -12,7 +12,7 @@ vec2 lobeAlbedo(float cosine, float roughness) {
     return textureLod(specularAlbedo, (at * (size - 1.0) + 0.5) / size, 0.0).rg;
 }
 
-// Share of a uniform sky that a surface's lobe reflects to the viewer.
+// Fraction of a uniform sky that a surface's lobe reflects to the viewer.
 vec3 lobeReflectance(Surface s, vec3 v) {
     vec2 albedo = lobeAlbedo(dot(s.normal, v), s.roughness);
     return (s.f0 * albedo.x + s.f90 * albedo.y) * s.multiple;

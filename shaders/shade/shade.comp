@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Final shading of the surfaces that pixels see, a thread a pixel, each contribution to its own picture
-// (thesis, Algorithm 3). Indirect diffuse light is albedo times the mean radiance over the hemisphere, sky
-// included where it is open.
+// Final deferred shading, one thread per pixel and one image per light component (thesis, Algorithm 3).
+// Indirect diffuse light is albedo times the mean radiance over the hemisphere, including the sky in open
+// directions.
 #include "params.glsl"
 #include "gbuffer/read.glsl"
 #include "shadow/visibility.glsl"
@@ -18,12 +18,12 @@ uniform sampler2D gatheredSpecular;
 uniform sampler2D smoothedDiffuse;
 uniform sampler2D smoothedSpecular;
 
-uniform writeonly image2D radiance; // everything, emission included
+uniform writeonly image2D radiance; // total, including emission
 uniform writeonly image2D direct;
 uniform writeonly image2D diffuseIndirect;
 uniform writeonly image2D specularIndirect;
 uniform writeonly image2D occlusion; // 1: open
-uniform writeonly image2D surfaceNormal; // * .5 + .5
+uniform writeonly image2D surfaceNormal; // * 0.5 + 0.5
 
 Filtered unfiltered(ivec2 pixel) {
     return Filtered(texelFetch(gatheredDiffuse, pixel, 0), texelFetch(gatheredSpecular, pixel, 0).rgb);

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// How much of the light around a surface its specular lobe reflects to the viewer: f0 * r + f90 * g, for roughness and the
-// cosine at the viewer. Integrated from the BRDF that shading uses, so that light from cones and from lamps agree. A group a
-// texel: 1,024 samples are within 0.3 % of 65,536.
+// Directional albedo of the specular lobe, f0 * r + f90 * g, by roughness and cosine at the viewer.
+// Integrated from the BRDF of shading, so that light from cones and from lamps agrees. One group per texel:
+// 1,024 samples are within 0.3 % of 65,536.
 #include "params.glsl"
 #include "common/ggx.glsl"
 
