@@ -1,12 +1,11 @@
-// Light that comes straight from the scene's lights and is reflected once. The shader says how a light is hidden:
-// by a shadow map or by rays.
+// Light from the scene's lights, reflected once. The shader defines visibility, by a shadow map or by rays.
 #ifndef DIRECT_GLSL
 #define DIRECT_GLSL
 #include "common/scene.glsl"
 #include "lights/lights.glsl"
 #include "common/brdf.glsl"
 
-// Share of the light that arrives at p, on a surface with this geometric normal (facing the viewer).
+// Unshadowed fraction of the light at p, on a surface with this geometric normal (facing the viewer).
 float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light);
 
 vec3 directLight(Surface s, vec3 p, vec3 face, vec3 v) {
@@ -15,7 +14,8 @@ vec3 directLight(Surface s, vec3 p, vec3 face, vec3 v) {
         Light light = lights.lights[i];
         Incident incident = incidentLight(light, p);
         float cosine = dot(s.normal, incident.to_light);
-        if (cosine <= 0.0 || dot(face, incident.to_light) <= 0.0 || incident.irradiance == vec3(0.0)) continue;
+        if (cosine <= 0.0 || dot(face, incident.to_light) <= 0.0 || incident.irradiance == vec3(0.0))
+            continue;
         vec3 brdf = diffuseBrdf(s) + specularBrdf(s, v, incident.to_light);
         sum += brdf * incident.irradiance * cosine * lightVisibility(light, p, face, incident.to_light);
     }

@@ -1,21 +1,22 @@
-// Triangles that emit light, and places on them drawn as often as their power says (luminance times area). Large or textured ones are
-// told in parts of one radiance each. Both of their sides emit, but of what is closed only the outer ones are drawn.
+// Emissive triangles, sampled in proportion to their power (luminance times area). Large or textured ones are
+// split into parts of constant radiance. Both sides emit, but only the outer sides of closed meshes are
+// sampled.
 #ifndef EMITTERS_GLSL
 #define EMITTERS_GLSL
 
 struct Emitter {
     vec3 a; // world
-    float chance; // that it is taken where the draw falls on it, and not `other` (Walker 1977)
+    float chance; // probability of keeping this entry instead of `other` (alias method, Walker 1977)
     vec3 to_b;
     uint other;
     vec3 to_c;
-    uint sides; // 0: both are seen, 1: the front alone, where corners turn counter-clockwise, 2: the back
+    uint sides; // sampled sides. 0: both; 1: front, with corners counter-clockwise; 2: back
     vec3 radiance;
-    float density; // of places drawn on it [1/m^2]
+    float density; // pdf of samples on it [1/m^2]
 };
 
 layout(std430) readonly buffer Emitters {
-    uint count; // 0: none are drawn; rays alone meet them
+    uint count; // 0: no emitter samples, only ray hits
     float power;
     uint pad0;
     uint pad1;
@@ -26,16 +27,16 @@ float luminance(vec3 c) {
     return dot(c, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// A place on an emitter as it is seen from somewhere.
+// An emitter sample, seen from a point.
 struct EmitterSample {
-    vec3 direction; // to it
-    float distance; // m
+    vec3 direction; // to the sample
+    float distance; // [m]
     vec3 radiance;
-    float cosine; // between it and the emitter's normal; 0: it is not seen
-    float by_area; // how densely places are drawn there [1/m^2]
+    float cosine; // to the emitter's normal; 0: not visible
+    float by_area; // pdf by area [1/m^2]
 };
 
-// How dense directions are to places that are drawn so densely by area.
+// Converts a pdf by area to a pdf by solid angle.
 float directionDensity(float by_area, float distance, float cosine) {
     return by_area * distance * distance / max(cosine, 1e-6);
 }
@@ -44,7 +45,7 @@ bool isOuter(uint sides, bool front) {
     return sides == 0 || (sides == 1) == front;
 }
 
-// u: four numbers in [0, 1). There is an emitter.
+// u: four numbers in [0, 1). The scene has at least one emitter.
 EmitterSample sampleEmitter(vec3 from, vec4 u) {
     uint index = min(uint(u.x * float(emitters.count)), emitters.count - 1);
     if (u.y >= emitters.list[index].chance) index = emitters.list[index].other;
@@ -58,7 +59,8 @@ EmitterSample sampleEmitter(vec3 from, vec4 u) {
     return EmitterSample(d, distance, e.radiance, seen ? abs(cosine) : 0.0, e.density);
 }
 
-// Of a place that a ray has hit. flags: the number of the first part and 1, and from bit 24 on the parts of an edge.
+// Pdf of an emitter sample at a ray hit [1/m^2]. flags: index of the first part plus 1; from bit 24, the
+// number of parts along an edge.
 float emitterDensity(uint flags, vec2 weights, bool front) {
     uint first = flags & 0xffffffu, parts = flags >> 24 & 0x7fu;
     if (first == 0 || emitters.count == 0) return 0.0;
