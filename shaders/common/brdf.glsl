@@ -1,28 +1,28 @@
-// Reflectance of a surface. modules/shading_model has the specular lobe and how it lies over the diffuse base.
-// Every function returns the BRDF [1/sr]; irradiance and the cosine are the caller's.
+// Reflectance of a surface. modules/shading_model defines the specular lobe and its layering over the diffuse
+// base. Functions return the BRDF [1/sr]; the caller multiplies by irradiance and cosine.
 #ifndef BRDF_GLSL
 #define BRDF_GLSL
 #include "common/math.glsl"
 
 struct Surface {
     vec3 normal; // shading normal, facing the viewer
-    vec3 albedo; // diffuse reflectance: base colour * (1 - metallic), less what the lobe above it reflects
+    vec3 albedo; // diffuse: base colour * (1 - metallic), less the reflectance of the lobe above it
     vec3 f0; // reflectance at normal incidence
-    float f90; // and at grazing angles: 1, or less of what the author dimmed
+    float f90; // reflectance at grazing angles: 1, or less if the author dims it
     float roughness; // clamped: 0 makes GGX 0/0
-    vec3 multiple; // factor of the lobe for light that is scattered more than once between its facets
+    vec3 multiple; // factor of the lobe for multiple scattering between its facets
 };
 
-// Glass of refractive index 1.5, and nearly everything else that is no metal.
+// Refractive index 1.5: glass and nearly every other dielectric.
 const vec4 PLAIN_DIELECTRIC = vec4(vec3(0.04), 1.0);
 
 // Puts the lobe over the diffuse base. v: to the viewer.
 Surface layered(Surface s, vec3 v);
 
-// dielectric: f0, and f90 in a, of what is no metal.
+// dielectric: f0 and f90 (in a) of the non-metallic part.
 Surface bareSurface(vec3 normal, vec3 base_color, float roughness, float metallic, vec4 dielectric) {
     vec3 f0 = mix(dielectric.rgb, base_color, metallic);
-    float f90 = dielectric.a + (1.0 - dielectric.a) * metallic; // exactly 1 where both are
+    float f90 = dielectric.a + (1.0 - dielectric.a) * metallic; // exactly 1 if both are
     return Surface(normal, base_color * (1.0 - metallic), f0, f90, clamp(roughness, 0.03, 1.0), vec3(1.0));
 }
 
@@ -34,7 +34,7 @@ vec3 fresnel(Surface s, float cosine) {
     return s.f0 + (s.f90 - s.f0) * pow(clamp(1.0 - cosine, 0.0, 1.0), 5.0);
 }
 
-// Width of the lobe; the shading model says it.
+// Width of the lobe, defined by the shading model.
 float ggxAlpha(float roughness);
 
 // Trowbridge-Reitz.
@@ -45,7 +45,7 @@ float distribution(float n_h, float roughness) {
     return a2 / (PI * d * d);
 }
 
-// About the solid angle that the lobe has around its middle: seen from above its density there is D / 4 [sr].
+// Approximate solid angle of the lobe [sr]; seen from above, its pdf at the centre is D / 4.
 float lobeSolidAngle(Surface s) {
     float alpha = ggxAlpha(s.roughness);
     return min(4.0 * PI * alpha * alpha, PI);

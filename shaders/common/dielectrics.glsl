@@ -1,5 +1,5 @@
-// What surfaces reflect that are no metals, by number: rgb at normal incidence, a at grazing angles. 0 is nearly all of them. A
-// material names its number, and so does the G-buffer: there is no room for the colour itself.
+// Reflectance of dielectrics by index: rgb at normal incidence, a at grazing angles. Nearly all use index 0.
+// Materials and the G-buffer store the index, because the G-buffer has no room for the colour.
 #ifndef DIELECTRICS_GLSL
 #define DIELECTRICS_GLSL
 

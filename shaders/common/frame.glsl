@@ -1,7 +1,7 @@
 #ifndef FRAME_GLSL
 #define FRAME_GLSL
 
-// Any tangent frame of n (Duff et al. 2017).
+// A tangent frame of n (Duff et al. 2017).
 mat3 frameOf(vec3 n) {
     float s = n.z >= 0.0 ? 1.0 : -1.0;
     float a = -1.0 / (s + n.z);

@@ -1,5 +1,6 @@
 #version 460
-// One triangle that covers the screen, infinitely far away: a depth test leaves what nothing covers.
+// One triangle that covers the screen, infinitely far away, so that a depth test keeps only background
+// pixels.
 layout(location = 0) out vec2 uv;
 
 void main() {

@@ -1,22 +1,22 @@
-// Directions drawn as dense as a lobe of the BRDF.
+// Importance sampling of the BRDF's lobes.
 #ifndef GGX_GLSL
 #define GGX_GLSL
 #include "common/brdf.glsl"
 #include "common/frame.glsl"
 
-// A direction, and BRDF * cosine / density; the direction is of no use where that is 0.
+// A direction, and BRDF * cosine / pdf. If the weight is 0, the direction is invalid.
 struct LobeSample {
     vec3 direction;
     vec3 weight;
 };
 
-// A direction around z, as dense as its cosine over pi. u: two numbers in [0, 1).
+// A direction around z with pdf cosine / pi. u: two numbers in [0, 1).
 vec3 cosineSample(vec2 u) {
     float r = sqrt(u.x), angle = 2.0 * PI * u.y;
     return vec3(r * cos(angle), r * sin(angle), sqrt(max(1.0 - u.x, 0.0)));
 }
 
-// face: the triangle's normal on the viewer's side, which no direction may fall below.
+// face: the triangle's normal on the viewer's side. Directions below it get weight 0.
 LobeSample diffuseSample(Surface s, vec3 face, vec2 u) {
     vec3 l = frameOf(s.normal) * cosineSample(u);
     return LobeSample(l, dot(l, face) > 0.0 ? s.albedo : vec3(0.0));
@@ -50,14 +50,15 @@ LobeSample specularSample(Surface s, vec3 face, vec3 view, vec2 u) {
     return LobeSample(l, lobeWeight(s, frame, v, local, half_way, maskingOf(v.z, alpha)));
 }
 
-// How dense diffuseSample and specularSample draw l [1/sr].
+// Pdfs of diffuseSample and specularSample at l [1/sr].
 float diffuseDensity(Surface s, vec3 l) {
     return max(dot(s.normal, l), 0.0) / PI;
 }
 
 float specularDensity(Surface s, vec3 view, vec3 l) {
     float n_v = max(dot(s.normal, view), 1e-4);
-    return maskingOf(n_v, ggxAlpha(s.roughness)) * distribution(max(dot(s.normal, normalize(view + l)), 0.0), s.roughness) / (4.0 * n_v);
+    return maskingOf(n_v, ggxAlpha(s.roughness))
+        * distribution(max(dot(s.normal, normalize(view + l)), 0.0), s.roughness) / (4.0 * n_v);
 }
 
 #endif

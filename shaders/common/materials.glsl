@@ -1,7 +1,6 @@
-// Materials and their textures. A texture handle holds the layer of an array in 16 bits, the number of the array in 4, and
-// above them how the texture is looked up.
-// Gradients are always explicit, so that lookups stay defined in divergent control flow and outside
-// the fragment stage, where texture() would silently read mip 0.
+// Materials and their textures. A texture handle holds the layer of an array in 16 bits, the number of the
+// array in 4, and sampling flags above them. Gradients are always explicit: lookups stay defined in divergent
+// control flow and outside the fragment stage, where texture() would silently read mip 0.
 #ifndef MATERIALS_GLSL
 #define MATERIALS_GLSL
 #include "common/dielectrics.glsl"
@@ -14,7 +13,7 @@ struct Material {
     float roughness;
     float alpha_cutoff; // 0: opaque
     float normal_scale;
-    uint flags; // 1: two-sided; COLORED; TINTED; from bit 8: number in dielectrics
+    uint flags; // 1: two-sided; COLORED; TINTED; from bit 8: index in dielectrics
     uint base_color_texture;
     uint metallic_roughness_texture; // G roughness, B metallic
     uint normal_texture;
@@ -38,24 +37,24 @@ uniform sampler2DArray materialTexture11;
 
 const uint NO_TEXTURE = 0xffffffffu;
 
-// Flags of materials: the colour of vertices counts for the base colour, and for the emission.
+// Material flags: vertex colours multiply the base colour (COLORED), the emission (TINTED).
 const uint COLORED = 2u, TINTED = 4u;
 
-// Bits of handles: how u and v go on beyond the picture, 2 bits each (0 repeats), ...
+// Bits of handles: wrap modes of u and v, 2 bits each (0 repeats), ...
 const uint WRAP_U = 20u, WRAP_V = 22u;
 const uint CLAMPED = 1u, MIRRORED = 2u;
-// ... no filter where a texel is larger than a pixel, the second set of coordinates, a sampler that filters anisotropically.
+// ... no filter for magnified texels, the second set of coordinates, an anisotropic sampler.
 const uint NEAREST = 1u << 24, SECOND_SET = 1u << 25, ANISOTROPIC = 1u << 26;
-const uint FOLDED = 0x1f00000u; // anything that the sampler itself does not do
+const uint FOLDED = 0x1f00000u; // any mode that the sampler does not implement
 
 
-// A point of a surface, for lookups: two sets of texture coordinates, and the colour of the vertices.
+// Inputs of a texture lookup on a surface: two sets of texture coordinates and the vertex colour.
 struct Place {
     vec4 uv;
     vec4 color;
 };
 
-// Changes of both sets of texture coordinates, from pixel to pixel or by what else a lookup covers.
+// Footprint of a lookup: derivatives of both sets of texture coordinates.
 struct Gradient {
     vec4 x;
     vec4 y;
@@ -93,8 +92,9 @@ float folded(uint wrap, float t, float margin) {
     return clamp(inside, margin, 1.0 - margin);
 }
 
-// Moves coordinates to where the sampler, which repeats and filters, reads the result of the texture's own modes. Edges are
-// moved inwards by half a texel of the level and footprint that are read, so that nothing comes from the opposite edge.
+// Maps coordinates so that the repeating, filtering sampler gives the result of the texture's own wrap modes.
+// Edges move inwards by half a texel of the level and footprint, so that nothing bleeds in from the opposite
+// edge.
 void fold(uint handle, inout vec2 uv, inout vec2 x, inout vec2 y) {
     vec2 texels = texelsOf(handle);
     float a = length(x * texels), b = length(y * texels), longest = max(a, b);
@@ -110,7 +110,9 @@ void fold(uint handle, inout vec2 uv, inout vec2 x, inout vec2 y) {
 
 vec4 sampleTexture(uint handle, vec4 sets, Gradient g) {
     bool second = usesSecondSet(handle);
-    vec2 uv = second ? sets.zw : sets.xy, x = second ? g.x.zw : g.x.xy, y = second ? g.y.zw : g.y.xy;
+    vec2 uv = second ? sets.zw : sets.xy,
+        x = second ? g.x.zw : g.x.xy,
+        y = second ? g.y.zw : g.y.xy;
     if (LOOKUPS && (handle & FOLDED) != 0) fold(handle, uv, x, y);
     vec3 at = vec3(uv, float(handle & 0xffffu));
     switch (handle >> 16 & 15u) {
@@ -147,7 +149,8 @@ vec3 emission(Material m, Place at, Gradient g) {
 // (roughness, metallic)
 vec2 roughnessMetallic(Material m, Place at, Gradient g) {
     vec2 rm = vec2(m.roughness, m.metallic);
-    if (m.metallic_roughness_texture != NO_TEXTURE) rm *= sampleTexture(m.metallic_roughness_texture, at.uv, g).gb;
+    if (m.metallic_roughness_texture != NO_TEXTURE)
+        rm *= sampleTexture(m.metallic_roughness_texture, at.uv, g).gb;
     return rm;
 }
 
@@ -159,8 +162,8 @@ vec4 dielectric(Material m) {
     return dielectrics.list[dielectricIndex(m)];
 }
 
-// Tangent-space normal, not normalised. z is rebuilt, because two-channel formats (BC5) do not store it, and before x and
-// y are scaled (glTF 2.0, normalTextureInfo.scale).
+// Tangent-space normal, not normalised. z is reconstructed, because two-channel formats (BC5) do not store
+// it. This happens before x and y are scaled (glTF 2.0, normalTextureInfo.scale).
 vec3 tangentNormal(Material m, Place at, Gradient g) {
     vec2 xy = sampleTexture(m.normal_texture, at.uv, g).xy * 2.0 - 1.0;
     return vec3(xy * m.normal_scale, sqrt(max(1.0 - dot(xy, xy), 0.0)));

@@ -1,10 +1,10 @@
-// Constants and maps that several parts use.
+// Shared constants and mappings.
 #ifndef MATH_GLSL
 #define MATH_GLSL
 
 const float PI = 3.14159265359;
 
-// The axis along which v is longest. >=: vectors at 45 degrees have one too.
+// Index of the largest component's axis. >= handles ties at 45 degrees.
 uint dominantAxis(vec3 v) {
     vec3 a = abs(v);
     if (a.x >= a.y && a.x >= a.z) return 0u;

@@ -1,9 +1,9 @@
-// The shading normal: interpolated, bent by the material's normal map, on the side of the face that is seen.
+// Shading normal: interpolated, perturbed by the normal map, on the visible side of the face.
 #ifndef NORMALS_GLSL
 #define NORMALS_GLSL
 #include "common/materials.glsl"
 
-// normal, tangent: as interpolated, in the world; w of the tangent: the sign of the bitangent.
+// normal, tangent: interpolated, in world space; tangent.w: sign of the bitangent.
 vec3 mappedNormal(Material m, Place at, Gradient g, vec3 normal, vec4 tangent, vec3 face) {
     vec3 n = normalize(normal);
     float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces

@@ -1,7 +1,6 @@
-// Queue of work: a list, and a counter which holds the arguments of an indirect dispatch over the list. A
-// clear of the counter empties the queue. The including file defines QUEUE_LIST and QUEUE_COUNTER, the names
-// of the buffers, and QUEUE_GROUP, the items that a group of the dispatch takes. Shaders that add items also
-// define QUEUE_WRITES.
+// Work queue: a list, and a counter that holds the arguments of an indirect dispatch over the list. Clearing
+// the counter empties the queue. The including file defines QUEUE_LIST and QUEUE_COUNTER (buffer names) and
+// QUEUE_GROUP (items per group of the dispatch). Shaders that add items also define QUEUE_WRITES.
 #ifndef QUEUE_GLSL
 #define QUEUE_GLSL
 
@@ -12,7 +11,7 @@ layout(std430) buffer QueueCounter {
 } QUEUE_COUNTER;
 
 #ifdef QUEUE_WRITES
-// Reserves places for items, at least one, and returns the first place.
+// Reserves space for items, at least one, and returns the index of the first.
 uint reserve(uint count) {
     uint first = atomicAdd(QUEUE_COUNTER.count, count);
     atomicMax(QUEUE_COUNTER.groups.x, min((first + count + QUEUE_GROUP - 1) / QUEUE_GROUP, 65535u));

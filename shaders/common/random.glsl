@@ -1,5 +1,5 @@
-// Random numbers by counter: a number depends on its key alone, never on what was drawn before or elsewhere, so
-// samples may be taken in any order, in parts, and on any machine.
+// Counter-based random numbers: a number depends only on its key, so samples may be taken in any order, in
+// parts, and on any machine.
 #ifndef RANDOM_GLSL
 #define RANDOM_GLSL
 

@@ -1,5 +1,5 @@
-// Prefix sums over the invocations of a group, in their order. The including file defines SCAN_THREADS, the
-// size of a group. All invocations of the group call these functions together.
+// Prefix sums over the invocations of a group, in order. The including file defines SCAN_THREADS, the group
+// size. All invocations of the group call these functions together.
 #ifndef SCAN_GLSL
 #define SCAN_GLSL
 

@@ -1,5 +1,6 @@
-// Camera, scene and geometry: the fixed resources every pass may read. World units are metres, y is up,
-// the world is right-handed; clip space is Vulkan's (y down, reversed depth: 1 at the near plane, 0 infinitely far away).
+// Camera, scene and geometry: fixed resources that every pass may read. World units are metres; the world is
+// right-handed with y up. Clip space is Vulkan's: y down, reversed depth (1 at the near plane, 0 at
+// infinity).
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
@@ -12,14 +13,14 @@ layout(std140) uniform Camera {
     vec3 position;
     float near;
     vec3 direction;
-    float far; // cuts off nothing; may be infinite
+    float far; // clips nothing; may be infinite
     vec3 up;
     float fov_y; // radians
     vec3 previous_position;
     float time; // seconds
     uvec2 size; // pixels
     uint frame;
-    uint still_frames; // since anything but the camera changed
+    uint still_frames; // since anything except the camera changed
     float delta_time;
 } camera;
 
@@ -28,12 +29,12 @@ layout(std140) uniform SceneInfo {
     uint light_count;
     vec3 bounds_max;
     uint shadow_views;
-    vec3 sky; // radiance, or what the picture's is multiplied by
+    vec3 sky; // radiance, or factor of the sky image
     uint triangle_count;
     uint draw_count;
     uint vertex_count;
     uint instance_count;
-    float sky_turn; // of the sky's picture about y, 0 to 1; below 0: there is none
+    float sky_turn; // rotation of the sky image about y [turns], 0 to 1; negative: no image
 } sceneInfo;
 
 struct Instance {
@@ -49,8 +50,8 @@ struct Draw {
     uint index_count;
 };
 
-// Whether any vertex of the scene has a colour, and whether any texture wraps, filters or is placed in another way than by the
-// sampler and the first set of coordinates. Set by the program.
+// Whether any vertex has a colour, and whether any texture needs its own wrap mode, filter or second set of
+// coordinates. Set by the program.
 layout(constant_id = 2040) const bool COLORS = true;
 layout(constant_id = 2041) const bool LOOKUPS = true;
 
@@ -75,8 +76,10 @@ VertexAttributes loadAttributes(uint vertex) {
     vec4 a = attributes.attributes[3 * vertex];
     vec4 b = attributes.attributes[3 * vertex + 1];
     vec4 c = attributes.attributes[3 * vertex + 2];
-    vec4 root = COLORS ? unpackUnorm4x8(floatBitsToUint(c.y)) : vec4(1.0); // square roots of red, green and blue
-    return VertexAttributes(a.xyz, b, vec4(a.w, c.x, LOOKUPS ? c.zw : vec2(0.0)), vec4(root.rgb * root.rgb, root.a));
+    // Square roots of red, green and blue.
+    vec4 root = COLORS ? unpackUnorm4x8(floatBitsToUint(c.y)) : vec4(1.0);
+    return VertexAttributes(a.xyz, b, vec4(a.w, c.x, LOOKUPS ? c.zw : vec2(0.0)),
+        vec4(root.rgb * root.rgb, root.a));
 }
 
 vec3 toWorld(uint instance, vec3 position) {
@@ -87,7 +90,7 @@ vec3 normalToWorld(uint instance, vec3 normal) {
     return mat3(instances.instances[instance].normal_matrix) * normal;
 }
 
-// A mirrored instance turns cross(normal, tangent) around, and so the sign of the bitangent.
+// A mirrored instance flips cross(normal, tangent), and therefore the sign of the bitangent.
 vec4 tangentToWorld(uint instance, vec4 tangent) {
     mat3 model = mat3(instances.instances[instance].model);
     return vec4(model * tangent.xyz, determinant(model) < 0.0 ? -tangent.w : tangent.w);
