@@ -2,6 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_atomic_int64 : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
-// Bins the large triangles that the camera may see.
+// Bins the large triangles in the camera's view.
 #include "gbuffer/visibility.glsl"
 #include "raster/bin.glsl"

@@ -1,12 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Depth prepass (thesis, Section 4.7.1). The position must come out bit-equal to gbuffer/surface.vert's: the
+// Depth prepass (thesis, Section 4.7.1). Positions must equal those of gbuffer/surface.vert to the bit: the
 // shading pass compares depth with EQUAL.
 #include "common/scene.glsl"
 
 layout(location = 0) out vec4 uv;
 layout(location = 1) flat out uint material;
-layout(location = 2) out float alpha; // of the vertices' colour
+layout(location = 2) out float alpha; // of the vertex colour
 
 precise gl_Position; // same operations in both shaders: no contraction, so bit-equal depth
 

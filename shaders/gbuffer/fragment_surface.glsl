@@ -1,4 +1,4 @@
-// The surface under a fragment of gbuffer/surface.vert.
+// Surface of a fragment of gbuffer/surface.vert.
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
 #include "common/scene.glsl"
@@ -17,12 +17,12 @@ Place placeHere() {
     return Place(uv, color);
 }
 
-// Call it before anything returns.
+// Uses derivatives: call it before any return.
 Gradient gradientHere() {
     return Gradient(dFdx(uv), dFdy(uv));
 }
 
-// The triangle's normal on the viewer's side. Has derivatives: call it before anything returns.
+// The triangle's normal on the viewer's side. Uses derivatives: call it before any return.
 vec3 faceNormal(vec3 v) {
     vec3 face = cross(dFdx(position), dFdy(position));
     face = dot(face, face) > 0.0 ? normalize(face) : normalize(normal);
@@ -35,7 +35,8 @@ vec3 shadingNormal(Material m, Gradient g, vec3 face) {
 
 Surface surfaceAt(Material m, Gradient g, vec3 face, vec3 v) {
     vec2 rm = roughnessMetallic(m, placeHere(), g);
-    return makeSurface(shadingNormal(m, g, face), baseColor(m, placeHere(), g).rgb, rm.x, rm.y, dielectric(m), v);
+    return makeSurface(shadingNormal(m, g, face), baseColor(m, placeHere(), g).rgb, rm.x, rm.y,
+        dielectric(m), v);
 }
 
 #endif

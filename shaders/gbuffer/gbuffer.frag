@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The G-buffer, for passes that shade it. Costs 28 bytes a pixel, and no cone is traced for the
-// uncovered pixels of a triangle's quads.
+// G-buffer for deferred shading. Costs 28 bytes per pixel, but no cones for uncovered pixels of a quad.
 #include "params.glsl"
 #include "gbuffer/fragment_surface.glsl"
 #include "gbuffer/packing.glsl"

@@ -1,6 +1,6 @@
-// The G-buffer: the surface that each pixel sees, between the pass that writes it (gbuffer/gbuffer.frag) and those that shade
-// it. Every value is 0 or more: where triangles meet in one depth the larger one stays, channel by channel, whatever their order. What is
-// then shaded may be a mixture of both, on the viewer's side.
+// G-buffer encoding, shared by the passes that write and read it. All values are non-negative: where
+// triangles meet at equal depth, the larger value wins in each channel, in any draw order. The shaded surface
+// may then mix both, on the viewer's side.
 #ifndef GBUFFER_GLSL
 #define GBUFFER_GLSL
 
@@ -14,14 +14,15 @@ vec3 unpackNormal(vec2 p) {
     return fromOctahedral(p * 2.0 - 1.0);
 }
 
-// Metallic, and the number of the dielectric that the rest is, in the bits of a 16-bit float. Of number 0 it is metallic itself; of another
-// one it lies above 1, in steps of 1/255. The larger of two is one of the two.
+// Metallic and the dielectric's index, in the bits of a 16-bit float. Index 0 stores metallic itself; other
+// indices store values above 1, in steps of 1/255 of metallic. The maximum of two codes is one of the two.
 const uint HALF_ONE = 0x3c00u;
-const uint MOST_DIELECTRICS = 64u; // with number 0; the largest then is below infinity
+const uint MOST_DIELECTRICS = 64u; // including index 0; keeps the largest code finite
 
 float packMetallic(float metallic, uint index) {
     if (index == 0u) return metallic;
-    return unpackHalf2x16(HALF_ONE + 1u + (min(index, MOST_DIELECTRICS - 1u) - 1u) * 256u + uint(clamp(metallic, 0.0, 1.0) * 255.0 + 0.5)).x;
+    return unpackHalf2x16(HALF_ONE + 1u + (min(index, MOST_DIELECTRICS - 1u) - 1u) * 256u
+        + uint(clamp(metallic, 0.0, 1.0) * 255.0 + 0.5)).x;
 }
 
 float unpackMetallic(float code, out uint index) {

@@ -1,4 +1,4 @@
-// Reading the G-buffer.
+// G-buffer lookups.
 #ifndef GBUFFER_READ_GLSL
 #define GBUFFER_READ_GLSL
 #include "common/scene.glsl"
@@ -8,7 +8,7 @@
 #include "common/view_ray.glsl"
 
 struct GBufferSurface {
-    bool any; // or the background
+    bool any; // false: background
     vec3 position;
     vec3 face; // geometric normal
     vec3 to_viewer;
@@ -18,7 +18,7 @@ struct GBufferSurface {
 
 uniform sampler2D gbufferBase; // base colour, roughness
 uniform sampler2D gbufferNormals; // packed: shading, geometric
-uniform sampler2D gbufferEmission; // radiance, metallic with the dielectric's number
+uniform sampler2D gbufferEmission; // radiance, metallic with the dielectric's index
 uniform sampler2D gbufferDistance; // from the camera [m]; 0: background
 
 GBufferSurface gbufferAt(ivec2 pixel) {

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// The G-buffer of what the visibility buffer names: where the ray of a pixel and those of its neighbours meet the triangle's plane
-// (Moller and Trumbore 1997) gives attributes and the gradients of textures (Schied and Dachsbacher 2015).
+// Resolves the visibility buffer into the G-buffer. Rays of a pixel and its neighbours intersect the
+// triangle's plane (Moller and Trumbore 1997), which gives attributes and texture gradients (Schied and
+// Dachsbacher 2015).
 #include "common/scene.glsl"
 #include "common/materials.glsl"
 #include "gbuffer/packing.glsl"
@@ -17,10 +18,11 @@ uniform writeonly image2D gbufferEmission;
 uniform writeonly image2D gbufferDistance;
 uniform writeonly image2D visibleDepth;
 
-// Through a point of the picture; not unit length.
+// Ray through a point of the image; not unit length.
 vec3 rayThrough(vec2 pixel) {
     vec2 clip = pixel / vec2(camera.size) * 2.0 - 1.0;
-    return transpose(mat3(camera.view)) * vec3(clip.x / camera.projection[0][0], clip.y / camera.projection[1][1], -1.0);
+    return transpose(mat3(camera.view))
+        * vec3(clip.x / camera.projection[0][0], clip.y / camera.projection[1][1], -1.0);
 }
 
 void main() {
@@ -39,20 +41,27 @@ void main() {
     Draw draw = draws.draws[t.x];
     uvec3 vertex = uvec3(indices.indices[t.y], indices.indices[t.y + 1], indices.indices[t.y + 2]);
     vec3 a = toWorld(draw.instance, loadPosition(vertex.x));
-    vec3 e = toWorld(draw.instance, loadPosition(vertex.y)) - a, f = toWorld(draw.instance, loadPosition(vertex.z)) - a;
-    VertexAttributes at[3] = VertexAttributes[3](loadAttributes(vertex.x), loadAttributes(vertex.y), loadAttributes(vertex.z));
+    vec3 e = toWorld(draw.instance, loadPosition(vertex.y)) - a,
+        f = toWorld(draw.instance, loadPosition(vertex.z)) - a;
+    VertexAttributes at[3] =
+        VertexAttributes[3](loadAttributes(vertex.x), loadAttributes(vertex.y), loadAttributes(vertex.z));
 
-    // Along a ray: its length to the plane, and the weights of the second and third corner there.
+    // Per ray: distance to the plane, and the barycentric weights of the second and third corner there.
     vec3 from = camera.position - a, plane = cross(e, f);
     mat3 meet = mat3(cross(from, f), cross(e, from), plane);
     vec3 ray = rayThrough(vec2(pixel) + 0.5);
-    vec3 across = ray * meet, across_x = rayThrough(vec2(pixel) + vec2(1.5, 0.5)) * meet, across_y = rayThrough(vec2(pixel) + vec2(0.5, 1.5)) * meet;
-    // Of a triangle that is seen edge-on rounding decides where: not beyond its corners, nor far from where it was drawn.
+    vec3 across = ray * meet,
+        across_x = rayThrough(vec2(pixel) + vec2(1.5, 0.5)) * meet,
+        across_y = rayThrough(vec2(pixel) + vec2(0.5, 1.5)) * meet;
+    // Rounding dominates for triangles seen edge-on: clamp to the corners and to the rasterised depth.
     vec2 weights = clamp(across.xy / (across.z == 0.0 ? 1e-30 : across.z), 0.0, 1.0);
     float raster_depth = camera.near / uintBitsToFloat(word.y);
-    float depth = clamp(-dot(from, plane) / (across.z == 0.0 ? 1e-30 : across.z), 0.99 * raster_depth, 1.01 * raster_depth);
+    float depth = clamp(-dot(from, plane) / (across.z == 0.0 ? 1e-30 : across.z),
+        0.99 * raster_depth, 1.01 * raster_depth);
     mat2x4 uv_of = mat2x4(at[1].uv - at[0].uv, at[2].uv - at[0].uv);
-    Gradient g = Gradient(uv_of * (across_x.xy / across_x.z - weights), uv_of * (across_y.xy / across_y.z - weights));
+    Gradient g = Gradient(
+        uv_of * (across_x.xy / across_x.z - weights),
+        uv_of * (across_y.xy / across_y.z - weights));
 
     Material m = materials.materials[draw.material];
     vec3 b = vec3(1.0 - weights.x - weights.y, weights);
@@ -64,7 +73,8 @@ void main() {
     if (dot(face, ray) > 0.0) face = -face;
     vec2 rm = roughnessMetallic(m, place, g);
     imageStore(gbufferBase, pixel, vec4(baseColor(m, place, g).rgb, rm.x));
-    imageStore(gbufferNormals, pixel, vec4(packNormal(mappedNormal(m, place, g, normal, tangent, face)), packNormal(face)));
+    imageStore(gbufferNormals, pixel,
+        vec4(packNormal(mappedNormal(m, place, g, normal, tangent, face)), packNormal(face)));
     imageStore(gbufferEmission, pixel, vec4(emission(m, place, g), packMetallic(rm.y, dielectricIndex(m))));
     imageStore(gbufferDistance, pixel, vec4(depth * length(ray)));
 }

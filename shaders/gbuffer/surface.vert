@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// World-space attributes, for the G-buffer and forward shading. gl_Position must equal depth.vert's to the bit.
+// World-space attributes for the G-buffer and forward shading. gl_Position must equal depth.vert's to the
+// bit.
 #include "common/scene.glsl"
 
 layout(location = 0) out vec3 position;

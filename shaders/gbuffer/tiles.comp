@@ -2,6 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_atomic_int64 : require
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
-// Fills the tiles of large triangles that the camera may see.
+// Fills the tiles of large triangles in the camera's view.
 #include "gbuffer/visibility.glsl"
 #include "raster/tiles.glsl"

@@ -1,5 +1,5 @@
-// Visibility buffer (Burns and Hunt 2013): depth and triangle index of each pixel in one word, so that one 64-bit maximum decides.
-// The including file enables the 64-bit extensions.
+// Visibility buffer (Burns and Hunt 2013): depth and triangle index of a pixel share one word, so one 64-bit
+// atomic maximum resolves visibility. The including file enables the 64-bit extensions.
 #ifndef VISIBILITY_GLSL
 #define VISIBILITY_GLSL
 #include "common/scene.glsl"
