@@ -1,4 +1,5 @@
-// Radiance times the cone's openness, which darkens a second time (thesis, Algorithm 3). The sky adds nothing.
+// Radiance times the cone's openness, which darkens a second time (thesis, Algorithm 3). The sky adds
+// nothing.
 vec3 coneRadiance(vec4 cone, vec3 d, float spread) {
     return params.injection_exposure * cone.rgb * (1.0 - cone.a);
 }
