@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Nothing is before the farthest depth. Here and not by a clear of the image, which on a chip with few rasterisers takes as long as
-// drawing the map.
+// Clears to the farthest depth. A compute pass, because an image clear takes as long as drawing the map on a
+// chip with few rasterisers.
 #include "params.glsl"
 
 layout(local_size_x = 32, local_size_y = 4) in;

@@ -1,4 +1,4 @@
-// What each layer of the shadow map shows: the lights' views, then finer ones of directional lights.
+// Layers of the shadow map: the lights' views, then finer ones of directional lights.
 #ifndef SHADOW_LAYERS_GLSL
 #define SHADOW_LAYERS_GLSL
 #include "lights/lights.glsl"
@@ -6,15 +6,15 @@
 struct ShadowLayer {
     mat4 view_projection;
     float width; // of the map in the world [m], at unit distance if perspective
-    float perspective; // 1, or 0
-    int finer; // the layer that shows a part of this one, -1: none
-    float rounding; // of depth, beyond what its format rounds
-    float near; // least w of what is drawn
+    float perspective; // 1 or 0
+    int finer; // layer that shows a part of this one; -1: none
+    float rounding; // of depth, in addition to that of its format
+    float near; // least w that is drawn
 };
 
 layout(std430) buffer ShadowLayers { ShadowLayer layers[]; } shadowLayers;
 
-// Which of the six faces of a point light's shadow cube looks along d.
+// Face of a point light's shadow cube that contains direction d.
 int cubeFace(vec3 d) {
     vec3 a = abs(d);
     if (a.x >= a.y && a.x >= a.z) return d.x >= 0.0 ? 0 : 1;
@@ -22,7 +22,7 @@ int cubeFace(vec3 d) {
     return d.z >= 0.0 ? 4 : 5;
 }
 
-// World size of a shadow texel at p.
+// World size of a shadow texel at p [m].
 float shadowTexel(int layer, Light light, vec3 p) {
     ShadowLayer l = shadowLayers.layers[layer];
     return l.width * (l.perspective > 0.0 ? distance(light.position, p) : 1.0) / float(params.shadow_dim);
@@ -31,17 +31,17 @@ float shadowTexel(int layer, Light light, vec3 p) {
 // xy: shadow-map coordinates in [0,1]; z: depth, outside [0,1] beyond the map's ends.
 vec3 shadowPositionBeyond(int layer, vec3 p) {
     vec4 c = shadowLayers.layers[layer].view_projection * vec4(p, 1.0);
-    vec3 q = c.xyz / max(c.w, 1e-6); // a spot light's plane has w = 0; behind it no light arrives
+    vec3 q = c.xyz / max(c.w, 1e-6); // w = 0 in a spot light's plane; no light arrives behind it
     return vec3(q.xy * 0.5 + 0.5, q.z);
 }
 
-// The same, as the map has it.
+// The same, with depth clamped as in the map.
 vec3 shadowPosition(int layer, vec3 p) {
     vec3 q = shadowPositionBeyond(layer, p);
     return vec3(q.xy, clamp(q.z, 0.0, 1.0));
 }
 
-// Texels at a finer map's edge that are not looked up, so that taps and offsets stay within it.
+// Unused margin of a finer map [texels], which keeps taps and offsets inside it.
 const float SHADOW_BORDER = 8.0;
 
 // The finest layer of a light that shows p.

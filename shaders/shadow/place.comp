@@ -1,4 +1,4 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Where no map is around the camera, which may move then and no map changes.
+// Without nested maps: no layer depends on the camera.
 #include "shadow/place.glsl"

@@ -1,6 +1,6 @@
-// What each layer of the shadow map shows this frame: the lights' views, and of directional lights `nested_maps` - 1 cubes around
-// the camera, each `shadow_step` times smaller than the one before (nested as in Zhang et al. 2006, "Parallel-Split Shadow Maps
-// for Large-scale Virtual Environments", but around the eye: turning it moves no map).
+// Sets up the layers of the shadow map: the lights' views, and for directional lights `nested_maps` - 1 cubes
+// around the camera, each `shadow_step` times smaller than the one before. As in Zhang et al. 2006, "Parallel-Split
+// Shadow Maps for Large-scale Virtual Environments", but around the eye: turning it moves no map.
 #include "params.glsl"
 #include "common/scene.glsl"
 #include "shadow/views.glsl"
@@ -14,8 +14,8 @@ vec3 directionOf(mat4 m, int i) {
     return normalize(vec3(m[0][i], m[1][i], m[2][i]));
 }
 
-// A cube of this width around the camera, along the axes of a directional light's view. It moves by whole texels, so that what
-// stands still keeps its shadow.
+// A cube of this width around the camera, along the axes of a directional light's view. It moves by whole
+// texels, so that shadows of static geometry do not change.
 mat4 around(mat4 whole, float width) {
     float texel = width / float(params.shadow_dim);
     mat4 m = mat4(1.0);
@@ -31,14 +31,14 @@ mat4 around(mat4 whole, float width) {
     return m;
 }
 
-// Depth of a surface that reaches over all of the scene, in a map of a small part of it, is off by this many of its 24 bits: what a
-// rasteriser clips and interpolates is as large as the scene. On an NVIDIA H100 a fifth was seen.
+// Depth error of a surface as large as the scene, in a map of a small part of it [2^-24 of the whole
+// view's width]: rasterisers clip and interpolate at the scale of the scene. Measured on an NVIDIA H100: 0.2.
 const float ROUNDED_BITS = 0.5;
 
 #endif
 
-// Depth is clamped, so what lies before the near plane casts shadows too, down to a tenth of its distance; w is 1 everywhere in
-// orthographic views.
+// Depth is clamped, so geometry in front of the near plane casts shadows too, down to a tenth of its
+// distance. Orthographic views have w = 1 everywhere.
 float nearOf(ShadowView view) {
     if (view.texel_size_and_depth.z == 0.0) return 0.5;
     mat4 m = transpose(view.view_projection); // z = scale * w - scale * near
@@ -56,7 +56,8 @@ void main() {
         int views = light.kind == LIGHT_POINT ? 6 : 1;
         for (int layer = light.shadow_view; layer < light.shadow_view + views; layer++) {
             ShadowView view = shadowViews.views[layer];
-            shadowLayers.layers[layer] = ShadowLayer(view.view_projection, view.texel_size_and_depth.x, view.texel_size_and_depth.z, -1, 0.0, nearOf(view));
+            shadowLayers.layers[layer] = ShadowLayer(view.view_projection, view.texel_size_and_depth.x,
+                view.texel_size_and_depth.z, -1, 0.0, nearOf(view));
         }
 #ifdef NESTED_MAPS
         if (light.kind != LIGHT_DIRECTIONAL) continue;

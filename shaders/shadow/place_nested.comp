@@ -1,5 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Where maps of directional lights move with the camera.
+// With nested maps: layers of directional lights move with the camera.
 #define NESTED_MAPS
 #include "shadow/place.glsl"

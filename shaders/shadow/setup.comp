@@ -1,5 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Sets up the triangles that lights see, for all layers at once.
+// Sets up the triangles in the lights' views, for all layers at once.
 #include "shadow/target.glsl"
 #include "raster/setup.glsl"

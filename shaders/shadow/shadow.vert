@@ -7,7 +7,7 @@
 
 layout(location = 0) out vec4 uv;
 layout(location = 1) flat out uint material;
-layout(location = 2) out float alpha; // of the vertices' colour
+layout(location = 2) out float alpha; // of the vertex colour
 
 void main() {
     Draw draw = draws.draws[gl_InstanceIndex];

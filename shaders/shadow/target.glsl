@@ -1,4 +1,4 @@
-// The shadow maps as words: depths as floats, whose bits compare like integers. The least stays.
+// Shadow maps as words: float depths, with bits that compare like integers. The least depth wins.
 #include "params.glsl"
 #include "shadow/layers.glsl"
 
