@@ -1,9 +1,10 @@
-// The tiles of large pieces, a group a piece, which fills smaller ones itself: a tile for each costs more than they.
+// Bins large pieces into tiles, one group per piece. A group fills medium pieces itself, because their tiles
+// would cost more.
 #include "raster/fill.glsl"
 
 layout(local_size_x = 32) in;
 
-// One atomic of the queue's length for all of a group: a hundred thousand would wait for each other.
+// One atomic per group on the queue's length: a hundred thousand threads would wait for each other.
 shared uint found;
 shared uint first_entry;
 
@@ -13,7 +14,7 @@ void main() {
         uint i = queuedPiece(n);
         Piece p = rasterPieces.list[i];
         Outline o;
-        outlineOf(p, targetSize(), o); // pieces in the queue have one
+        outlineOf(p, targetSize(), o); // true for all queued pieces
         if ((o.high.x - o.low.x + 1) * (o.high.y - o.low.y + 1) <= MEDIUM) {
             ivec2 lane = ivec2(gl_LocalInvocationIndex & 7u, gl_LocalInvocationIndex >> 3);
             for (int y = o.low.y; y <= o.high.y; y += 4)

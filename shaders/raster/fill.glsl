@@ -1,5 +1,5 @@
-// Filling the pixels of pieces. The including shader says where to: targetSize; isNearer, whether a depth is not hidden yet; plot, which
-// leaves what is hidden alone.
+// Fills the pixels of pieces. The including shader defines targetSize, isNearer (whether a depth is not
+// hidden yet) and plot (a write with depth test).
 #ifndef RASTER_FILL_GLSL
 #define RASTER_FILL_GLSL
 #include "common/scene.glsl"
@@ -7,9 +7,10 @@
 #include "raster/pieces.glsl"
 #include "raster/triangles.glsl"
 
-// Texture coordinates and vertex alpha at a point of the screen, of a piece's plane.
+// Texture coordinates and vertex alpha of a piece's plane at a screen position.
 vec3 lookupAt(Piece p, Outline o, vec2 at) {
-    vec3 b = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at)) * vec3(p.per_w[0], p.per_w[1], p.per_w[2]);
+    vec3 b = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at))
+        * vec3(p.per_w[0], p.per_w[1], p.per_w[2]);
     float alpha = COLORS ? dot(b, unpackUnorm4x8(p.alphas).xyz) : 0.0;
     return vec3(b.x * p.uv[0] + b.y * p.uv[1] + b.z * p.uv[2], alpha) / (b.x + b.y + b.z);
 }
@@ -21,11 +22,11 @@ bool isCutOut(Piece p, Outline o, vec2 at) {
     return baseColor(m, Place(here.xyxy, here.zzzz), Gradient(x.xyxy, y.xyxy)).a < m.alpha_cutoff;
 }
 
-// A pixel whose centre is inside.
+// Fills a pixel with its centre inside.
 void fillInside(Piece p, Outline o, ivec2 pixel) {
     vec2 steps = vec2(pixel - o.low);
     precise float depth = clamp(p.depth + p.slope.x * steps.x + p.slope.y * steps.y, p.range.x, p.range.y);
-    // Only where a lookup may be spared: plot decides anyway, and nobody waits for it.
+    // Tests depth only to save a mask lookup: plot tests it anyway, without waiting.
     if (p.mask > 0 && (!isNearer(pixel, p.layer, depth) || isCutOut(p, o, vec2(pixel) + 0.5))) return;
     plot(pixel, p.layer, depth, p.triangle);
 }
@@ -33,7 +34,8 @@ void fillInside(Piece p, Outline o, ivec2 pixel) {
 void fillPixel(Piece p, Outline o, ivec2 pixel) {
     vec2 at = vec2(pixel) + 0.5;
     vec3 e = vec3(edgeAt(o.edges[0], at), edgeAt(o.edges[1], at), edgeAt(o.edges[2], at));
-    if (isInside(o.edges[0], e.x) && isInside(o.edges[1], e.y) && isInside(o.edges[2], e.z)) fillInside(p, o, pixel);
+    if (isInside(o.edges[0], e.x) && isInside(o.edges[1], e.y) && isInside(o.edges[2], e.z))
+        fillInside(p, o, pixel);
 }
 
 void fillRectangle(Piece p, Outline o, ivec2 low, ivec2 high) {

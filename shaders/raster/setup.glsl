@@ -1,5 +1,6 @@
-// Sets triangles up, a thread a triangle and layer: to clip space, cut at the near plane, to the screen; small ones are filled.
-// The including shader says, beside what raster/fill.glsl asks for: targetClip, a clip position; targetNear, its least w.
+// Sets up triangles, one thread per triangle and layer: transforms to clip space, clips at the near plane,
+// projects to the screen, and fills small ones. In addition to the functions of raster/fill.glsl, the
+// including shader defines targetClip (clip position) and targetNear (least w).
 #include "raster/fill.glsl"
 
 layout(local_size_x = 64) in;
@@ -7,15 +8,16 @@ layout(local_size_x = 64) in;
 struct Corner {
     vec4 clip;
     vec2 uv; // of the mask
-    float alpha; // of the vertex's colour
+    float alpha; // of the vertex
 };
 
-// Depth as a linear function of the place on the screen, [-1,1]: from clip positions, before the near plane cuts anything and
-// corners close to it land far outside the picture, where a float has few digits left for the inside.
+// Depth as a linear function of the screen position in [-1,1]. Computed before near clipping: corners close
+// to the near plane project far outside the image, where floats have few digits left for the inside.
 vec3 depthPlane(Corner a, Corner b, Corner c) {
     vec3 from = a.clip.xyw;
     precise vec3 e = b.clip.xyw - from, f = c.clip.xyw - from, normal = cross(e, f);
-    precise vec3 sum = a.clip.z * normal + (b.clip.z - a.clip.z) * cross(f, from) + (c.clip.z - a.clip.z) * cross(from, e);
+    precise vec3 sum =
+        a.clip.z * normal + (b.clip.z - a.clip.z) * cross(f, from) + (c.clip.z - a.clip.z) * cross(from, e);
     return sum / dot(normal, from);
 }
 
@@ -54,11 +56,13 @@ void draw(Corner a, Corner b, Corner c, vec3 plane, uint triangle, uint layer, u
     fillRectangle(p, o, o.low, o.high);
 }
 
-// Where the line from a corner before the near plane to one behind it is cut: from the same end for both triangles beside it.
+// Clips the edge from a corner in front of the near plane to one behind it. Starts at the same end for both
+// adjacent triangles.
 Corner cut(Corner before, Corner behind, float near) {
     precise float t = (before.clip.w - near) / (before.clip.w - behind.clip.w);
     precise vec4 clip = before.clip + t * (behind.clip - before.clip);
-    return Corner(vec4(clip.xyz, near), mix(before.uv, behind.uv, t), COLORS ? mix(before.alpha, behind.alpha, t) : 1.0);
+    return Corner(vec4(clip.xyz, near), mix(before.uv, behind.uv, t),
+        COLORS ? mix(before.alpha, behind.alpha, t) : 1.0);
 }
 
 void setUp(uint triangle, uint layer) {
@@ -107,10 +111,12 @@ void setUp(uint triangle, uint layer) {
             count = 2;
         }
     }
-    for (int i = 0; i < 3 * count; i += 3) draw(parts[i], parts[i + 1], parts[i + 2], plane, triangle, layer, masked ? d.material + 1 : 0);
+    for (int i = 0; i < 3 * count; i += 3)
+        draw(parts[i], parts[i + 1], parts[i + 2], plane, triangle, layer, masked ? d.material + 1 : 0);
 }
 
 void main() {
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    for (uint i = gl_GlobalInvocationID.x; i < sceneInfo.triangle_count; i += stride) setUp(i, gl_GlobalInvocationID.y);
+    for (uint i = gl_GlobalInvocationID.x; i < sceneInfo.triangle_count; i += stride)
+        setUp(i, gl_GlobalInvocationID.y);
 }

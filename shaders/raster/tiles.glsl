@@ -1,9 +1,9 @@
-// Fills the tiles, 32 threads a tile: each thread finds how much of a block of 8x4 pixels is inside, then all fill one block after another.
-// As many tiles at once as there is room for, because each begins with a chain of lookups.
+// Fills tiles, 32 threads per tile. Each thread finds the coverage of one 8x4 block; then all fill one block
+// after another. A group handles several tiles, which hides the chain of lookups at the start of each.
 #include "raster/fill.glsl"
 
-const uint TILE_THREADS = 32, TILES = 4; // of a group
-const ivec2 BLOCK = ivec2(8, 4); // TILE_THREADS pixels, and as many blocks in a tile
+const uint TILE_THREADS = 32, TILES = 4; // per group
+const ivec2 BLOCK = ivec2(8, 4); // TILE_THREADS pixels; a tile has TILE_THREADS blocks
 
 layout(local_size_x = TILES * TILE_THREADS) in;
 
@@ -14,7 +14,9 @@ ivec2 blockCorner(uint block) {
 }
 
 void main() {
-    uint count = min(rasterCounter.tiles, rasterTiles.list.length()), number = gl_LocalInvocationID.x / TILE_THREADS, thread = gl_LocalInvocationID.x % TILE_THREADS;
+    uint count = min(rasterCounter.tiles, rasterTiles.list.length()),
+        number = gl_LocalInvocationID.x / TILE_THREADS,
+        thread = gl_LocalInvocationID.x % TILE_THREADS;
     ivec2 lane = ivec2(thread % 8u, thread / 8u);
     for (uint start = gl_WorkGroupID.x * TILES; start < count; start += gl_NumWorkGroups.x * TILES) {
         Piece p;
@@ -33,7 +35,9 @@ void main() {
             uint how = covered[number * TILE_THREADS + block];
             ivec2 pixel = corner + blockCorner(block) + lane;
             if (how == INSIDE) fillInside(p, o, pixel);
-            else if (how == CROSSED && all(greaterThanEqual(pixel, o.low)) && all(lessThanEqual(pixel, o.high))) fillPixel(p, o, pixel);
+            else if (how == CROSSED
+                && all(greaterThanEqual(pixel, o.low)) && all(lessThanEqual(pixel, o.high)))
+                fillPixel(p, o, pixel);
         }
         barrier();
     }
