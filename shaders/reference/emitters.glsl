@@ -1,8 +1,8 @@
-// Light of emitting surfaces, found both by drawing places on them and by the rays that a surface sends out: each way of finding a place
-// has the share of it that its density has of both (multiple importance sampling, balance heuristic; Veach and Guibas 1995).
+// Light of emitters: multiple importance sampling of emitter samples and ray hits (balance heuristic; Veach
+// and Guibas 1995).
 #include "lights/emitters.glsl"
 
-// Share of emission that a ray has met. density: of the ray's direction.
+// Weight of emission at a ray hit. density: pdf of the ray's direction.
 float shareOfRay(float density, SurfaceHit h, float distance) {
     if (h.drawn == 0.0) return 1.0;
     return density / (density + directionDensity(h.drawn, distance, dot(h.face, h.view)));
@@ -13,8 +13,8 @@ struct LobeLight {
     vec3 specular;
 };
 
-// The light of one place, drawn; what is behind it or before it is told by the surface that a ray there meets first. rays: how often
-// the diffuse and the specular lobe send out a ray.
+// Light of one emitter sample. It counts only if the ray to it hits a surface at its distance, which then
+// provides the emission. rays: expected number of rays of the diffuse and the specular lobe.
 LobeLight emitterLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 rays, inout Random random) {
     LobeLight none = LobeLight(vec3(0.0), vec3(0.0));
     if (emitters.count == 0) return none;
@@ -29,5 +29,6 @@ LobeLight emitterLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 rays, inout
     vec3 light = cosine * surfaceOf(hit, ray, NO_FOOTPRINT).emission;
     return LobeLight(
         light * diffuseBrdf(s) / (density + rays.x * diffuseDensity(s, place.direction)),
-        light * specularBrdf(s, view, place.direction) / (density + rays.y * specularDensity(s, view, place.direction)));
+        light * specularBrdf(s, view, place.direction)
+            / (density + rays.y * specularDensity(s, view, place.direction)));
 }

@@ -1,4 +1,4 @@
-// The surface that a ray has hit.
+// Surface at a ray hit.
 #ifndef HIT_GLSL
 #define HIT_GLSL
 #include "reference/trace.glsl"
@@ -9,10 +9,10 @@
 struct SurfaceHit {
     vec3 position;
     vec3 face; // the triangle's normal on the viewer's side
-    vec3 view; // to where the ray came from
+    vec3 view; // to the ray's origin
     Surface surface;
     vec3 emission;
-    float drawn; // how densely a place here is drawn as one on an emitter, by area [1/m^2]
+    float drawn; // pdf of an emitter sample here, by area [1/m^2]
 };
 
 SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
@@ -27,13 +27,16 @@ SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
     bool front = dot(face, v) >= 0.0;
     face = front ? face : -face;
 
-    VertexAttributes a = loadAttributes(corners.vertices.x), b = loadAttributes(corners.vertices.y), c = loadAttributes(corners.vertices.z);
+    VertexAttributes a = loadAttributes(corners.vertices.x),
+        b = loadAttributes(corners.vertices.y),
+        c = loadAttributes(corners.vertices.z);
     vec3 normal = normalToWorld(corners.instance, w.x * a.normal + w.y * b.normal + w.z * c.normal);
     vec4 tangent = tangentToWorld(corners.instance, w.x * a.tangent + w.y * b.tangent + w.z * c.tangent);
     vec3 n = mappedNormal(m, at, g, normal, tangent, face);
     vec2 rm = roughnessMetallic(m, at, g);
     Surface s = makeSurface(n, baseColor(m, at, g).rgb, rm.x, rm.y, dielectric(m), v);
-    return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, at, g), emitterDensity(t.flags, hit.weights, front));
+    return SurfaceHit(t.a + w.y * (t.b - t.a) + w.z * (t.c - t.a), face, v, s, emission(m, at, g),
+        emitterDensity(t.flags, hit.weights, front));
 }
 
 #endif

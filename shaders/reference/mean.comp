@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Means of the samples of both halves.
+// Means over the samples of both halves.
 #include "params.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// One sample of every pixel by path tracing (Kajiya 1986), with the surfaces, the BRDF and the lights of the
-// rasterised method. Every light is asked at every vertex (next-event estimation), and one place on all emitting surfaces;
-// directions are drawn from the cosine and from the visible GGX normals. The first vertex sends out two rays, one for each lobe, so
-// that diffuse and specular light are known apart. Emission and the sky are met by the rays too; of emission (reference/emitters.glsl) and of
-// a sky's picture (reference/sky.glsl) both ways of finding it share the light.
+// Path tracing (Kajiya 1986), one sample per pixel, with the surfaces, BRDF and lights of the rasterised
+// method. Each vertex samples every light (next-event estimation) and takes one emitter sample. Directions
+// are sampled from the cosine and from the visible GGX normals. The first vertex traces one ray per lobe,
+// which separates diffuse and specular light. Rays also hit emitters and the sky. Multiple importance
+// sampling combines both estimates of emission (reference/emitters.glsl) and of a sky image
+// (reference/sky.glsl).
 #include "params.glsl"
 #include "lights/direct.glsl"
 #include "reference/hit.glsl"
@@ -15,7 +16,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-// Sums over the even samples in layer 0, over the odd ones in layer 1; alpha counts them.
+// Sums of even samples in layer 0, of odd ones in layer 1; alpha counts them.
 layout(rgba32f) uniform image2DArray totalSum;
 layout(rgba32f) uniform image2DArray directSum;
 layout(rgba32f) uniform image2DArray diffuseSum;
@@ -24,15 +25,15 @@ layout(rgba32f) uniform image2DArray occlusionSum;
 layout(std430) buffer ReferenceErrors { uint not_finite; } referenceErrors;
 
 float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
-    if (light.of_sky != 0) return 0.0; // the picture has it
-    if (light.shadow_view < 0) return 1.0; // casts no shadows
+    if (light.of_sky != 0) return 0.0; // part of the sky image
+    if (light.shadow_view < 0) return 1.0; // casts no shadow
     vec3 from = offsetPoint(p, face);
     float end = light.kind == LIGHT_DIRECTIONAL ? 1e30 : distance(light.position, from) * 0.9999;
     return blocked(Ray(from, to_light, end)) ? 0.0 : 1.0;
 }
 
-// Radiance that arrives at p along -d after at most params.bounces turns, this ray being the first. density: of d among those that
-// were drawn. sun: of a sky's picture, if it is the sun that this ray meets.
+// Radiance that arrives at p along -d over at most params.bounces path segments, including this ray. density:
+// pdf of d. sun: the sun of a sky image, returned separately if the first ray escapes.
 vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escaped, out vec3 sun) {
     vec3 sum = vec3(0.0), weight = vec3(1.0);
     escaped = false;
@@ -90,7 +91,8 @@ vec3 incoming(vec3 p, vec3 d, float density, inout Random random, out bool escap
 vec3 cameraRay(vec2 at) {
     vec2 q = (2.0 * at / vec2(camera.size) - 1.0) * tan(0.5 * camera.fov_y);
     vec3 right = cross(camera.direction, camera.up);
-    return normalize(camera.direction + q.x * float(camera.size.x) / float(camera.size.y) * right - q.y * camera.up);
+    return normalize(camera.direction + q.x * float(camera.size.x) / float(camera.size.y) * right
+        - q.y * camera.up);
 }
 
 void main() {
@@ -101,9 +103,10 @@ void main() {
     vec4 u = next4(random);
     vec2 at = vec2(pixel) + (params.pixel == PIXEL_BOX ? u.xy : vec2(0.5));
     vec3 d = cameraRay(at);
-    // The rasteriser's near plane cuts here too.
+    // Starts at the rasteriser's near plane.
     vec3 start = camera.position + d * (camera.near / dot(d, camera.direction));
-    // Rays spread over the pixel average its texels themselves; one ray through its centre needs them averaged.
+    // Rays over the pixel's area average its texels themselves; a single ray through its centre needs a
+    // filtered lookup.
     Footprint f = params.pixel == PIXEL_BOX
         ? NO_FOOTPRINT
         : Footprint(camera.position, cameraRay(at + vec2(1, 0)), cameraRay(at + vec2(0, 1)));
@@ -117,8 +120,9 @@ void main() {
         vec3 p = offsetPoint(h.position, h.face);
         direct = directLight(h.surface, h.position, h.face, h.view);
         vec4 v = next4(random);
-        LobeSample one = diffuseSample(h.surface, h.face, v.xy), two = specularSample(h.surface, h.face, h.view, v.zw);
-        // Numbers of its own: a path does not depend on how long the other one is.
+        LobeSample one = diffuseSample(h.surface, h.face, v.xy),
+            two = specularSample(h.surface, h.face, h.view, v.zw);
+        // Separate random numbers: a path does not depend on the length of the other one.
         Random other = Random(uvec4(random.key.xy, 1u << 16, random.key.w));
         SkyLight sky = NO_SKY_LIGHT;
         if (skyHasPicture()) {
@@ -127,14 +131,17 @@ void main() {
         }
         bool escaped = false, unused;
         vec3 sun = vec3(0.0);
-        // Its own albedo is left out of the test: black surfaces too have openness.
+        // Tests the face and not the weight: black surfaces also have openness.
         if (dot(one.direction, h.face) > 0.0) {
-            diffuse = one.weight * incoming(p, one.direction, diffuseDensity(h.surface, one.direction), random, escaped, sun);
+            diffuse = one.weight
+                * incoming(p, one.direction, diffuseDensity(h.surface, one.direction), random, escaped, sun);
             direct += one.weight * sun;
         }
         open = escaped ? 1.0 : 0.0;
         if (two.weight != vec3(0.0)) {
-            specular = two.weight * incoming(p, two.direction, specularDensity(h.surface, h.view, two.direction), other, unused, sun);
+            specular = two.weight
+                * incoming(p, two.direction, specularDensity(h.surface, h.view, two.direction),
+                    other, unused, sun);
             direct += two.weight * sun;
         }
         LobeLight from_emitters = emitterLight(h.surface, h.position, h.face, h.view, vec2(1.0), random);

@@ -1,28 +1,30 @@
-// Directions drawn from the sky's picture, as dense as it is bright, and weighed against those that surfaces draw (Veach and Guibas
-// 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", the balance heuristic).
+// Importance sampling of the sky image by luminance, combined with the directions that surfaces sample (Veach
+// and Guibas 1995, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", the balance
+// heuristic).
 #ifndef REFERENCE_SKY_GLSL
 #define REFERENCE_SKY_GLSL
 #include "common/ggx.glsl"
 #include "lights/sky.glsl"
 
-// Width, height, two words of nothing; radiance around the sun and nothing; sums up to each row, from 0 to 1; in each row sums up to each
-// texel; texels in halves, two words each, of which bit 48 says that it is the sun's.
+// Layout: width, height, 2 unused words; radiance around the sun, 1 unused word; cumulative sums of rows,
+// from 0 to 1; for each row, cumulative sums of its texels; texels as half floats, 2 words each, with bit 48
+// set for the sun.
 layout(std430) readonly buffer SkyTexels { uint words[]; } skyTexels;
 
 const uint SKY_AROUND = 4, SKY_ROWS = 8;
 
-// What comes from a direction: the sun is light that arrives directly, as from a light.
+// Radiance from a direction. The sun counts as direct light, like a light.
 struct SkyShine {
     vec3 sky;
     vec3 sun;
-    float density; // of directions drawn here [1/sr]
+    float density; // pdf of drawSky [1/sr]
 };
 
-// Reflected to the viewer.
+// Light reflected to the viewer.
 struct SkyLight {
     vec3 diffuse;
     vec3 specular;
-    vec3 direct; // of the sun
+    vec3 direct; // from the sun
 };
 
 const SkyLight NO_SKY_LIGHT = SkyLight(vec3(0.0), vec3(0.0), vec3(0.0));
@@ -35,7 +37,7 @@ float skySum(uint i) {
     return uintBitsToFloat(skyTexels.words[i]);
 }
 
-// The first of `count` parts whose sums begin at `first` that ends beyond u.
+// The first of `count` intervals with an end above u. Cumulative sums begin at `first`.
 uint skyPart(uint first, uint count, float u) {
     uint low = 0, high = count - 1;
     while (low < high) {
@@ -53,19 +55,20 @@ SkyShine skyTexel(uvec2 at, float polar) {
     uint first = skyTexels.words[texel], second = skyTexels.words[texel + 1];
     vec3 radiance = vec3(unpackHalf2x16(first), unpackHalf2x16(second & 0xffffu).x), around = radiance;
     if (second >> 16 != 0) around = vec3(skySum(SKY_AROUND), skySum(SKY_AROUND + 1), skySum(SKY_AROUND + 2));
-    float share = (skySum(SKY_ROWS + at.y + 1) - skySum(SKY_ROWS + at.y)) * (skySum(row + at.x + 1) - skySum(row + at.x));
+    float share = (skySum(SKY_ROWS + at.y + 1) - skySum(SKY_ROWS + at.y))
+        * (skySum(row + at.x + 1) - skySum(row + at.x));
     float density = share * float(size.x) * float(size.y) / (2.0 * PI * PI * max(sin(polar), 1e-7));
     return SkyShine(sceneInfo.sky * around, sceneInfo.sky * (radiance - around), density);
 }
 
-// What a ray along d that leaves the scene meets.
+// Sky radiance along d, for a ray that leaves the scene.
 SkyShine skyShine(vec3 d) {
     uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
     vec2 place = skyDirection(d);
     return skyTexel(min(uvec2(vec2(fract(place.x), place.y) * vec2(size)), size - 1u), place.y * PI);
 }
 
-// A direction, as dense as the picture's luminance.
+// Samples a direction in proportion to the image's luminance.
 SkyShine drawSky(vec4 u, out vec3 d) {
     uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
     uint y = skyPart(SKY_ROWS, size.y, u.x);
@@ -76,21 +79,24 @@ SkyShine drawSky(vec4 u, out vec3 d) {
     return skyTexel(uvec2(x, y), polar);
 }
 
-// How much a ray along d counts that a lobe has drawn with that density, where the sky is drawn too.
+// Balance-heuristic weight of a ray along d that a lobe sampled with this density.
 float lobeShare(SkyShine shine, float density) {
     return density / max(density + shine.density, 1e-30);
 }
 
-// Light of one direction drawn from the sky at p; `drawn`: how many directions the diffuse and the specular lobe draw here, on average.
-// Nobody has drawn any at a path's end, where the sun alone counts, as lights do.
+// Light of one direction sampled from the sky at p. samples: expected number of directions that the diffuse
+// and the specular lobe sample here. At a path's end (only_sun) they sample none, and only the sun counts,
+// like a light.
 SkyLight skyLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 samples, bool only_sun, vec4 u) {
     vec3 d;
     SkyShine shine = drawSky(u, d);
     float cosine = dot(s.normal, d);
-    if (cosine <= 0.0 || dot(face, d) <= 0.0 || shine.density <= 0.0 || only_sun && shine.sun == vec3(0.0)) return NO_SKY_LIGHT;
+    if (cosine <= 0.0 || dot(face, d) <= 0.0 || shine.density <= 0.0 || only_sun && shine.sun == vec3(0.0))
+        return NO_SKY_LIGHT;
     if (blocked(Ray(offsetPoint(p, face), d, 1e30))) return NO_SKY_LIGHT;
     vec2 densities = shine.density + samples * vec2(diffuseDensity(s, d), specularDensity(s, view, d));
-    vec3 diffuse = diffuseBrdf(s) * cosine / densities.x, specular = specularBrdf(s, view, d) * cosine / densities.y;
+    vec3 diffuse = diffuseBrdf(s) * cosine / densities.x,
+        specular = specularBrdf(s, view, d) * cosine / densities.y;
     vec3 sky = only_sun ? vec3(0.0) : shine.sky;
     return SkyLight(diffuse * sky, specular * sky, (diffuse + specular) * shine.sun);
 }

@@ -1,5 +1,5 @@
-// Rays through the scene's triangles. The hierarchy is binary, in world space, of this frame's pose. Alpha masks are
-// part of the geometry: what a mask cuts out is passed through.
+// Ray tracing of the scene's triangles with a binary hierarchy in world space, for this frame's pose. Rays
+// pass through the holes of alpha masks.
 #ifndef TRACE_GLSL
 #define TRACE_GLSL
 #include "common/scene.glsl"
@@ -18,7 +18,9 @@ struct BvhTriangle {
     vec3 b;
     uint first_index; // of its three vertices in `indices`
     vec3 c;
-    uint flags; // the highest bit: an alpha mask; of an emitter the number of its first part and 1, from bit 24 on the parts of an edge
+    // Highest bit: alpha mask. For emitters: index of the first part plus 1; from bit 24, the number of parts
+    // along an edge.
+    uint flags;
 };
 
 const uint MASKED = 0x80000000u;
@@ -28,12 +30,12 @@ layout(std430) readonly buffer BvhTriangles { BvhTriangle triangles[]; } bvhTria
 layout(std430) readonly buffer Indices { uint indices[]; } indices;
 
 const uint NO_HIT = 0xffffffffu;
-const int TRACE_STACK = 64; // the program refuses scenes whose hierarchy is deeper
+const int TRACE_STACK = 64; // the program rejects scenes with a deeper hierarchy
 
 struct Ray {
     vec3 origin;
-    vec3 direction; // unit
-    float end; // m
+    vec3 direction; // unit length
+    float end; // [m]
 };
 
 struct Hit {
@@ -42,7 +44,7 @@ struct Hit {
     vec2 weights; // of the corners b and c
 };
 
-// Rays through the neighbouring pixels, for the size of a texture lookup; of no length behind the first hit.
+// Rays through the neighbouring pixels, for texture gradients; zero after the first hit.
 struct Footprint {
     vec3 origin;
     vec3 x;
@@ -51,8 +53,8 @@ struct Footprint {
 
 const Footprint NO_FOOTPRINT = Footprint(vec3(0.0), vec3(0.0), vec3(0.0));
 
-// Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": a ray cannot slip between triangles that
-// share an edge. Precomputed for each ray: the axes with z the longest, and the shear that makes the ray (0, 0, 1).
+// Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": no ray slips between triangles that
+// share an edge. Precomputed per ray: axes with z the longest, and the shear that maps the ray to (0, 0, 1).
 struct Shear {
     ivec3 axes;
     vec3 s;
@@ -60,7 +62,9 @@ struct Shear {
 
 Shear shearOf(vec3 d) {
     vec3 a = abs(d);
-    int z = a.x > a.y ? (a.x > a.z ? 0 : 2) : (a.y > a.z ? 1 : 2);
+    int z = a.x > a.y ?
+        (a.x > a.z ? 0 : 2) :
+        (a.y > a.z ? 1 : 2);
     ivec3 axes = ivec3((z + 1) % 3, (z + 2) % 3, z);
     return Shear(axes, vec3(d[axes.x], d[axes.y], 1.0) / d[z]);
 }
@@ -71,7 +75,7 @@ bool hitTriangle(Shear shear, vec3 origin, BvhTriangle t, float end, out Hit hit
     precise vec2 pa = vec2(a[k.x], a[k.y]) - shear.s.xy * a[k.z];
     precise vec2 pb = vec2(b[k.x], b[k.y]) - shear.s.xy * b[k.z];
     precise vec2 pc = vec2(c[k.x], c[k.y]) - shear.s.xy * c[k.z];
-    // The same two products for both triangles at an edge, without contraction: opposite to the bit.
+    // Both triangles at an edge compute the same two products, without contraction: opposite to the bit.
     precise float u = pc.x * pb.y - pc.y * pb.x;
     precise float v = pa.x * pc.y - pa.y * pc.x;
     precise float w = pb.x * pa.y - pb.y * pa.x;
@@ -85,7 +89,7 @@ bool hitTriangle(Shear shear, vec3 origin, BvhTriangle t, float end, out Hit hit
     return true;
 }
 
-// Where the ray enters the box, or a negative number. Widened by the rounding of its own arithmetic (Ize 2013).
+// Distance to the box, or a negative number. Widened by the rounding of its own arithmetic (Ize 2013).
 float hitBox(BvhNode node, vec3 origin, vec3 inverse, float end) {
     vec3 a = (node.low - origin) * inverse, b = (node.high - origin) * inverse;
     vec3 near = min(a, b), far = max(a, b) * 1.0000004;
@@ -102,10 +106,11 @@ struct Corners {
 Corners cornersOf(BvhTriangle t) {
     Draw draw = draws.draws[t.draw];
     uint i = t.first_index;
-    return Corners(uvec3(indices.indices[i], indices.indices[i + 1], indices.indices[i + 2]), draw.instance, draw.material);
+    return Corners(uvec3(indices.indices[i], indices.indices[i + 1], indices.indices[i + 2]), draw.instance,
+        draw.material);
 }
 
-// Weights of b and c at the point where a line meets the triangle's plane.
+// Weights of b and c at the intersection of a line with the triangle's plane.
 vec2 planeWeights(BvhTriangle t, vec3 origin, vec3 d) {
     vec3 ab = t.b - t.a, ac = t.c - t.a, n = cross(ab, ac);
     vec3 p = origin + d * (dot(n, t.a - origin) / dot(n, d)) - t.a;
@@ -116,14 +121,17 @@ vec4 mixCorners(vec4 a, vec4 b, vec4 c, vec2 weights) {
     return a + weights.x * (b - a) + weights.y * (c - a);
 }
 
-// Texture coordinates and vertex colour at a hit, and the change of coordinates from pixel to pixel.
+// Texture coordinates and vertex colour at a hit, and the gradients of the coordinates.
 Place placeOf(Material m, BvhTriangle t, Corners corners, vec2 weights, Footprint f, out Gradient gradient) {
-    VertexAttributes a = loadAttributes(corners.vertices.x), b = loadAttributes(corners.vertices.y), c = loadAttributes(corners.vertices.z);
+    VertexAttributes a = loadAttributes(corners.vertices.x),
+        b = loadAttributes(corners.vertices.y),
+        c = loadAttributes(corners.vertices.z);
     Place at = Place(mixCorners(a.uv, b.uv, c.uv, weights), vec4(1.0));
     if (isColored(m)) at.color = mixCorners(a.color, b.color, c.color, weights);
     gradient = Gradient(vec4(0.0), vec4(0.0));
     if (f.x != vec3(0.0))
-        gradient = Gradient(mixCorners(a.uv, b.uv, c.uv, planeWeights(t, f.origin, f.x)) - at.uv, mixCorners(a.uv, b.uv, c.uv, planeWeights(t, f.origin, f.y)) - at.uv);
+        gradient = Gradient(mixCorners(a.uv, b.uv, c.uv, planeWeights(t, f.origin, f.x)) - at.uv,
+            mixCorners(a.uv, b.uv, c.uv, planeWeights(t, f.origin, f.y)) - at.uv);
     return at;
 }
 
@@ -179,8 +187,8 @@ bool blocked(Ray ray) {
     return traceRay(ray, NO_FOOTPRINT, true).triangle != NO_HIT;
 }
 
-// A point just off a surface, by more than the rounding of p (Waechter and Binder 2019, "A Fast and Robust Method
-// for Avoiding Self-Intersection"). n: the geometric normal on the side to start from.
+// A point just off a surface, by more than the rounding of p (Waechter and Binder 2019, "A Fast and Robust
+// Method for Avoiding Self-Intersection"). n: geometric normal on the starting side.
 vec3 offsetPoint(vec3 p, vec3 n) {
     ivec3 steps = ivec3(256.0 * n);
     vec3 moved = intBitsToFloat(floatBitsToInt(p) + mix(steps, -steps, lessThan(p, vec3(0.0))));
