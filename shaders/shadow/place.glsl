@@ -1,6 +1,7 @@
 // Sets up the layers of the shadow map: the lights' views, and for directional lights `nested_maps` - 1 cubes
-// around the camera, each `shadow_step` times smaller than the one before. As in Zhang et al. 2006, "Parallel-Split
-// Shadow Maps for Large-scale Virtual Environments", but around the eye: turning it moves no map.
+// around the camera, each `shadow_step` times smaller than the one before. As in Zhang et al. 2006,
+// "Parallel-Split Shadow Maps for Large-scale Virtual Environments", but around the eye: turning it moves no
+// map.
 #include "params.glsl"
 #include "common/scene.glsl"
 #include "shadow/views.glsl"

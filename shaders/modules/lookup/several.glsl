@@ -77,7 +77,8 @@ vec4 sampleMap(vec3 u, int cascade, vec3 dir, float level) {
 }
 
 // Cones wider than this (tangent of half the aperture, 12 degrees) avoid coarse levels with cells that
-// contain the surface that they leave: an open plane would shadow itself. Narrow cones stay clear of it anyway.
+// contain the surface that they leave: an open plane would shadow itself. Narrow cones stay clear of it
+// anyway.
 const float CLEARED = 0.105;
 
 // The coarsest level with a lookup, 1.5 cells to each side, that fits between p and the surface. height: of p
