@@ -22,7 +22,7 @@ struct Piece {
 };
 
 layout(std430) buffer RasterPieces { Piece list[]; } rasterPieces;
-layout(std430) buffer RasterTiles { uvec2 list[]; } rasterTiles; // piece; tile: row in the high half, column
+layout(std430) buffer RasterTiles { uvec2 list[]; } rasterTiles; // piece; tile: column | row << 16
 layout(std430) buffer RasterCounter {
     uint pieces; // requested slots of pieces that a group fills itself; may exceed the queue
     uint large; // requested slots of larger pieces
