@@ -2,9 +2,9 @@
 #ifndef SURFACE_GLSL
 #define SURFACE_GLSL
 #include "common/scene.glsl"
-#include "common/materials.glsl"
+#include "materials/materials.glsl"
 #include "common/brdf.glsl"
-#include "common/normals.glsl"
+#include "materials/normals.glsl"
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;

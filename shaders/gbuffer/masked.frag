@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Alpha mask for the depth-only passes.
-#include "common/materials.glsl"
+#include "materials/materials.glsl"
 
 layout(location = 0) in vec4 uv;
 layout(location = 1) flat in uint material;

@@ -4,7 +4,7 @@
 #include "common/scene.glsl"
 #include "common/brdf.glsl"
 #include "gbuffer/packing.glsl"
-#include "common/dielectrics.glsl"
+#include "materials/dielectrics.glsl"
 #include "common/view_ray.glsl"
 
 struct GBufferSurface {

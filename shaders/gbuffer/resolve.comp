@@ -4,9 +4,9 @@
 // triangle's plane (Moller and Trumbore 1997), which gives attributes and texture gradients (Schied and
 // Dachsbacher 2015).
 #include "common/scene.glsl"
-#include "common/materials.glsl"
+#include "materials/materials.glsl"
 #include "gbuffer/packing.glsl"
-#include "common/normals.glsl"
+#include "materials/normals.glsl"
 #include "raster/triangles.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -3,7 +3,7 @@
 // Base colour lit by a lamp at the camera, plus emission.
 #include "params.glsl"
 #include "common/scene.glsl"
-#include "common/materials.glsl"
+#include "materials/materials.glsl"
 #include "preview/preview.glsl"
 
 layout(location = 0) in vec3 position;

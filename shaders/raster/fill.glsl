@@ -3,7 +3,7 @@
 #ifndef RASTER_FILL_GLSL
 #define RASTER_FILL_GLSL
 #include "common/scene.glsl"
-#include "common/materials.glsl"
+#include "materials/materials.glsl"
 #include "raster/pieces.glsl"
 #include "raster/triangles.glsl"
 

@@ -1,6 +1,5 @@
-// Sets up triangles, one thread per triangle and layer: transforms to clip space, clips at the near plane,
-// projects to the screen, and fills small ones. In addition to the functions of raster/fill.glsl, the
-// including shader defines targetClip (clip position) and targetNear (least w).
+// Triangle setup, a thread per triangle and layer: near clipping, projection, and fill of small triangles.
+// The including shader also defines targetClip (clip position) and targetNear (least w).
 #include "raster/fill.glsl"
 
 layout(local_size_x = 64) in;
@@ -11,8 +10,7 @@ struct Corner {
     float alpha; // of the vertex
 };
 
-// Depth as a linear function of the screen position in [-1,1]. Computed before near clipping: corners close
-// to the near plane project far outside the image, where floats have few digits left for the inside.
+// Depth as a linear function of the screen position in [-1,1]; corners near the near plane are too far outside.
 vec3 depthPlane(Corner a, Corner b, Corner c) {
     vec3 from = a.clip.xyw;
     precise vec3 e = b.clip.xyw - from, f = c.clip.xyw - from, normal = cross(e, f);

@@ -4,7 +4,7 @@
 #include "reference/trace.glsl"
 #include "common/brdf.glsl"
 #include "lights/emitters.glsl"
-#include "common/normals.glsl"
+#include "materials/normals.glsl"
 
 struct SurfaceHit {
     vec3 position;

@@ -23,8 +23,7 @@ float coarsestLevel(bool moves) {
     return float(clamp(levels, 0, params.levels - 1));
 }
 
-// Box around the camera, moved in whole cells of a level. With steps of one voxel, filtered levels still
-// change.
+// Box around the camera, moved in whole cells of a level. Steps of one voxel still change filtered levels.
 VolumeMap boxAround(vec3 p, vec3 size, VolumeMap g) {
     g.size = size;
     g.cell = size / float(params.voxel_dim);

@@ -1,7 +1,7 @@
 // Inputs of the raster voxelizer's fragment stage, and its texture footprint.
 #ifndef VOXELIZE_FRAGMENT_GLSL
 #define VOXELIZE_FRAGMENT_GLSL
-#include "common/materials.glsl"
+#include "materials/materials.glsl"
 #include "modules/reflectance.glsl"
 #include "voxels/raster.glsl"
 #include "voxels/store.glsl"

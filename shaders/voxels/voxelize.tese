@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Stores one point per tessellated vertex, without rasterisation (thesis, Section 4.1.2).
 #include "params.glsl"
-#include "common/materials.glsl"
+#include "materials/materials.glsl"
 #include "modules/reflectance.glsl"
 #include "volume/volume.glsl"
 #include "voxels/tessellated.glsl"

@@ -26,7 +26,7 @@ pub(super) struct MaterialTextures {
 }
 
 impl MaterialTextures {
-    /// A texture and how it is looked up, as `common/materials.glsl` unpacks it.
+    /// A texture and how it is looked up, as `materials/materials.glsl` unpacks it.
     pub fn handle(&self, texture: Option<u32>, lookup: Lookup) -> u32 {
         let Some(handle) = texture.and_then(|t| self.handles.get(t as usize)) else { return NO_TEXTURE };
         let [u, v] = lookup.wrap.map(|wrap| match wrap {

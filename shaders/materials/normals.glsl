@@ -1,7 +1,7 @@
 // Shading normal: interpolated, perturbed by the normal map, on the visible side of the face.
 #ifndef NORMALS_GLSL
 #define NORMALS_GLSL
-#include "common/materials.glsl"
+#include "materials/materials.glsl"
 
 // normal, tangent: interpolated, in world space; tangent.w: sign of the bitangent.
 vec3 mappedNormal(Material m, Place at, Gradient g, vec3 normal, vec4 tangent, vec3 face) {

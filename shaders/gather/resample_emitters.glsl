@@ -1,0 +1,69 @@
+// Resampling of emitter samples by unshadowed contribution (Talbot et al. 2005).
+#ifndef RESAMPLE_EMITTERS_GLSL
+#define RESAMPLE_EMITTERS_GLSL
+
+// Unshadowed contribution of an emitter sample.
+struct EmitterLight {
+    vec3 hemisphere; // in units of a sum over `rays` rays
+    vec3 specular; // in units of a sum over `lobe` rays
+};
+
+// Length of the exact part of cones [m]. There they hit emitters and share their light with emitter samples
+// (multiple importance sampling); filtered levels hold no emission.
+struct SharedRange {
+    float rays;
+    float lobe;
+};
+
+EmitterLight emitterSampleLight(EmitterSample place, Surface s, vec3 face, vec3 v, float rays, float lobe,
+    float drawn, SharedRange range) {
+    float cosine = dot(s.normal, place.direction);
+    if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0)
+        return EmitterLight(vec3(0.0), vec3(0.0));
+    float found = drawn * place.by_area * place.distance * place.distance;
+    vec3 light = place.radiance * place.cosine * cosine;
+    float by_rays = place.distance < range.rays ? rays * cosine / PI : 0.0;
+    float by_lobe = place.distance < range.lobe && lobe > 0.0
+        ? lobe * specularDensity(s, v, place.direction)
+        : 0.0;
+    return EmitterLight(
+        rays > 0.0 ? light * (rays / PI) / (found + by_rays) : vec3(0.0),
+        lobe > 0.0 ? light * lobe * specularBrdf(s, v, place.direction) / (found + by_lobe) : vec3(0.0));
+}
+
+// Resampled importance sampling: picks one of CANDIDATES emitter samples by unshadowed contribution. `light`
+// is the estimate for all of them.
+EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe,
+    float drawn, float tan_half, float tan_lobe, out EmitterLight light) {
+    float sum = 0.0, own = 0.0;
+    EmitterSample best;
+    best.cosine = 0.0;
+    light = EmitterLight(vec3(0.0), vec3(0.0));
+    vec4 shift = r4(patternBlock(), vec4(0.5));
+    float choice = fract(shift.x + float(pointIndex(number) & 0xffffu) * 0.6180339887);
+    for (int k = 0; k < CANDIDATES; k++) {
+        EmitterSample place = sampleEmitter(o.surface, r4(pointIndex(number * CANDIDATES + k), shift));
+        SharedRange range =
+            SharedRange(exactRange(o, place.direction, tan_half), exactRange(o, place.direction, tan_lobe));
+        EmitterLight found = emitterSampleLight(place, s, face, v, rays, lobe, drawn, range);
+        float weight =
+            luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
+        if (weight <= 0.0) continue;
+        sum += weight;
+        float chance = weight / sum;
+        if (choice < chance) {
+            choice /= chance;
+            best = place;
+            light = found;
+            own = weight;
+        } else {
+            choice = (choice - chance) / (1.0 - chance);
+        }
+    }
+    float scale = own > 0.0 ? sum / own : 0.0;
+    light.hemisphere *= scale;
+    light.specular *= scale;
+    return best;
+}
+
+#endif
