@@ -10,7 +10,7 @@ struct Corner {
     float alpha; // of the vertex
 };
 
-// Depth as a linear function of the screen position in [-1,1]; corners near the near plane are too far outside.
+// Depth, linear over the screen in [-1,1]. From before near clipping: clipped corners project far outside.
 vec3 depthPlane(Corner a, Corner b, Corner c) {
     vec3 from = a.clip.xyw;
     precise vec3 e = b.clip.xyw - from, f = c.clip.xyw - from, normal = cross(e, f);
