@@ -40,9 +40,7 @@ float intersectCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, floa
                 t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
             if (t < 0.0 || t < enter - PLANE_MARGIN || t > leave + PLANE_MARGIN || t >= nearest) continue;
             vec2 place = lateralOf(at + t * dir - vec3(cell), axis);
-            if (!isCovered(SIDES == 1 ? first.yz :
-                    side == 0 ? first.zw :
-                    HIT_SURFELS.quads[quad + 1].xy, place)) continue;
+            if (!isCovered(side == 0 ? first.zw : HIT_SURFELS.quads[quad + 1].xy, place)) continue;
             if ((side == 0) == (slope < 0.0)) {
                 nearest = t;
                 met = number + side;
