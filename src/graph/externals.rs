@@ -1,5 +1,5 @@
 //! The fixed named resources that a scene offers to every graph. The graph knows their names and kinds, not what they
-//! mean; `shaders/include/scene.glsl` declares their layouts.
+//! mean; `shaders/common/scene.glsl` declares their layouts.
 
 /// Kind of an external resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

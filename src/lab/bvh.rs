@@ -1,4 +1,4 @@
-//! A hierarchy over all triangles of a scene in one pose, for shaders that trace rays (`shaders/include/trace.glsl`).
+//! A hierarchy over all triangles of a scene in one pose, for shaders that trace rays (`shaders/reference/intersect.glsl`).
 
 use super::emitters::Emitters;
 use crate::graph::host::DrawBlock;

@@ -1,4 +1,4 @@
-//! A scene on the device, as the fixed named resources that shaders read (`shaders/include/scene.glsl`).
+//! A scene on the device, as the fixed named resources that shaders read (`shaders/common/scene.glsl`).
 
 use super::attributes::{self, Attributes};
 use super::bvh::{self, Soup};
