@@ -684,7 +684,7 @@ fn times_stand_on_the_picture_and_passes_are_inspected_and_left_out() {
     driver.click("", "picture");
     driver.click("Button", "all");
 
-    // What a pass writes is inspected by a click, once the drawing is large enough to read.
+    // A click on a texture of a pass inspects it, once the drawing is large enough to read.
     driver.click("TextInput", "find a pass, a texture");
     driver.text("shadow map");
     driver.click("Button", "find pass shadow map");

@@ -49,7 +49,7 @@ void main() {
         barrier();
         if (part == 0 && start + lane < count) {
             for (uint k = 1; k < BOUNCE_THREADS; k++) light += shared_light[k][lane];
-            sideGathered.list[index] = packLight(light, timesOf(sideGathered.list[index]));
+            sideGathered.list[index] = packLight(light, numberOf(sideGathered.list[index]));
         }
         barrier();
     }

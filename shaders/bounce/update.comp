@@ -30,7 +30,7 @@ bool updateHistory(uint surfel, uint side, bool has_history) {
     int cascade = cascadeOf(cell);
     vec3 p = volumeToWorld(placed.maps[cascade], cellCentre(cell));
     uvec2 last = reprojected(p, cascade, uint(axisOfSurfel(surfel)), side);
-    float updates = timesOf(last);
+    float updates = numberOf(last);
     bool due = updates < float(phases) || phaseOf(uvec3(cell) >> 2) == camera.frame % phases;
     sideGathered.list[index] = due ? packLight(vec3(0.0), min(updates + 1.0, float(phases))) : last;
     return due;

@@ -13,13 +13,13 @@ vec4 stopped(vec3 color, float alpha) {
     return vec4(color / alpha, 1.0);
 }
 
-// Length of the exact part of a cone [m]: surfels are tested along its axis as long as the cone would read
-// level 0. Cells of the next cascade are up to eight times as large, so narrow cones stay exact until this
-// holds in the coarsest cascade. Warped cells bend rays, so their exact part is short.
+// Length of the exact part of a cone [m]: its axis is traced against surfels while the cone is at most
+// 2^-lod_offset cells wide, and reads coarser levels beyond that. Interleaved cones measure this in the cells
+// of the coarsest cascade, the largest. Warped cells bend rays, so their exact part is near_cells long.
 float exactRange(ConeOrigin o, vec3 d, float tan_half) {
     float near = params.near_cells * cellLength(volume.maps[o.cascade], o.surface, d);
     if (WARPED || params.near_cells == 0.0) return near;
-    float cell = cellLength(volume.maps[NARROW_CONES ? CASCADE_COUNT - 1 : o.cascade], o.surface, d);
+    float cell = cellLength(volume.maps[INTERLEAVED_CONES ? CASCADE_COUNT - 1 : o.cascade], o.surface, d);
     return max(near, exp2(-params.lod_offset) * cell / (2.0 * tan_half));
 }
 
@@ -44,6 +44,7 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
                 1.0, 0.0);
             return met.light;
         }
+        // The ray starts at o.surface, the cone at o.position, which is almost `bias` cells higher.
         along = max(met.distance, min(along, range));
     }
     vec3 color = vec3(0.0);

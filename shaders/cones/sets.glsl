@@ -1,6 +1,5 @@
-// Layouts of the diffuse cones: one along the normal, the others on a ring. Weights sum to 1; in the thesis's
-// set they are equal. A set answers a radiance field of order l with sum_c w_c P_l(cos tilt_c)
-// K_l(half-angle). The Lambert kernel gives 1, 2/3, 1/4; the fitted sets match it for l = 0, 1, 2.
+// Layout of the diffuse cones of thesis.ron: one along the normal, the others on a ring. Weights sum to 1.
+// cones.ron samples directions in gather/interleaved.glsl.
 #ifndef CONE_SETS_GLSL
 #define CONE_SETS_GLSL
 #include "common/frame.glsl"

@@ -1,8 +1,8 @@
 // Light of emitters at surfaces that also trace rays: multiple importance sampling (Veach and Guibas 1995) of
 // emitter samples and ray hits, weighted by their pdfs. The pdf of emitter samples uses area and distance
 // only: a ray hit on a voxel does not know the emitter's cosine.
-#ifndef CONE_EMITTERS_GLSL
-#define CONE_EMITTERS_GLSL
+#ifndef GATHER_EMITTERS_GLSL
+#define GATHER_EMITTERS_GLSL
 #include "lights/emitters.glsl"
 #include "volume/volume.glsl"
 

@@ -17,7 +17,8 @@ vec2 pixelPoint(int i) {
     return r2(pointIndex(i));
 }
 
-// Each block uses other points, which turns the bias of few directions into noise.
+// Shift of the points in the lobe and on emitters per block, which turns their bias into noise. Diffuse
+// points repeat in every block, so that any 8x8 pixels that shading filters hold the whole pattern.
 uint patternBlock() {
     uvec2 block = uvec2(pixelCentre()) >> 3;
     return block.x * 37u + block.y * 101u;

@@ -1,9 +1,9 @@
 // Types shared by everything that gathers radiance.
-#ifndef CONE_LIGHT_GLSL
-#define CONE_LIGHT_GLSL
+#ifndef GATHER_RADIANCE_GLSL
+#define GATHER_RADIANCE_GLSL
 
-// Hook before each cone. Number 0 is the specular cone, 1 the first or axial diffuse cone; then come the
-// other diffuse cones, then further cones of the lobe.
+// Hook before each cone. Number 0 is the first specular cone. Diffuse cones follow (in thesis.ron the one
+// along the normal, then the ring), then further specular cones and rays to emitter samples.
 #ifndef CONE_BEGINS
 #define CONE_BEGINS(number)
 #endif

@@ -39,7 +39,7 @@ void main() {
         Side s = sideOfSurfel(surfel + i / SIDES, side);
         uvec2 packed = sideRadiance.list[sideIndex(surfel, i)];
         vec3 radiance = lightOf(packed);
-        if (!WARPED && params.levels_emit == 0 && emitters.count > 0) radiance *= 1.0 - timesOf(packed);
+        if (!WARPED && params.levels_emit == 0 && emitters.count > 0) radiance *= 1.0 - numberOf(packed);
         // Opacity is the projected area: coverage along the axis, times the ratio of the mean cosines towards
         // the direction and the axis.
         vec3 facing = normalize(axes * axisVector(uint(axisOfSurfel(surfel + i / SIDES))))

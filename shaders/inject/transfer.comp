@@ -16,5 +16,6 @@ void main() {
     if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return;
     ivec3 cell = cellOfSurfel(surfel);
     float opacity = texelFetch(voxelColor, cell, 0).a;
-    imageStore(injected, cell, vec4(meanEmission(sideBase(surfel, 0)) / params.injection_exposure * opacity, opacity));
+    vec3 emission = meanEmission(sideBase(surfel, 0)) / params.injection_exposure;
+    imageStore(injected, cell, vec4(emission * opacity, opacity));
 }

@@ -1,5 +1,5 @@
-// Alternative to cones: rays through the level-0 voxels, cell by cell. Costs about 100 times a cone, and
-// separates the error of the voxels from that of cones and filtering.
+// Rays through the level-0 voxels, cell by cell: the tracer of rays.ron and of bounces. In cones.ron, many of
+// them per cone (trace: cone_rays, lobe_rays) separate the error of the voxels from that of cones.
 #ifndef VOXEL_RAYS_GLSL
 #define VOXEL_RAYS_GLSL
 #include "cones/origin.glsl"

@@ -93,16 +93,16 @@ uint sideIndex(uint surfel, uint side) {
 }
 
 // Packs light and a number: the updates of gathered light, or the emitted share of outgoing radiance.
-uvec2 packLight(vec3 light, float times) {
+uvec2 packLight(vec3 light, float number) {
     light = min(light, 65504.0);
-    return uvec2(packHalf2x16(light.rg), packHalf2x16(vec2(light.b, times)));
+    return uvec2(packHalf2x16(light.rg), packHalf2x16(vec2(light.b, number)));
 }
 
 vec3 lightOf(uvec2 packed) {
     return vec3(unpackHalf2x16(packed.x), unpackHalf2x16(packed.y).x);
 }
 
-float timesOf(uvec2 packed) {
+float numberOf(uvec2 packed) {
     return unpackHalf2x16(packed.y).y;
 }
 

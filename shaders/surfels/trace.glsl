@@ -1,6 +1,6 @@
 // Ray tracing against surfel planes: exact near the origin, where filtered levels are too coarse.
-#ifndef CONE_NEAR_GLSL
-#define CONE_NEAR_GLSL
+#ifndef SURFEL_TRACE_GLSL
+#define SURFEL_TRACE_GLSL
 #include "cones/origin.glsl"
 #include "surfels/surfels.glsl"
 #include "voxels/bricks.glsl"
@@ -51,7 +51,7 @@ SurfelHit traceCascade(int cascade, ConeOrigin o, vec3 d, float from, float rang
             float t = intersectCell(foundIn(cells, bit), cell, at, dir, facing, enter, leave, end, met);
             if (t < end) {
                 uvec2 packed = HIT_RADIANCE.list[met];
-                return SurfelHit(t * voxel, vec4(lightOf(packed), 1.0), timesOf(packed));
+                return SurfelHit(t * voxel, vec4(lightOf(packed), 1.0), numberOf(packed));
             }
         }
         bvec3 crossed = equal(borders, vec3(leave));

@@ -4,10 +4,10 @@
 #include "modules/opacity.glsl"
 #include "modules/mips.glsl"
 
-// Narrow cones round to whole levels, which halves the texture reads, and cross empty space in double steps.
-// The errors of both are below the noise between neighbouring cones. Wide cones would show bands.
-#ifndef NARROW_CONES
-#define NARROW_CONES false
+// Cones that differ between neighbouring pixels round to whole levels, which halves the texture reads, and
+// cross empty space in double steps. Both errors are below the noise between them. Equal cones would band.
+#ifndef INTERLEAVED_CONES
+#define INTERLEAVED_CONES false
 #endif
 
 // State of a cone.
@@ -41,7 +41,7 @@ float clearLevel(Cone cone, int cascade, vec3 p, float height) {
 float levelAt(Cone cone, int cascade, vec3 p, float voxel, float radius, float height) {
     float level = coneLevel(voxel, radius);
     if (cone.tan_half > CLEARED) level = min(level, clearLevel(cone, cascade, p, height));
-    return clamp(NARROW_CONES ? round(level) : level, 0.0, volume.maps[cascade].last);
+    return clamp(INTERLEAVED_CONES ? round(level) : level, 0.0, volume.maps[cascade].last);
 }
 
 // Blends a sample with the next cascade. weight: of the current one.
@@ -85,7 +85,7 @@ ConeSample coneSample(inout Cone cone, int number, float along) {
     x.level = levelAt(cone, k, x.position, x.voxel, x.radius, height);
     x.cell = x.voxel * exp2(x.level);
     x.advance = max(params.step_factor * x.cell, 0.05 * x.voxel);
-    if (NARROW_CONES && cone.empty && isEmptyAround(u, cone, x.level)) {
+    if (INTERLEAVED_CONES && cone.empty && isEmptyAround(u, cone, x.level)) {
         x.texel = vec4(0.0);
         x.advance *= 2.0;
         return x;

@@ -1,5 +1,6 @@
-// Opacity is coverage: surfaces one voxel thick cover the cone side by side, in proportion to the volume that
-// they fill. Thin walls stay closed at every level; corners darken slightly too much.
+// Opacities of successive steps add up, instead of multiplying transmittances, until the cone is full. A step
+// adds the texel's opacity times its length in cells of the level (anisotropic mips) or voxels (isotropic).
+// Thin walls stay closed at every level; corners darken slightly too much.
 #include "modules/mips.glsl"
 
 // Opacity that a step adds to a cone with transmittance `remaining`. a: of the texel. advance: of the step.

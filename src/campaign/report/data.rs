@@ -208,7 +208,7 @@ impl Data {
         .collect()
     }
 
-    /// Experiments that are tried with several graphs: their points are told apart by graph.
+    /// Experiments with points of several graphs, which charts colour by graph.
     fn experiments_of_several_graphs(&self) -> BTreeSet<&str> {
         let mut graphs: BTreeMap<&str, &str> = BTreeMap::new();
         let of = self.dots.iter().map(|dot| (experiment_of(dot), dot.graph.as_str()));

@@ -443,8 +443,7 @@ impl Canvas<'_> {
             let row = row_of(node.rect, i);
             let texture = info.graph.texture(resource).is_some();
             let name = format!("{} writes {resource}", node.name);
-            let is_readable = self.seen.zoom >= READABLE;
-            let hit = if is_readable { self.button(row, (node.pass, i), texture, name) } else { None };
+            let hit = (self.seen.zoom >= READABLE).then(|| self.button(row, (node.pass, i), texture, name)).flatten();
             let bright = texture && hit.as_ref().is_some_and(egui::Response::hovered);
             let color = if bright { strong } else { Color32::from_gray(150) };
             let at = row.left_center() + Vec2::new(12.0, 0.0);

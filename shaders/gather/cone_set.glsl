@@ -1,5 +1,5 @@
-// Light gathered by the cones of a surface (thesis, Section 4.5.2). The including module of modules/trace
-// defines vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number).
+// Light gathered by a set of cones per pixel, in thesis.ron (thesis, Section 4.5.2). The including module of
+// modules/trace defines vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, uint number).
 #include "cones/sets.glsl"
 #include "gather/radiance.glsl"
 #include "modules/specular_lobe.glsl"
