@@ -12,11 +12,11 @@ uint patternOf(uvec3 cell) {
     return ((cell.x & 3u | (cell.y & 3u) << 2 | (cell.z & 3u) << 4) * 37u) & 63u;
 }
 
-// Resampled importance sampling (Talbot et al. 2005): picks one of CANDIDATES emitter samples by unshadowed
+// Resampled importance sampling: picks one of CANDIDATES emitter samples by unshadowed
 // contribution. light: contribution of all candidates to the mean radiance over the hemisphere. samples:
 // total number of emitter samples of the side.
 EmitterSample resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float samples, out vec3 light) {
-    float sum = 0.0, picked = 0.0, xi = fract(shift.x + float(index & 0xffffu) * 0.6180339887);
+    Reservoir r = Reservoir(fract(shift.x + float(index & 0xffffu) * 0.6180339887), 0.0, 0.0);
     EmitterSample best;
     best.cosine = 0.0;
     light = vec3(0.0);
@@ -27,19 +27,11 @@ EmitterSample resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float samp
         if (cosine <= 0.0 || place.cosine == 0.0) continue;
         float pdf_sum = pdf + float(params.bounce_directions) * cosine;
         vec3 unshadowed = place.radiance * place.cosine * cosine / pdf_sum;
-        float weight = luminance(unshadowed);
-        sum += weight;
-        float probability = weight / sum;
-        if (xi < probability) {
-            xi /= probability;
-            best = place;
-            light = unshadowed;
-            picked = weight;
-        } else {
-            xi = (xi - probability) / (1.0 - probability);
-        }
+        if (!takes(r, luminance(unshadowed))) continue;
+        best = place;
+        light = unshadowed;
     }
-    light *= picked > 0.0 ? sum / picked : 0.0;
+    light *= reservoirScale(r);
     return best;
 }
 

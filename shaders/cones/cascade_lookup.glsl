@@ -1,6 +1,8 @@
 // Start of cones, and lookups that stay inside their cascade.
 #ifndef CASCADE_LOOKUP_GLSL
 #define CASCADE_LOOKUP_GLSL
+#include "cones/origin.glsl"
+#include "modules/mips.glsl"
 
 // Width of the blend into the next cascade at a border [cells of the level].
 const float BLEND_CELLS = 6.0;
@@ -23,15 +25,6 @@ ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
     float height = 2.0 * params.bias * reach;
     return ConeOrigin(p + height * geometric, geometric, height, reach, cascade,
         p + 2.0 * params.ray_bias * reach * geometric, weight);
-}
-
-Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {
-    Cone cone = Cone(o, d, tan_half, max(dot(d, o.normal), 0.0), o.cascade, 0.0, vec3(0.0), false);
-    cellAlong(volume.maps[o.cascade], o.position, d, cone.voxel, cone.dir);
-    first_cell = cone.voxel;
-    if (CASCADE_COUNT > 1 && o.weight < 1.0)
-        first_cell = mix(cellLength(volume.maps[o.cascade + 1], o.position, d), cone.voxel, o.weight);
-    return cone;
 }
 
 // Keeps a lookup half a cell of its level away from the seams between stored cascades.

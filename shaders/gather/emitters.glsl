@@ -38,6 +38,29 @@ vec4 r4(uint number, vec4 shift) {
         + float(number & 0xffffu) * vec4(0.8566748838, 0.7338918566, 0.6287067210, 0.5385972572));
 }
 
+// Weighted reservoir of one emitter sample (resampled importance sampling, Talbot et al. 2005).
+struct Reservoir {
+    float xi; // random number, stretched again at each candidate
+    float sum; // of the weights
+    float picked; // weight of the sample
+};
+
+// Whether a candidate becomes the sample, with the probability of its share of the weights.
+bool takes(inout Reservoir r, float weight) {
+    if (weight <= 0.0) return false;
+    r.sum += weight;
+    float probability = weight / r.sum;
+    bool taken = r.xi < probability;
+    if (taken) r.picked = weight;
+    r.xi = taken ? r.xi / probability : (r.xi - probability) / (1.0 - probability);
+    return taken;
+}
+
+// Factor from the sample's contribution to the estimate for all candidates.
+float reservoirScale(Reservoir r) {
+    return r.picked > 0.0 ? r.sum / r.picked : 0.0;
+}
+
 // A ray to an emitter sample.
 RayUse rayTo(EmitterSample place, vec3 from) {
     float voxel;

@@ -1,4 +1,5 @@
-// Resampling of emitter samples by unshadowed contribution (Talbot et al. 2005).
+// Resampling of emitter samples by unshadowed contribution. gather/interleaved.glsl includes this after
+// pointIndex and patternBlock.
 #ifndef RESAMPLE_EMITTERS_GLSL
 #define RESAMPLE_EMITTERS_GLSL
 
@@ -35,12 +36,11 @@ EmitterLight emitterSampleLight(EmitterSample place, Surface s, vec3 face, vec3 
 // is the estimate for all of them.
 EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int number, float rays, float lobe,
     float drawn, float tan_half, float tan_lobe, out EmitterLight light) {
-    float sum = 0.0, own = 0.0;
     EmitterSample best;
     best.cosine = 0.0;
     light = EmitterLight(vec3(0.0), vec3(0.0));
     vec4 shift = r4(patternBlock(), vec4(0.5));
-    float choice = fract(shift.x + float(pointIndex(number) & 0xffffu) * 0.6180339887);
+    Reservoir r = Reservoir(fract(shift.x + float(pointIndex(number) & 0xffffu) * 0.6180339887), 0.0, 0.0);
     for (int k = 0; k < CANDIDATES; k++) {
         EmitterSample place = sampleEmitter(o.surface, r4(pointIndex(number * CANDIDATES + k), shift));
         SharedRange range =
@@ -48,21 +48,12 @@ EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int nu
         EmitterLight found = emitterSampleLight(place, s, face, v, rays, lobe, drawn, range);
         float weight =
             luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
-        if (weight <= 0.0) continue;
-        sum += weight;
-        float chance = weight / sum;
-        if (choice < chance) {
-            choice /= chance;
-            best = place;
-            light = found;
-            own = weight;
-        } else {
-            choice = (choice - chance) / (1.0 - chance);
-        }
+        if (!takes(r, weight)) continue;
+        best = place;
+        light = found;
     }
-    float scale = own > 0.0 ? sum / own : 0.0;
-    light.hemisphere *= scale;
-    light.specular *= scale;
+    light.hemisphere *= reservoirScale(r);
+    light.specular *= reservoirScale(r);
     return best;
 }
 

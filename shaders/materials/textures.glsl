@@ -1,6 +1,41 @@
-// Lookups of material textures.
+// Textures of materials. A texture handle holds the layer of an array in 16 bits, the number of the
+// array in 4, and sampling flags above them. Gradients are always explicit: lookups stay defined in divergent
+// control flow and outside the fragment stage, where texture() would silently read mip 0.
 #ifndef MATERIAL_TEXTURES_GLSL
 #define MATERIAL_TEXTURES_GLSL
+#include "common/scene.glsl"
+
+uniform sampler2DArray materialTexture0;
+uniform sampler2DArray materialTexture1;
+uniform sampler2DArray materialTexture2;
+uniform sampler2DArray materialTexture3;
+uniform sampler2DArray materialTexture4;
+uniform sampler2DArray materialTexture5;
+uniform sampler2DArray materialTexture6;
+uniform sampler2DArray materialTexture7;
+uniform sampler2DArray materialTexture8;
+uniform sampler2DArray materialTexture9;
+uniform sampler2DArray materialTexture10;
+uniform sampler2DArray materialTexture11;
+
+const uint NO_TEXTURE = 0xffffffffu;
+
+// Bits of handles: wrap modes of u and v, 2 bits each (0 repeats), ...
+const uint WRAP_U = 20u, WRAP_V = 22u;
+const uint CLAMPED = 1u, MIRRORED = 2u;
+// ... no filter for magnified texels, the second set of coordinates, an anisotropic sampler.
+const uint NEAREST = 1u << 24, SECOND_SET = 1u << 25, ANISOTROPIC = 1u << 26;
+const uint FOLDED = 0x1f00000u; // any mode that the sampler does not implement
+
+// Footprint of a lookup: derivatives of both sets of texture coordinates.
+struct Gradient {
+    vec4 x;
+    vec4 y;
+};
+
+bool usesSecondSet(uint handle) {
+    return LOOKUPS && handle != NO_TEXTURE && (handle & SECOND_SET) != 0;
+}
 
 vec2 texelsOf(uint handle) {
     switch (handle >> 16 & 15u) {

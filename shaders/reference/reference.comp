@@ -7,12 +7,7 @@
 // sampling combines both estimates of emission (reference/emitters.glsl) and of a sky image
 // (reference/sky.glsl).
 #include "params.glsl"
-#include "lights/direct.glsl"
-#include "reference/hit.glsl"
-#include "common/ggx.glsl"
-#include "reference/sky.glsl"
-#include "common/random.glsl"
-#include "reference/emitters.glsl"
+#include "reference/incoming.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -23,16 +18,6 @@ layout(rgba32f) uniform image2DArray diffuseSum;
 layout(rgba32f) uniform image2DArray specularSum;
 layout(rgba32f) uniform image2DArray occlusionSum;
 layout(std430) buffer ReferenceErrors { uint not_finite; } referenceErrors;
-
-float lightVisibility(Light light, vec3 p, vec3 face, vec3 to_light) {
-    if (light.of_sky != 0) return 0.0; // part of the sky image
-    if (light.shadow_view < 0) return 1.0; // casts no shadow
-    vec3 from = offsetPoint(p, face);
-    float end = light.kind == LIGHT_DIRECTIONAL ? 1e30 : distance(light.position, from) * 0.9999;
-    return blocked(Ray(from, to_light, end)) ? 0.0 : 1.0;
-}
-
-#include "reference/incoming.glsl"
 
 vec3 cameraRay(vec2 at) {
     vec2 q = (2.0 * at / vec2(camera.size) - 1.0) * tan(0.5 * camera.fov_y);

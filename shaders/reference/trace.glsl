@@ -4,7 +4,6 @@
 #define TRACE_GLSL
 #include "common/scene.glsl"
 #include "materials/materials.glsl"
-
 #include "reference/intersect.glsl"
 
 struct Corners {

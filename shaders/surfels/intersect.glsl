@@ -1,6 +1,7 @@
 // Intersection of a ray with the surfels of one cell.
 #ifndef SURFEL_INTERSECT_GLSL
 #define SURFEL_INTERSECT_GLSL
+#include "surfels/surfels.glsl"
 
 // Buffers that rays read. A shader may define others before it includes this file.
 #ifndef HIT_SURFELS

@@ -2,9 +2,7 @@
 #ifndef SURFEL_TRACE_GLSL
 #define SURFEL_TRACE_GLSL
 #include "cones/origin.glsl"
-#include "surfels/surfels.glsl"
 #include "voxels/bricks.glsl"
-
 #include "surfels/intersect.glsl"
 
 // Whether straight rays can be traced from here: not in curved cells.

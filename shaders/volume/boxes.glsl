@@ -60,17 +60,7 @@ float flatDepth(VolumeMap map, vec3 p) {
 }
 
 // Stubs of the functions for curved cells.
-void curvedBounds(VolumeMap map, vec3 a, vec3 b, vec3 c, out vec3 low, out vec3 high) {
-    low = high = vec3(0.0);
-}
-
-bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
-    return false;
-}
-
-vec2 curvedDepths(VolumeMap map, vec3 a, vec3 b, vec3 c, vec2 low, vec2 high) {
-    return vec2(0.0);
-}
+#include "volume/flat_only.glsl"
 
 const vec3 CURVED_BORDERS = vec3(1.0);
 const bool CURVED_SEAM = false;

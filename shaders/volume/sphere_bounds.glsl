@@ -1,4 +1,4 @@
-// Bounds of a triangle in cells on spheres.
+// Bounds of a triangle in cells on spheres, for modules/warp/spherical.glsl.
 #ifndef SPHERE_BOUNDS_GLSL
 #define SPHERE_BOUNDS_GLSL
 

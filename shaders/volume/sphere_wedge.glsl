@@ -1,4 +1,4 @@
-// Conservative tests of a triangle against cells on spheres.
+// Conservative tests of a triangle against cells on spheres, for modules/warp/spherical.glsl.
 #ifndef SPHERE_WEDGE_GLSL
 #define SPHERE_WEDGE_GLSL
 

@@ -1,6 +1,13 @@
 // Coverage of a cell by the triangle of a fragment, without the holes of alpha masks.
 #ifndef FRAGMENT_COVERAGE_GLSL
 #define FRAGMENT_COVERAGE_GLSL
+#include "common/scene.glsl"
+#include "materials/materials.glsl"
+#include "volume/volume.glsl"
+#include "voxels/voxels.glsl"
+#include "surfels/cover.glsl"
+
+layout(std430) readonly buffer Indices { uint indices[]; } indices;
 
 // Corner i of a triangle in cells of a cascade.
 vec3 cornerOf(VolumeMap map, uvec2 triangle, uint i) {

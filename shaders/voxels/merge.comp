@@ -5,13 +5,9 @@
 #include "volume/volume.glsl"
 #include "voxels/bricks.glsl"
 #include "surfels/surfels.glsl"
-#include "common/scene.glsl"
-#include "materials/materials.glsl"
-#include "surfels/cover.glsl"
+#include "voxels/fragment_coverage.glsl"
 
 layout(local_size_x = 128) in;
-
-layout(std430) readonly buffer Indices { uint indices[]; } indices;
 
 // Consecutive fragments mostly hit the same voxel. Neighbouring threads therefore take fragments that are far
 // apart in the list, so that their atomics do not contend.
@@ -44,8 +40,6 @@ void merge(uint base, vec3 color, vec3 normal, float offset, uint emission, uint
         for (uint i = 0; i < 3; i++) atomicAdd(surfelSums.words[base + 7 + i], e[i]);
     }
 }
-
-#include "voxels/fragment_coverage.glsl"
 
 void main() {
     uint count = min(voxelCounter.fragments, voxelFragments.list.length());

@@ -1,6 +1,7 @@
 // Packed attributes of fragments, and the front layer of a side.
 #ifndef VOXEL_PACKING_GLSL
 #define VOXEL_PACKING_GLSL
+#include "common/math.glsl"
 
 uint packColor(vec3 c) {
     uvec3 v = uvec3(clamp(c, 0.0, 1.0) * vec3(2047.0, 2047.0, 1023.0) + 0.5);

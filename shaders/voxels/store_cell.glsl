@@ -1,4 +1,4 @@
-// A fragment of the compute rasteriser.
+// A fragment of the compute rasteriser. voxels/pieces.glsl includes this after VoxelPiece.
 #ifndef STORE_CELL_GLSL
 #define STORE_CELL_GLSL
 

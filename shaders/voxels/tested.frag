@@ -2,9 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 // Tests the cells that a dilated triangle's fragment may touch, and stores a voxel in each that overlaps.
 #include "params.glsl"
-#include "voxels/fragment.glsl"
-#include "voxels/overlap.glsl"
-
 #include "voxels/tested.glsl"
 
 void main() {

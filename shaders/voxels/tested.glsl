@@ -1,6 +1,8 @@
-// Overlap test of the raster voxelizer, under warps too.
+// Overlap test of the raster voxelizer, under warps too, with the corners of voxels/fragment.glsl.
 #ifndef VOXEL_TESTED_GLSL
 #define VOXEL_TESTED_GLSL
+#include "voxels/fragment.glsl"
+#include "voxels/overlap.glsl"
 
 // Converts cells to [0,1] before warping. Coordinates outside the volume are not warped.
 vec3 unwarped(vec3 cells) {

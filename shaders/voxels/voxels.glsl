@@ -4,7 +4,8 @@
 #ifndef VOXELS_GLSL
 #define VOXELS_GLSL
 
-#include "common/math.glsl"
+#include "voxels/packing.glsl"
+#include "voxels/radiance.glsl"
 #include "modules/sides.glsl"
 
 // Sums over a side's fragments, weighted by area: colour 0-2, weight 3, normal 4-6, emission 7-9, offset 10.
@@ -41,10 +42,6 @@ layout(std430) buffer VoxelFragments { uvec4 list[]; } voxelFragments;
 layout(std430) buffer VoxelTriangles { uvec2 list[]; } voxelTriangles;
 
 const uvec2 NO_TRIANGLE = uvec2(0xffffffffu); // the fragment covers the whole cell
-
-#include "voxels/packing.glsl"
-
-#include "voxels/radiance.glsl"
 
 // x, y: below 512; z: below 512 for each cascade.
 uint packCell(ivec3 c) {

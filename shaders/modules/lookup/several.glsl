@@ -1,8 +1,8 @@
 // Cone lookups in a volume of several cascades: a sample reads the finest cascade that contains it, and
 // blends into the next one near the border.
-#include "cones/origin.glsl"
+#include "cones/cascade_lookup.glsl"
 #include "modules/opacity.glsl"
-#include "modules/mips.glsl"
+#include "cones/sample.glsl"
 
 // Cones that differ between neighbouring pixels round to whole levels, which halves the texture reads, and
 // cross empty space in double steps. Both errors are below the noise between them. Equal cones would band.
@@ -22,9 +22,14 @@ struct Cone {
     bool empty; // the last texel was transparent
 };
 
-#include "cones/sample.glsl"
-
-#include "cones/cascade_lookup.glsl"
+Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {
+    Cone cone = Cone(o, d, tan_half, max(dot(d, o.normal), 0.0), o.cascade, 0.0, vec3(0.0), false);
+    cellAlong(volume.maps[o.cascade], o.position, d, cone.voxel, cone.dir);
+    first_cell = cone.voxel;
+    if (CASCADE_COUNT > 1 && o.weight < 1.0)
+        first_cell = mix(cellLength(volume.maps[o.cascade + 1], o.position, d), cone.voxel, o.weight);
+    return cone;
+}
 
 // Cones wider than this (tangent of half the aperture, 12 degrees) avoid coarse levels with cells that
 // contain the surface that they leave: an open plane would shadow itself. Narrow cones stay clear of it

@@ -54,17 +54,7 @@ vec3 curvedOfFlat(VolumeMap map, vec3 f) {
     return vec3(f.xy, (1.0 / per_w - map.range.x) / (map.range.y - map.range.x) * float(params.voxel_dim));
 }
 
-void curvedBounds(VolumeMap map, vec3 a, vec3 b, vec3 c, out vec3 low, out vec3 high) {
-    low = high = vec3(0.0);
-}
-
-bool curvedTouches(VolumeMap map, vec3 a, vec3 b, vec3 c, vec3 low, vec3 high) {
-    return false;
-}
-
-vec2 curvedDepths(VolumeMap map, vec3 a, vec3 b, vec3 c, vec2 low, vec2 high) {
-    return vec2(0.0);
-}
+#include "volume/flat_only.glsl"
 
 // 1: the triangle is entirely in front of or behind the cells; 0: it crosses their near side, in front of
 // which it has no coordinates; -1: test its corners' coordinates.
