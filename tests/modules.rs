@@ -7,8 +7,9 @@ use common::{assert_clean, conelab, experiment, fails, floats, lab, mean, prepar
 use conelab::experiment::Experiment;
 use conelab::graph::load::{Folders, load};
 use conelab::graph::param::Value;
+use conelab::graph::plan::plan;
 use conelab::graph::run::Change;
-use conelab::graph::{Evaluated, Graph};
+use conelab::graph::{Evaluated, Graph, signed};
 use conelab::lab::{Lab, Session, Workspace, any_device, environment};
 use insta::assert_snapshot;
 use std::collections::BTreeSet;
@@ -437,33 +438,74 @@ fn a_value_of_an_including_file_replaces_the_included_one() {
     "#);
 }
 
+/// The signature of the voxels of a shipped graph with these settings, and with files of its shaders edited first.
+fn voxel_signature(home: &Workspace, graph: &Graph, settings: &[(&str, &str)]) -> Value {
+    let mut params = graph.params.clone();
+    settings.iter().for_each(|(name, value)| params.set(name, value).unwrap());
+    let set = Evaluated::new(graph, &params, environment(&scene("cornell"), (64, 48), &any_device()));
+    let linked = home.linked(graph, &params).unwrap();
+    let plan = plan(&set, &linked, &["display".into()], &any_device()).unwrap();
+    let index = graph.values.iter().position(|v| v.name == "voxel_signature").unwrap();
+    signed(&set, &linked, &plan)[index].clone()
+}
+
+/// Voxels that scroll are reused where the signature is the same: settings that voxels depend on change it, those of cones,
+/// pictures and the position of the volume do not.
 #[test]
-fn a_hash_differs_where_an_argument_does() {
-    let graph = graph("    values: { \"signature\": Int(\"hash(hash(filter, grid), hash(steady, size))\") },");
-    let axes = [
-        ("filter", &["box", "tent"][..]),
-        ("grid", &["even", "warped"]),
-        ("steady", &["false", "true"]),
-        ("size", &["8", "9", "16"]),
-    ];
-    let mut settings: Vec<Vec<(&str, &str)>> = vec![Vec::new()];
-    for (name, options) in axes {
-        let with = |s: &Vec<_>| options.iter().map(|option| [&s[..], &[(name, *option)]].concat()).collect::<Vec<_>>();
-        settings = settings.iter().flat_map(with).collect();
+fn a_signature_differs_where_its_stage_reads_other_settings() {
+    let home = common::home();
+    let workspace = Workspace { root: home.path().to_path_buf(), cache: Some(common::cache()) };
+    let graph = workspace.load("warps.ron").unwrap().graph;
+    let base = [("volume_scroll", "true"), ("warp", "spline"), ("voxelizer", "raster"), ("conservative", "msaa")];
+    let with = |settings: &[(&str, &str)]| voxel_signature(&workspace, &graph, &[&base[..], settings].concat());
+    let signature = with(&[]);
+    assert!(matches!(signature, Value::Int(1..=0x7fff_ffff)), "{signature:?}");
+    assert_eq!(with(&[]), signature);
+    let mut found = BTreeSet::from([signature.to_string()]);
+    for (name, value) in [
+        ("voxel_dim", "64"),
+        ("voxel_capacity", "1400000"),
+        ("voxelizer", "compute"),
+        ("voxelizer", "tessellated"),
+        ("conservative", "dilate"),
+        ("conservative", "off"),
+        ("warp", "logistic"),
+        ("warp_alpha", "0.5"),
+        ("warp_viewport", "grid"),
+        ("cascades", "2"),
+        ("shading_model", "cook_torrance"),
+    ] {
+        assert!(
+            found.insert(with(&[(name, value)]).to_string()),
+            "{name}={value} has the signature of another setting"
+        );
     }
-    let mut found = BTreeSet::new();
-    for settings in &settings {
-        let Value::Int(signature) = value(&graph, "signature", settings) else { panic!("a whole number") };
-        assert!((1..1 << 31).contains(&signature), "{signature}");
-        assert!(found.insert(signature), "{settings:?} has the signature of another setting");
+    for (name, value) in [
+        ("volume_offset", "(1, 2, 3)"),
+        ("cone_count", "3"),
+        ("diffuse_steps", "20"),
+        ("exposure", "2"),
+        ("shadow_dim", "512"),
+        ("bounces", "one"),
+    ] {
+        assert_eq!(with(&[(name, value)]), signature, "{name}={value}");
     }
-    assert_eq!(found.len(), 24);
-    // Which argument is which matters.
-    let both = self::graph("    values: { \"one\": Int(\"hash(size, 1)\"), \"other\": Int(\"hash(1, size)\") },");
-    assert_ne!(value(&both, "one", &[]), value(&both, "other", &[]));
-    assert_snapshot!(mistakes("    values: { \"signature\": Int(\"hash(filtre, 1)\") },"), @r#"
-    passes/graph.ron:3:32: error: unknown variable 'filtre' in 'hash(filtre, 1)'
-        |     values: { "signature": Int("hash(filtre, 1)") },
-        = help: did you mean 'filter'?
+    // An edit of a shader is another setting.
+    edit(home.path(), Path::new("shaders/voxels/merge.comp"), |text| {
+        text.replacen("void main() {", "void main() {\n    memoryBarrier();", 1)
+    });
+    assert_ne!(with(&[]), signature);
+}
+
+#[test]
+fn a_signature_is_of_a_stage_that_is_there_and_is_read_by_shaders_only() {
+    assert_snapshot!(mistakes("    values: { \"made\": Signature(\"fil\") },"), @r#"
+    passes/graph.ron:3:33: error: value 'made': no pass belongs to a stage 'fil'
+        |     values: { "made": Signature("fil") },
+        = help: did you mean 'fill'?
+    "#);
+    assert_snapshot!(mistakes("    values: { \"made\": Signature(\"fill\"), \"twice\": Int(\"2 * made\") },"), @r#"
+    passes/graph.ron:3:55: error: '2 * made': 'made' is a signature, which only shaders can read
+        |     values: { "made": Signature("fill"), "twice": Int("2 * made") },
     "#);
 }

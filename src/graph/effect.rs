@@ -160,7 +160,7 @@ impl<'a> Trial<'a> {
 
     fn changes_in(&self, param: &Param, env: &Env, expressions: &[&Ex]) -> bool {
         let moved = self.depending_on(param);
-        let counts = |ex: &&&Ex| !is_hash(ex) && ex.value.variables().iter().any(|v| moved.contains(v));
+        let counts = |ex: &&&Ex| ex.value.variables().iter().any(|v| moved.contains(v));
         let named: Vec<&&Ex> = expressions.iter().filter(counts).collect();
         let outcome = |env: &Env| -> Vec<Option<u64>> {
             named.iter().map(|ex| ex.value.eval(env).ok().map(f64::to_bits)).collect()
@@ -222,7 +222,7 @@ impl<'a> Trial<'a> {
     /// Choices and flags with which another value would change an expression that depends on both.
     fn switches(&self, param: &Param) -> (Vec<String>, Vec<(String, String)>) {
         let moved = self.depending_on(param);
-        let all: Vec<&Ex> = self.running.set.graph.expressions().filter(|ex| !is_hash(ex)).collect();
+        let all: Vec<&Ex> = self.running.set.graph.expressions().collect();
         let naming: Vec<&Ex> =
             all.into_iter().filter(|ex| ex.value.variables().iter().any(|v| moved.contains(v))).collect();
         let (mut clauses, mut needs) = (Vec::new(), Vec::new());
@@ -248,7 +248,7 @@ impl<'a> Trial<'a> {
     fn depending_on(&self, param: &Param) -> Vec<String> {
         let mut moved = param.variables();
         for value in &self.running.set.graph.values {
-            if !is_hash(&value.expr) && value.expr.value.variables().iter().any(|v| moved.contains(v)) {
+            if value.expr.value.variables().iter().any(|v| moved.contains(v)) {
                 moved.push(value.name.clone());
             }
         }
@@ -267,11 +267,6 @@ impl<'a> Trial<'a> {
         }
         env
     }
-}
-
-/// Whether an expression only tells settings apart: such a number changes nothing by itself.
-fn is_hash(ex: &Ex) -> bool {
-    ex.value.text.contains("hash(")
 }
 
 /// Other values worth trying: all of a choice, the ends and the middle of a range, the neighbours.

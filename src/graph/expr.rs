@@ -58,9 +58,6 @@ static ENGINE: LazyLock<Engine> = LazyLock::new(|| {
         engine.register_fn(name, f);
         engine.register_fn(name, move |a: i64| f(a as f64));
     }
-    engine.register_fn("hash", |a: Dynamic, b: Dynamic| -> Result<f64, Box<EvalAltResult>> {
-        Ok(hash(number_of(&a)?, number_of(&b)?))
-    });
     for_numbers(&mut engine, "min", f64::min);
     for_numbers(&mut engine, "max", f64::max);
     engine.register_fn("select", |c: bool, a: Dynamic, b: Dynamic| if c { a } else { b });
@@ -79,18 +76,6 @@ fn for_numbers(engine: &mut Engine, name: &str, f: fn(f64, f64) -> f64) {
     engine.register_fn(name, move |a: i64, b: f64| f(a as f64, b));
     engine.register_fn(name, move |a: f64, b: i64| f(a, b as f64));
     engine.register_fn(name, move |a: i64, b: i64| f(a as f64, b as f64));
-}
-
-fn number_of(value: &Dynamic) -> Result<f64, Box<EvalAltResult>> {
-    let number = value.as_float().ok().or_else(|| value.as_int().ok().map(|v| v as f64));
-    number.or_else(|| value.as_bool().ok().map(f64::from)).ok_or_else(|| "hash takes numbers, choices and flags".into())
-}
-
-/// A whole number from 1 to 2^31 - 1 that differs where a or b does, but for chance (FNV-1a, Fowler, Noll and Vo).
-fn hash(a: f64, b: f64) -> f64 {
-    let bytes = a.to_bits().to_le_bytes().into_iter().chain(b.to_bits().to_le_bytes());
-    let hash = bytes.fold(0x811c_9dc5_u32, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193));
-    f64::from((hash >> 1).max(1))
 }
 
 /// Makes `==` and `!=` between two kinds an error.

@@ -15,7 +15,9 @@ pub mod param;
 pub mod plan;
 pub mod report;
 pub mod run;
+mod signature;
 pub mod table;
 
 pub use definition::{Alias, AliasCase, Graph, LightPart, Named, Res};
 pub use evaluated::Evaluated;
+pub use signature::signed;

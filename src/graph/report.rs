@@ -208,7 +208,10 @@ pub fn values(set: &Evaluated<'_>) -> String {
         out.push_str("\nvalues, which follow from these\n");
     }
     for (named, value) in set.graph.values.iter().zip(&set.values) {
-        let _ = writeln!(out, "  {} = {value}  ({})", named.name, named.expr.value.text);
+        let _ = match &named.signs {
+            Some(stage) => writeln!(out, "  {}: differs where stage '{stage}' reads other settings", named.name),
+            None => writeln!(out, "  {} = {value}  ({})", named.name, named.expr.value.text),
+        };
     }
     out
 }

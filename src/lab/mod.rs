@@ -30,7 +30,7 @@ use crate::graph::link::{Linked, Target, runs};
 use crate::graph::param::{Params, Value};
 use crate::graph::plan::{Plan, plan};
 use crate::graph::run::{Parts, Program, Update};
-use crate::graph::{Evaluated, Graph};
+use crate::graph::{Evaluated, Graph, signed};
 use crate::metrics::MetricError;
 use crate::scene::{Scene, SceneError};
 use crate::vulkan::{DeviceInfo, Features, Gpu, GpuOptions, VulkanError};
@@ -220,15 +220,15 @@ impl Lab {
             Some(reuse) => reuse.parts.pipelines_only(),
             None => Parts::default(),
         };
+        let values = signed(&set, &linked, &plan);
         let program = Program::new(&self.gpu, &set, &linked, plan, &scene_gpu.resources, &parts)?;
-        let values = set.values;
         Ok(Session {
+            values,
             graph,
             linked,
             wanted,
             surroundings,
             params,
-            values,
             program,
             bounds: scene.bounds(),
             scene,

@@ -2,12 +2,12 @@
 
 use super::{Lab, LabError, ReusableParts, Session, Texels, Viewpoint, no_texture, view};
 use crate::experiment::PlacedCamera;
-use crate::graph::Evaluated;
 use crate::graph::link::{Layouts, runs, table};
 use crate::graph::param::Params;
 use crate::graph::plan::plan;
 use crate::graph::run::{FrameTimes, Redo, Update};
 use crate::graph::table::Table;
+use crate::graph::{Evaluated, signed};
 use crate::scene::{Camera, Light};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -93,8 +93,8 @@ impl Session {
             return Ok(false);
         }
         (self.program.plan.settling, self.program.plan.convergence) = (settling, convergence);
+        self.values = signed(&set, &self.linked, &self.program.plan);
         self.params = params.clone();
-        self.values = set.values;
         self.sent_params = false;
         Ok(true)
     }

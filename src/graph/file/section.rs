@@ -13,6 +13,8 @@ pub enum ValueDecl {
     Float(Ex),
     /// A whole number.
     Int(Ex),
+    /// A whole number that differs where the passes of this stage read other settings.
+    Signature(Loc<String>),
 }
 
 /// A part of the light, or the name of its texture alone.

@@ -25,7 +25,8 @@ impl<'g> Check<'g> {
         let mut variables: HashSet<String> = BUILTIN_VARIABLES.iter().map(|v| (*v).to_string()).collect();
         variables.extend(graph.params.list.iter().flat_map(|p| p.variables()));
         variables.extend(graph.params.option_names().map(String::from));
-        variables.extend(graph.values.iter().map(|v| v.name.clone()));
+        // Signatures are known only to shaders: which settings count follows from what these read.
+        variables.extend(graph.values.iter().filter(|v| v.signs.is_none()).map(|v| v.name.clone()));
         Check { graph, folders, found, variables }
     }
 
@@ -110,6 +111,13 @@ impl<'g> Check<'g> {
     pub(super) fn named_values(&mut self) {
         for named in &self.graph.values {
             self.expr(&named.expr);
+            if let Some(stage) = &named.signs {
+                let stages = || self.graph.passes.iter().map(|p| p.value.stage());
+                if !stages().any(|s| s == stage) {
+                    let message = format!("value '{}': no pass belongs to a stage '{stage}'", named.name);
+                    self.found.unknown(named.expr.at, stage, message, stages());
+                }
+            }
             // A value is the same in all of a frame.
             for name in named.expr.value.variables().iter().filter(|v| ["index", "mip"].contains(&v.as_str())) {
                 let message = format!("value '{}' reads '{name}', which differs within a frame", named.name);
@@ -125,7 +133,11 @@ impl<'g> Check<'g> {
         }
         for name in ex.value.variables().iter().filter(|v| !self.variables.contains(*v)) {
             let known = self.variables.iter().map(String::as_str);
-            self.found.unknown(ex.at, name, format!("unknown variable '{name}' in '{text}'"), known);
+            let why = match self.graph.values.iter().any(|v| v.name == *name) {
+                true => format!("'{text}': '{name}' is a signature, which only shaders can read"),
+                false => format!("unknown variable '{name}' in '{text}'"),
+            };
+            self.found.unknown(ex.at, name, why, known);
         }
         // A choice that could not be read may have had the option.
         for (message, help) in super::choices::misuses(&ex.value, &self.graph.params) {

@@ -4,6 +4,7 @@ use super::findings::Findings;
 use super::params::{BUILTIN_VARIABLES, is_identifier};
 use crate::diagnostics::Loc;
 use crate::graph::definition::Named;
+use crate::graph::expr::Expr;
 use crate::graph::file::ValueDecl;
 use crate::graph::param::Params;
 
@@ -11,11 +12,12 @@ use crate::graph::param::Params;
 pub(super) fn ordered(decls: Vec<(Loc<String>, Loc<ValueDecl>)>, params: &Params, found: &mut Findings) -> Vec<Named> {
     let mut open: Vec<Named> = Vec::new();
     for (name, decl) in decls {
-        let (whole, expr) = match decl.value {
-            ValueDecl::Float(ex) => (false, ex),
-            ValueDecl::Int(ex) => (true, ex),
+        let (whole, expr, signs) = match decl.value {
+            ValueDecl::Float(ex) => (false, ex, None),
+            ValueDecl::Int(ex) => (true, ex, None),
+            ValueDecl::Signature(stage) => (true, Loc { value: Expr::new("0"), at: stage.at }, Some(stage.value)),
         };
-        let named = Named { name: name.value, at: name.at, whole, expr };
+        let named = Named { name: name.value, at: name.at, whole, expr, signs };
         if let Some(message) = name_mistake(&named.name, params, &open) {
             found.error(named.at, message);
             found.broken.push(named.name);
