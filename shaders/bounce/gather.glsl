@@ -21,14 +21,14 @@ EmitterSample resampleEmitter(vec3 p, vec3 n, uint index, vec4 shift, float samp
     best.cosine = 0.0;
     light = vec3(0.0);
     for (uint k = 0; k < uint(CANDIDATES); k++) {
-        EmitterSample place = sampleEmitter(p, r4(index * uint(CANDIDATES) + k, shift));
-        float cosine = dot(n, place.direction) / PI;
-        float pdf = samples * place.by_area * place.distance * place.distance;
-        if (cosine <= 0.0 || place.cosine == 0.0) continue;
+        EmitterSample emitter = sampleEmitter(p, r4(index * uint(CANDIDATES) + k, shift));
+        float cosine = dot(n, emitter.direction) / PI;
+        float pdf = samples * emitter.by_area * emitter.distance * emitter.distance;
+        if (cosine <= 0.0 || emitter.cosine == 0.0) continue;
         float pdf_sum = pdf + float(params.bounce_directions) * cosine;
-        vec3 unshadowed = place.radiance * place.cosine * cosine / pdf_sum;
+        vec3 unshadowed = emitter.radiance * emitter.cosine * cosine / pdf_sum;
         if (!takes(r, luminance(unshadowed))) continue;
-        best = place;
+        best = emitter;
         light = unshadowed;
     }
     light *= reservoirScale(r);
@@ -58,10 +58,10 @@ vec3 gatherAt(vec3 p, vec3 n, bool lamp, uint pattern, int first, int of) {
             if (samples > 0) use = RayUse(1e30, density, candidates, 1e30);
         } else {
             uint index = uint(i - rays) * 64u + pattern;
-            EmitterSample place = resampleEmitter(o.surface, n, index, vec4(0.5), candidates, light);
-            if (place.cosine == 0.0 || place.distance < self) continue;
-            d = place.direction;
-            use = rayTo(place, o.surface);
+            EmitterSample emitter = resampleEmitter(o.surface, n, index, vec4(0.5), candidates, light);
+            if (emitter.cosine == 0.0 || emitter.distance < self) continue;
+            d = emitter.direction;
+            use = rayTo(emitter, o.surface);
         }
         vec4 hit = traceBounce(o, d, use);
         if (i < rays) sum += coneRadiance(hit, d, PI / float(rays)) / float(rays);

@@ -38,14 +38,14 @@ bool updateHistory(uint surfel, uint side, bool has_history) {
 
 // Appends the sides that are due to the queue. All threads of a group must call it.
 void enqueue(bool due, uint i) {
-    uint place = 0;
+    uint offset = 0;
     if (gl_LocalInvocationIndex == 0) queued_here = 0;
     barrier();
-    if (due) place = atomicAdd(queued_here, 1);
+    if (due) offset = atomicAdd(queued_here, 1);
     barrier();
     if (gl_LocalInvocationIndex == 0 && queued_here > 0) first = reserve(queued_here);
     barrier();
-    if (due) bounceQueue.items[first + place] = i;
+    if (due) bounceQueue.items[first + offset] = i;
 }
 
 void main() {

@@ -25,7 +25,7 @@ bool isEmpty(ivec3 cell, int fine) {
     ivec3 stored = 2 * cell;
     int cascade = cascadeOf(stored);
     ivec3 first = cellOfStored(stored, cascade);
-    return !isStored(voxelBlocks.list[blockIndex(first, cascade)], placeOf(first >> 2));
+    return !isStored(voxelBlocks.list[blockIndex(first, cascade)], indexInBrick(first >> 2));
 }
 
 void main() {

@@ -62,11 +62,11 @@ float reservoirScale(Reservoir r) {
 }
 
 // A ray to an emitter sample.
-RayUse rayTo(EmitterSample place, vec3 from) {
+RayUse rayTo(EmitterSample emitter, vec3 from) {
     float voxel;
-    vec3 dir, p = from + place.distance * place.direction;
-    cellAlong(volume.maps[cascadeAt(p)], p, place.direction, voxel, dir);
-    return RayUse(place.distance - EMITTER_MARGIN * voxel, 0.0, 0.0, place.distance - LAMP * voxel);
+    vec3 dir, p = from + emitter.distance * emitter.direction;
+    cellAlong(volume.maps[cascadeAt(p)], p, emitter.direction, voxel, dir);
+    return RayUse(emitter.distance - EMITTER_MARGIN * voxel, 0.0, 0.0, emitter.distance - LAMP * voxel);
 }
 
 #endif

@@ -60,11 +60,11 @@ Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
         RayUse use = WHOLE_RAY;
         EmitterLight light = EmitterLight(vec3(0.0), vec3(0.0));
         if (is_drawn) {
-            EmitterSample place = resampleEmitter(o, s, face, v, i - rays - lobe, float(rays), float(lobe),
+            EmitterSample emitter = resampleEmitter(o, s, face, v, i - rays - lobe, float(rays), float(lobe),
                 candidates, tan_half, tan_lobe, light);
-            if (place.cosine == 0.0) continue;
-            d = place.direction;
-            use = rayTo(place, o.surface);
+            if (emitter.cosine == 0.0) continue;
+            d = emitter.direction;
+            use = rayTo(emitter, o.surface);
         } else if (mirrors) {
             LobeSample l = specularSample(s, face, v, blockPoint(i - rays));
             d = l.direction;

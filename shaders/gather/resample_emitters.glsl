@@ -16,20 +16,20 @@ struct SharedRange {
     float lobe;
 };
 
-EmitterLight emitterSampleLight(EmitterSample place, Surface s, vec3 face, vec3 v, float rays, float lobe,
+EmitterLight emitterSampleLight(EmitterSample emitter, Surface s, vec3 face, vec3 v, float rays, float lobe,
     float drawn, SharedRange range) {
-    float cosine = dot(s.normal, place.direction);
-    if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0)
+    float cosine = dot(s.normal, emitter.direction);
+    if (emitter.cosine == 0.0 || cosine <= 0.0 || dot(face, emitter.direction) <= 0.0)
         return EmitterLight(vec3(0.0), vec3(0.0));
-    float found = drawn * place.by_area * place.distance * place.distance;
-    vec3 light = place.radiance * place.cosine * cosine;
-    float by_rays = place.distance < range.rays ? rays * cosine / PI : 0.0;
-    float by_lobe = place.distance < range.lobe && lobe > 0.0
-        ? lobe * specularDensity(s, v, place.direction)
+    float found = drawn * emitter.by_area * emitter.distance * emitter.distance;
+    vec3 light = emitter.radiance * emitter.cosine * cosine;
+    float by_rays = emitter.distance < range.rays ? rays * cosine / PI : 0.0;
+    float by_lobe = emitter.distance < range.lobe && lobe > 0.0
+        ? lobe * specularDensity(s, v, emitter.direction)
         : 0.0;
     return EmitterLight(
         rays > 0.0 ? light * (rays / PI) / (found + by_rays) : vec3(0.0),
-        lobe > 0.0 ? light * lobe * specularBrdf(s, v, place.direction) / (found + by_lobe) : vec3(0.0));
+        lobe > 0.0 ? light * lobe * specularBrdf(s, v, emitter.direction) / (found + by_lobe) : vec3(0.0));
 }
 
 // Resampled importance sampling: picks one of CANDIDATES emitter samples by unshadowed contribution. `light`
@@ -42,14 +42,14 @@ EmitterSample resampleEmitter(ConeOrigin o, Surface s, vec3 face, vec3 v, int nu
     vec4 shift = r4(patternBlock(), vec4(0.5));
     Reservoir r = Reservoir(fract(shift.x + float(pointIndex(number) & 0xffffu) * 0.6180339887), 0.0, 0.0);
     for (int k = 0; k < CANDIDATES; k++) {
-        EmitterSample place = sampleEmitter(o.surface, r4(pointIndex(number * CANDIDATES + k), shift));
-        SharedRange range =
-            SharedRange(exactRange(o, place.direction, tan_half), exactRange(o, place.direction, tan_lobe));
-        EmitterLight found = emitterSampleLight(place, s, face, v, rays, lobe, drawn, range);
+        EmitterSample emitter = sampleEmitter(o.surface, r4(pointIndex(number * CANDIDATES + k), shift));
+        vec3 d = emitter.direction;
+        SharedRange range = SharedRange(exactRange(o, d, tan_half), exactRange(o, d, tan_lobe));
+        EmitterLight found = emitterSampleLight(emitter, s, face, v, rays, lobe, drawn, range);
         float weight =
             luminance(s.albedo * found.hemisphere / max(rays, 1.0) + found.specular / max(lobe, 1.0));
         if (!takes(r, weight)) continue;
-        best = place;
+        best = emitter;
         light = found;
     }
     light.hemisphere *= reservoirScale(r);

@@ -13,8 +13,8 @@ layout(location = 3) in vec4 uv;
 layout(location = 4) flat in uint material;
 layout(location = 5) in vec4 color;
 
-Place placeHere() {
-    return Place(uv, color);
+Interpolants interpolants() {
+    return Interpolants(uv, color);
 }
 
 // Uses derivatives: call it before any return.
@@ -30,12 +30,12 @@ vec3 faceNormal(vec3 v) {
 }
 
 vec3 shadingNormal(Material m, Gradient g, vec3 face) {
-    return mappedNormal(m, placeHere(), g, normal, tangent, face);
+    return mappedNormal(m, interpolants(), g, normal, tangent, face);
 }
 
 Surface surfaceAt(Material m, Gradient g, vec3 face, vec3 v) {
-    vec2 rm = roughnessMetallic(m, placeHere(), g);
-    return makeSurface(shadingNormal(m, g, face), baseColor(m, placeHere(), g).rgb, rm.x, rm.y,
+    vec2 rm = roughnessMetallic(m, interpolants(), g);
+    return makeSurface(shadingNormal(m, g, face), baseColor(m, interpolants(), g).rgb, rm.x, rm.y,
         dielectric(m), v);
 }
 

@@ -15,9 +15,9 @@ void main() {
     Gradient g = gradientHere();
     vec3 to_viewer = camera.position - position;
     vec3 face = faceNormal(normalize(to_viewer));
-    vec2 rm = roughnessMetallic(m, placeHere(), g);
-    gbufferBase = vec4(baseColor(m, placeHere(), g).rgb, rm.x);
+    vec2 rm = roughnessMetallic(m, interpolants(), g);
+    gbufferBase = vec4(baseColor(m, interpolants(), g).rgb, rm.x);
     gbufferNormals = vec4(packNormal(shadingNormal(m, g, face)), packNormal(face));
-    gbufferEmission = vec4(emission(m, placeHere(), g), packMetallic(rm.y, dielectricIndex(m)));
+    gbufferEmission = vec4(emission(m, interpolants(), g), packMetallic(rm.y, dielectricIndex(m)));
     gbufferDistance = length(to_viewer);
 }

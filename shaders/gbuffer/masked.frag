@@ -9,5 +9,5 @@ layout(location = 2) in float alpha;
 
 void main() {
     Material m = materials.materials[material];
-    if (baseColor(m, Place(uv, vec4(alpha)), Gradient(dFdx(uv), dFdy(uv))).a < m.alpha_cutoff) discard;
+    if (baseColor(m, Interpolants(uv, vec4(alpha)), Gradient(dFdx(uv), dFdy(uv))).a < m.alpha_cutoff) discard;
 }

@@ -65,16 +65,16 @@ void main() {
 
     Material m = materials.materials[draw.material];
     vec3 b = vec3(1.0 - weights.x - weights.y, weights);
-    Place place = Place(at[0].uv + uv_of * weights, vec4(1.0));
-    if (isColored(m)) place.color = mat3x4(at[0].color, at[1].color, at[2].color) * b;
+    Interpolants here = Interpolants(at[0].uv + uv_of * weights, vec4(1.0));
+    if (isColored(m)) here.color = mat3x4(at[0].color, at[1].color, at[2].color) * b;
     vec3 normal = normalToWorld(draw.instance, mat3(at[0].normal, at[1].normal, at[2].normal) * b);
     vec4 tangent = tangentToWorld(draw.instance, mat3x4(at[0].tangent, at[1].tangent, at[2].tangent) * b);
     vec3 face = dot(plane, plane) > 0.0 ? normalize(plane) : normalize(normal);
     if (dot(face, ray) > 0.0) face = -face;
-    vec2 rm = roughnessMetallic(m, place, g);
-    imageStore(gbufferBase, pixel, vec4(baseColor(m, place, g).rgb, rm.x));
+    vec2 rm = roughnessMetallic(m, here, g);
+    imageStore(gbufferBase, pixel, vec4(baseColor(m, here, g).rgb, rm.x));
     imageStore(gbufferNormals, pixel,
-        vec4(packNormal(mappedNormal(m, place, g, normal, tangent, face)), packNormal(face)));
-    imageStore(gbufferEmission, pixel, vec4(emission(m, place, g), packMetallic(rm.y, dielectricIndex(m))));
+        vec4(packNormal(mappedNormal(m, here, g, normal, tangent, face)), packNormal(face)));
+    imageStore(gbufferEmission, pixel, vec4(emission(m, here, g), packMetallic(rm.y, dielectricIndex(m))));
     imageStore(gbufferDistance, pixel, vec4(depth * length(ray)));
 }

@@ -51,8 +51,8 @@ void endRegion() {
     for (uint i = gl_LocalInvocationIndex; i < REGION_PIXELS; i += REGION_THREADS) {
         uint word = region_pixels[i], kind = word & 255;
         if (word == NOT_QUEUED) continue;
-        uint place = region_start + kind_starts[kind] + (word >> 8);
-        gatherQueue.items[place] = packQueued(uvec2(regionPixel(i)), kind >> 6);
+        uint item = region_start + kind_starts[kind] + (word >> 8);
+        gatherQueue.items[item] = packQueued(uvec2(regionPixel(i)), kind >> 6);
     }
 }
 

@@ -25,12 +25,12 @@ float skyLevel(vec3 d, float spread) {
 vec3 skyLookup(vec3 d, float spread, int layer) {
     if (sceneInfo.sky_turn < 0.0) return sceneInfo.sky;
     float level = skyLevel(d, spread);
-    vec2 place = skyDirection(d);
+    vec2 uv = skyDirection(d);
     // The image wraps in azimuth but ends at the poles. The level's size is computed, not queried: Mesa's
     // software device uses one invocation's level for all.
     float margin = 0.5 / float(max(textureSize(skyTexture, 0).y >> int(ceil(level)), 1));
-    place.y = clamp(place.y, margin, 1.0 - margin);
-    return sceneInfo.sky * textureLod(skyTexture, vec3(place, float(layer)), level).rgb;
+    uv.y = clamp(uv.y, margin, 1.0 - margin);
+    return sceneInfo.sky * textureLod(skyTexture, vec3(uv, float(layer)), level).rgb;
 }
 
 // Mean radiance over `spread` [sr] around d, for a ray or cone. Excludes the sun if it is one of the lights.

@@ -25,7 +25,7 @@ layout(std430) readonly buffer Materials { Material materials[]; } materials;
 const uint COLORED = 2u, TINTED = 4u;
 
 // Inputs of a texture lookup on a surface: two sets of texture coordinates and the vertex colour.
-struct Place {
+struct Interpolants {
     vec4 uv;
     vec4 color;
 };
@@ -34,14 +34,14 @@ bool isColored(Material m) {
     return COLORS && (m.flags & (COLORED | TINTED)) != 0;
 }
 
-vec4 baseColor(Material m, Place at, Gradient g) {
+vec4 baseColor(Material m, Interpolants at, Gradient g) {
     vec4 c = m.base_color;
     if (COLORS && (m.flags & COLORED) != 0) c *= at.color;
     if (m.base_color_texture != NO_TEXTURE) c *= sampleTexture(m.base_color_texture, at.uv, g);
     return c;
 }
 
-vec3 emission(Material m, Place at, Gradient g) {
+vec3 emission(Material m, Interpolants at, Gradient g) {
     vec3 e = m.emission;
     if (COLORS && (m.flags & TINTED) != 0) e *= at.color.rgb;
     if (m.emission_texture != NO_TEXTURE) e *= sampleTexture(m.emission_texture, at.uv, g).rgb;
@@ -49,7 +49,7 @@ vec3 emission(Material m, Place at, Gradient g) {
 }
 
 // (roughness, metallic)
-vec2 roughnessMetallic(Material m, Place at, Gradient g) {
+vec2 roughnessMetallic(Material m, Interpolants at, Gradient g) {
     vec2 rm = vec2(m.roughness, m.metallic);
     if (m.metallic_roughness_texture != NO_TEXTURE)
         rm *= sampleTexture(m.metallic_roughness_texture, at.uv, g).gb;
@@ -66,7 +66,7 @@ vec4 dielectric(Material m) {
 
 // Tangent-space normal, not normalised. z is reconstructed, because two-channel formats (BC5) do not store
 // it. This happens before x and y are scaled (glTF 2.0, normalTextureInfo.scale).
-vec3 tangentNormal(Material m, Place at, Gradient g) {
+vec3 tangentNormal(Material m, Interpolants at, Gradient g) {
     vec2 xy = sampleTexture(m.normal_texture, at.uv, g).xy * 2.0 - 1.0;
     return vec3(xy * m.normal_scale, sqrt(max(1.0 - dot(xy, xy), 0.0)));
 }

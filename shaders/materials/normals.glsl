@@ -4,7 +4,7 @@
 #include "materials/materials.glsl"
 
 // normal, tangent: interpolated, in world space; tangent.w: sign of the bitangent.
-vec3 mappedNormal(Material m, Place at, Gradient g, vec3 normal, vec4 tangent, vec3 face) {
+vec3 mappedNormal(Material m, Interpolants at, Gradient g, vec3 normal, vec4 tangent, vec3 face) {
     vec3 n = normalize(normal);
     float side = dot(n, face) < 0.0 ? -1.0 : 1.0; // back faces of two-sided surfaces
     if (m.normal_texture != NO_TEXTURE) {

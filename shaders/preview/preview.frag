@@ -16,7 +16,7 @@ layout(location = 0) out vec4 display;
 void main() {
     Material m = materials.materials[material];
     Gradient g = Gradient(dFdx(uv), dFdy(uv));
-    Place at = Place(uv, color);
+    Interpolants at = Interpolants(uv, color);
     vec4 base = baseColor(m, at, g);
     if (base.a < m.alpha_cutoff) discard;
     float facing = abs(dot(normalize(normal), normalize(camera.position - position))); // two-sided

@@ -19,7 +19,7 @@ bool isCutOut(Piece p, Outline o, vec2 at) {
     Material m = materials.materials[p.mask - 1];
     vec3 here = lookupAt(p, o, at);
     vec2 x = lookupAt(p, o, at + vec2(1, 0)).xy - here.xy, y = lookupAt(p, o, at + vec2(0, 1)).xy - here.xy;
-    return baseColor(m, Place(here.xyxy, here.zzzz), Gradient(x.xyxy, y.xyxy)).a < m.alpha_cutoff;
+    return baseColor(m, Interpolants(here.xyxy, here.zzzz), Gradient(x.xyxy, y.xyxy)).a < m.alpha_cutoff;
 }
 
 // Fills a pixel with its centre inside.

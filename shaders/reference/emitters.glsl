@@ -19,16 +19,16 @@ LobeLight emitterLight(Surface s, vec3 p, vec3 face, vec3 view, vec2 rays, inout
     LobeLight none = LobeLight(vec3(0.0), vec3(0.0));
     if (emitters.count == 0) return none;
     vec3 from = offsetPoint(p, face);
-    EmitterSample place = sampleEmitter(from, next4(random));
-    float cosine = dot(s.normal, place.direction);
-    if (place.cosine == 0.0 || cosine <= 0.0 || dot(face, place.direction) <= 0.0) return none;
-    Ray ray = Ray(from, place.direction, 1e30);
+    EmitterSample emitter = sampleEmitter(from, next4(random));
+    float cosine = dot(s.normal, emitter.direction);
+    if (emitter.cosine == 0.0 || cosine <= 0.0 || dot(face, emitter.direction) <= 0.0) return none;
+    Ray ray = Ray(from, emitter.direction, 1e30);
     Hit hit = traceRay(ray, NO_FOOTPRINT, false);
-    if (hit.triangle == NO_HIT || abs(hit.t - place.distance) > 1e-3 * place.distance) return none;
-    float density = directionDensity(place.by_area, place.distance, place.cosine);
+    if (hit.triangle == NO_HIT || abs(hit.t - emitter.distance) > 1e-3 * emitter.distance) return none;
+    float density = directionDensity(emitter.by_area, emitter.distance, emitter.cosine);
     vec3 light = cosine * surfaceOf(hit, ray, NO_FOOTPRINT).emission;
     return LobeLight(
-        light * diffuseBrdf(s) / (density + rays.x * diffuseDensity(s, place.direction)),
-        light * specularBrdf(s, view, place.direction)
-            / (density + rays.y * specularDensity(s, view, place.direction)));
+        light * diffuseBrdf(s) / (density + rays.x * diffuseDensity(s, emitter.direction)),
+        light * specularBrdf(s, view, emitter.direction)
+            / (density + rays.y * specularDensity(s, view, emitter.direction)));
 }

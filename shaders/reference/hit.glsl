@@ -20,7 +20,7 @@ SurfaceHit surfaceOf(Hit hit, Ray ray, Footprint f) {
     Corners corners = cornersOf(t);
     Material m = materials.materials[corners.material];
     Gradient g;
-    Place at = placeOf(m, t, corners, hit.weights, f, g);
+    Interpolants at = interpolantsOf(m, t, corners, hit.weights, f, g);
     vec3 w = vec3(1.0 - hit.weights.x - hit.weights.y, hit.weights);
     vec3 v = -ray.direction;
     vec3 face = normalize(cross(t.b - t.a, t.c - t.a));

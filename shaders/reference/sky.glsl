@@ -64,8 +64,8 @@ SkyShine skyTexel(uvec2 at, float polar) {
 // Sky radiance along d, for a ray that leaves the scene.
 SkyShine skyShine(vec3 d) {
     uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
-    vec2 place = skyDirection(d);
-    return skyTexel(min(uvec2(vec2(fract(place.x), place.y) * vec2(size)), size - 1u), place.y * PI);
+    vec2 uv = skyDirection(d);
+    return skyTexel(min(uvec2(vec2(fract(uv.x), uv.y) * vec2(size)), size - 1u), uv.y * PI);
 }
 
 // Samples a direction in proportion to the image's luminance.
@@ -73,8 +73,8 @@ SkyShine drawSky(vec4 u, out vec3 d) {
     uvec2 size = uvec2(skyTexels.words[0], skyTexels.words[1]);
     uint y = skyPart(SKY_ROWS, size.y, u.x);
     uint x = skyPart(SKY_ROWS + size.y + 1 + y * (size.x + 1), size.x, u.y);
-    vec2 place = (vec2(x, y) + u.zw) / vec2(size);
-    float polar = place.y * PI, azimuth = (place.x - 0.5 - sceneInfo.sky_turn) * 2.0 * PI;
+    vec2 uv = (vec2(x, y) + u.zw) / vec2(size);
+    float polar = uv.y * PI, azimuth = (uv.x - 0.5 - sceneInfo.sky_turn) * 2.0 * PI;
     d = vec3(sin(azimuth) * sin(polar), cos(polar), -cos(azimuth) * sin(polar));
     return skyTexel(uvec2(x, y), polar);
 }

@@ -31,11 +31,12 @@ vec4 mixCorners(vec4 a, vec4 b, vec4 c, vec2 weights) {
 }
 
 // Texture coordinates and vertex colour at a hit, and the gradients of the coordinates.
-Place placeOf(Material m, BvhTriangle t, Corners corners, vec2 weights, Footprint f, out Gradient gradient) {
+Interpolants interpolantsOf(Material m, BvhTriangle t, Corners corners, vec2 weights, Footprint f,
+    out Gradient gradient) {
     VertexAttributes a = loadAttributes(corners.vertices.x),
         b = loadAttributes(corners.vertices.y),
         c = loadAttributes(corners.vertices.z);
-    Place at = Place(mixCorners(a.uv, b.uv, c.uv, weights), vec4(1.0));
+    Interpolants at = Interpolants(mixCorners(a.uv, b.uv, c.uv, weights), vec4(1.0));
     if (isColored(m)) at.color = mixCorners(a.color, b.color, c.color, weights);
     gradient = Gradient(vec4(0.0), vec4(0.0));
     if (f.x != vec3(0.0))
@@ -48,7 +49,7 @@ bool cutOut(BvhTriangle t, vec2 weights, Footprint f) {
     Corners corners = cornersOf(t);
     Material m = materials.materials[corners.material];
     Gradient g;
-    Place at = placeOf(m, t, corners, weights, f, g);
+    Interpolants at = interpolantsOf(m, t, corners, weights, f, g);
     return baseColor(m, at, g).a < m.alpha_cutoff;
 }
 

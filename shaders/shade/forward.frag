@@ -26,7 +26,7 @@ void main() {
     Surface s = surfaceAt(m, g, face, v);
     Shading light = shade(s, position, face, v);
 
-    radiance = vec4(light.direct + light.diffuse + light.specular + emission(m, placeHere(), g), 1.0);
+    radiance = vec4(light.direct + light.diffuse + light.specular + emission(m, interpolants(), g), 1.0);
     direct = vec4(light.direct, 1.0);
     diffuseIndirect = vec4(light.diffuse, 1.0);
     specularIndirect = vec4(light.specular, 1.0);

@@ -10,7 +10,7 @@ layout(local_size_x = 128) in;
 
 // Writes the cell and axis of each surfel of a cell.
 void nameSurfels(uint index, uvec4 word, uint bit) {
-    ivec3 cell = storedCellAt(voxelPlaces.bricks[index / 2], 32 * (index & 1u) + bit);
+    ivec3 cell = storedCellAt(voxelBrickIds.bricks[index / 2], 32 * (index & 1u) + bit);
     uint packed = packCell(cell), found = foundIn(word, 1u << bit);
     for (uint axis = 0; axis < 3; axis++) {
         if ((found >> axis & 1u) == 0) continue;

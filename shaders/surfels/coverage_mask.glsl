@@ -10,8 +10,8 @@ vec2 lateralOf(vec3 v, uint axis) {
 }
 
 // Whether the mask covers a point in lateral cell coordinates [0,1].
-bool isCovered(uvec2 mask, vec2 place) {
-    ivec2 at = clamp(ivec2(place * 8.0), 0, 7);
+bool isCovered(uvec2 mask, vec2 lateral) {
+    ivec2 at = clamp(ivec2(lateral * 8.0), 0, 7);
     return ((at.y < 4 ? mask.x : mask.y) >> (8 * (at.y & 3) + at.x) & 1u) != 0;
 }
 

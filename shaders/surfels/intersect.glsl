@@ -40,8 +40,8 @@ float intersectCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, floa
             float slope = dot(plane.normal, dir),
                 t = dot(plane.normal, middle - at) / (abs(slope) > 1e-4 ? slope : 1e-4);
             if (t < 0.0 || t < enter - PLANE_MARGIN || t > leave + PLANE_MARGIN || t >= nearest) continue;
-            vec2 place = lateralOf(at + t * dir - vec3(cell), axis);
-            if (!isCovered(side == 0 ? first.zw : HIT_SURFELS.quads[quad + 1].xy, place)) continue;
+            vec2 lateral = lateralOf(at + t * dir - vec3(cell), axis);
+            if (!isCovered(side == 0 ? first.zw : HIT_SURFELS.quads[quad + 1].xy, lateral)) continue;
             if ((side == 0) == (slope < 0.0)) {
                 nearest = t;
                 met = number + side;
@@ -51,7 +51,7 @@ float intersectCell(uint found, ivec3 cell, vec3 at, vec3 dir, vec3 facing, floa
             // surface that the ray leaves does not count: within 1.5 cells its plane may be in front of the
             // origin.
             if (t >= behind || own == 3
-                && isCovered(side == 0 ? HIT_SURFELS.quads[quad + 1].xy : first.zw, place)) continue;
+                && isCovered(side == 0 ? HIT_SURFELS.quads[quad + 1].xy : first.zw, lateral)) continue;
             if (t < 1.5 && dot(plane.normal, facing) * slope > 0.0) continue;
             behind = t;
             met_behind = number + 1 - side;

@@ -30,16 +30,16 @@ SurfelHit traceCascade(int cascade, ConeOrigin o, vec3 d, float from, float rang
         uint block = blockIndex(cell, cascade);
         if (block != last_block) bricks = HIT_BLOCKS.list[block];
         last_block = block;
-        uint brick = placeOf(cell >> 2), stored = bricks[wordOf(brick)], bit = 0;
+        uint brick = indexInBrick(cell >> 2), stored = bricks[wordOf(brick)], bit = 0;
         // Edge of the region that is crossed in one step [cells].
         int edge = bricks.xy == uvec2(0) ? 16 : 4;
         if ((stored & bitOf(brick)) != 0) {
-            uint place = placeOf(cell), number = 2 * brickIndex(bricks, brick) + wordOf(place);
+            uint local = indexInBrick(cell), number = 2 * brickIndex(bricks, brick) + wordOf(local);
             if (number != last) cells = HIT_BRICKS.words[number];
             last = number;
             uint occupied = occupiedCells(cells);
-            bit = occupied & bitOf(place);
-            edge = (occupied & eightAround(place)) == 0 ? 2 : 1;
+            bit = occupied & bitOf(local);
+            edge = (occupied & eightAround(local)) == 0 ? 2 : 1;
         }
         ivec3 first = cell & -edge;
         vec3 borders = (vec3(mix(first, first + edge, ahead)) - at) * inverse;

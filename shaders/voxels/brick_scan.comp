@@ -17,12 +17,12 @@ uint bricksOf(uint block) {
 // Numbers a block's bricks, and drops those beyond the capacity. Another group may count a block before or
 // after its bricks are dropped: either result leaves it no room.
 void assignIndices(uint block, uint first) {
-    uint next = first, room = voxelPlaces.bricks.length();
+    uint next = first, room = voxelBrickIds.bricks.length();
     for (uint word = 0; word < 2; word++) {
         for (uint left = voxelBlocks.list[block][word]; left != 0; left &= left - 1) {
-            uint place = 32 * word + findLSB(left);
-            if (next < room) voxelPlaces.bricks[next++] = 64 * block + place;
-            else voxelBlocks.list[block][word] &= ~bitOf(place);
+            uint local = 32 * word + findLSB(left);
+            if (next < room) voxelBrickIds.bricks[next++] = 64 * block + local;
+            else voxelBlocks.list[block][word] &= ~bitOf(local);
         }
     }
     voxelBlocks.list[block].z = first;
@@ -41,7 +41,7 @@ void main() {
         first += count;
     }
     if (gl_WorkGroupID.x < gl_NumWorkGroups.x - 1 || thread < CHUNK_THREADS - 1) return;
-    uint bricks = min(first, voxelPlaces.bricks.length()),
+    uint bricks = min(first, voxelBrickIds.bricks.length()),
         fragments = min(voxelCounter.fragments, voxelFragments.list.length());
     voxelCounter.bricks = bricks;
     voxelCounter.fragment_groups = uvec3(min((fragments + 127) / 128, 32768u), 1, 1);

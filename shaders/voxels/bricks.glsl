@@ -9,7 +9,8 @@
 
 layout(std430) buffer VoxelBlocks { uvec4 list[]; } voxelBlocks; // xy: bits of 64 bricks; z: first index
 layout(std430) buffer VoxelBricks { uvec4 words[]; } voxelBricks;
-layout(std430) buffer VoxelPlaces { uint bricks[]; } voxelPlaces; // by brick index: 64 * block + place in it
+// By brick index: 64 * block + index in the block.
+layout(std430) buffer VoxelBrickIds { uint bricks[]; } voxelBrickIds;
 
 // Blocks along an edge of a cascade. The last ones may extend beyond it.
 uint blocksAlong() {
@@ -22,24 +23,24 @@ uint blockIndex(ivec3 cell, int cascade) {
     return at.x + edge * (at.y + edge * (at.z + edge * uint(cascade)));
 }
 
-// Place of a cell in its brick, 0 to 63. With brick coordinates, the place of a brick in its block.
-uint placeOf(ivec3 cell) {
+// Index of a cell in its brick, 0 to 63. With brick coordinates, the index of a brick in its block.
+uint indexInBrick(ivec3 cell) {
     return uint(cell.x) & 3u | (uint(cell.y) & 3u) << 2 | (uint(cell.z) & 3u) << 4;
 }
 
-// Word of a place, 0 or 1.
-uint wordOf(uint place) {
-    return place >> 5;
+// Word of an index in a brick, 0 or 1.
+uint wordOf(uint local) {
+    return local >> 5;
 }
 
-// Bit of a place within its word.
-uint bitOf(uint place) {
-    return 1u << (place & 31u);
+// Bit of an index within its word.
+uint bitOf(uint local) {
+    return 1u << (local & 31u);
 }
 
-// Bits of the aligned 2x2x2 cells around a place. All are in the same word.
-uint eightAround(uint place) {
-    return 0x330033u << (place & 10u);
+// Bits of the aligned 2x2x2 cells around an index. All are in the same word.
+uint eightAround(uint local) {
+    return 0x330033u << (local & 10u);
 }
 
 bool isStored(uvec4 block, uint brick) {
@@ -52,19 +53,19 @@ uint brickIndex(uvec4 block, uint brick) {
     return block.z + before + (wordOf(brick) == 0 ? 0 : bitCount(block.x));
 }
 
-// Cell at a place of a brick, and its cascade. `brick`: 64 * block + place in the block.
-ivec3 cellAt(uint brick, uint place, out int cascade) {
+// Cell at an index in a brick, and its cascade. `brick`: 64 * block + index in the block.
+ivec3 cellAt(uint brick, uint local, out int cascade) {
     uint edge = blocksAlong(), block = brick >> 6, z = block / (edge * edge);
     cascade = int(z / edge);
     uvec3 corner = uvec3(block % edge, block / edge % edge, z % edge) * 16u
         + 4u * uvec3(brick & 3u, brick >> 2 & 3u, brick >> 4 & 3u);
-    return ivec3(corner + uvec3(place & 3u, place >> 2 & 3u, place >> 4));
+    return ivec3(corner + uvec3(local & 3u, local >> 2 & 3u, local >> 4));
 }
 
 // The same in texture coordinates.
-ivec3 storedCellAt(uint brick, uint place) {
+ivec3 storedCellAt(uint brick, uint local) {
     int cascade;
-    ivec3 cell = cellAt(brick, place, cascade);
+    ivec3 cell = cellAt(brick, local, cascade);
     return storedCell(cell, cascade);
 }
 
@@ -83,9 +84,9 @@ uint foundIn(uvec4 word, uint bit) {
 
 uint foundAt(ivec3 cell, int cascade) {
     uvec4 block = voxelBlocks.list[blockIndex(cell, cascade)];
-    uint brick = placeOf(cell >> 2), place = placeOf(cell);
+    uint brick = indexInBrick(cell >> 2), local = indexInBrick(cell);
     return isStored(block, brick) ?
-        foundIn(voxelBricks.words[2 * brickIndex(block, brick) + wordOf(place)], bitOf(place)) : 0;
+        foundIn(voxelBricks.words[2 * brickIndex(block, brick) + wordOf(local)], bitOf(local)) : 0;
 }
 
 // Lookup of a cell in texture coordinates.

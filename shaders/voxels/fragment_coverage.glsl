@@ -32,7 +32,7 @@ void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverag
     mat2x4 step = mat2x4(v[1].uv - v[0].uv, v[2].uv - v[0].uv) * inverse(across);
     vec2 alpha_step = vec2(v[1].color.a - v[0].color.a, v[2].color.a - v[0].color.a) * inverse(across);
     Gradient g = Gradient(step[0], step[1]);
-    Place middle = Place((v[0].uv + v[1].uv + v[2].uv) / 3.0,
+    Interpolants middle = Interpolants((v[0].uv + v[1].uv + v[2].uv) / 3.0,
         vec4((v[0].color.a + v[1].color.a + v[2].color.a) / 3.0));
     uint before = bitCount(coverage.mask.x) + bitCount(coverage.mask.y);
     if (before == 0 && baseColor(m, middle, g).a < m.alpha_cutoff) coverage.weight = 0;
@@ -40,7 +40,8 @@ void cutOut(uvec2 triangle, vec3 corner[3], ivec3 cell, uint axis, inout Coverag
         for (uint left = coverage.mask[word]; left != 0; left &= left - 1) {
             int bit = findLSB(left);
             vec2 at = vec2(bit & 7, 4 * word + (bit >> 3)) + 0.5;
-            Place part = Place(v[0].uv + step * (at - p[0]), vec4(v[0].color.a + dot(alpha_step, at - p[0])));
+            float alpha = v[0].color.a + dot(alpha_step, at - p[0]);
+            Interpolants part = Interpolants(v[0].uv + step * (at - p[0]), vec4(alpha));
             if (baseColor(m, part, g).a < m.alpha_cutoff) coverage.mask[word] &= ~(1u << bit);
         }
     }

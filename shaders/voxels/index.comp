@@ -25,7 +25,7 @@ void main() {
         if ((occupiedCells(word) & bit) == 0) continue;
         uint found = foundIn(word, bit);
         if (isEmpty(found)) continue;
-        imageStore(voxelIndex, storedCellAt(voxelPlaces.bricks[index / 2], 32 * (index & 1u) + lane),
+        imageStore(voxelIndex, storedCellAt(voxelBrickIds.bricks[index / 2], 32 * (index & 1u) + lane),
             uvec4(found == 0 ? ~0u : found));
     }
 }

@@ -7,11 +7,11 @@ void occupy(ivec3 stored, uint axis) {
     int cascade = cascadeOf(stored);
     ivec3 cell = cellOfStored(stored, cascade);
     uvec4 block = voxelBlocks.list[blockIndex(cell, cascade)];
-    uint brick = placeOf(cell >> 2), place = placeOf(cell);
+    uint brick = indexInBrick(cell >> 2), local = indexInBrick(cell);
     if (!isStored(block, brick)) return;
-    uint word = 2 * brickIndex(block, brick) + wordOf(place);
-    if ((voxelBricks.words[word][axis] & bitOf(place)) == 0)
-        atomicOr(voxelBricks.words[word][axis], bitOf(place));
+    uint word = 2 * brickIndex(block, brick) + wordOf(local);
+    if ((voxelBricks.words[word][axis] & bitOf(local)) == 0)
+        atomicOr(voxelBricks.words[word][axis], bitOf(local));
 }
 
 #endif

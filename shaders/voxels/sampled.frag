@@ -10,7 +10,7 @@ void main() {
     float pixels = footprintScale(at);
     Gradient g = Gradient(dFdx(uv) * pixels, dFdy(uv) * pixels);
     Material m = materials.materials[material];
-    Place here = Place(uv, color);
+    Interpolants here = Interpolants(uv, color);
     vec4 base = baseColor(m, here, g);
     if (base.a < m.alpha_cutoff) return;
     // With multisampling the pixel centre may be outside the triangle: clamp it to the bounding box.

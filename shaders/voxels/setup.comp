@@ -7,7 +7,7 @@
 
 layout(local_size_x = 64) in;
 
-void place(VolumeMap map, VoxelPiece p) {
+void assign(VolumeMap map, VoxelPiece p) {
     CellRange r = rangeOf(map, p);
     ivec3 edge = r.to - r.from + 1;
     if (any(lessThanEqual(edge, ivec3(0)))) return;
@@ -65,7 +65,7 @@ void main() {
         for (int i = 0; i < 3 * count; i += 3) {
             vec3 q[3];
             for (int k = 0; k < 3; k++) q[k] = isFlat(map) ? flatFromWorld(map, parts[i + k]) : parts[i + k];
-            place(map, VoxelPiece(q[0], index, q[1], cascade, q[2], 0));
+            assign(map, VoxelPiece(q[0], index, q[1], cascade, q[2], 0));
         }
     }
 }

@@ -8,7 +8,7 @@
 
 // Marks a cell's brick as stored. Most invocations find it already marked.
 void store(ivec3 cell, int cascade) {
-    uint block = blockIndex(cell, cascade), brick = placeOf(cell >> 2);
+    uint block = blockIndex(cell, cascade), brick = indexInBrick(cell >> 2);
     if ((voxelBlocks.list[block][wordOf(brick)] & bitOf(brick)) == 0)
         atomicOr(voxelBlocks.list[block][wordOf(brick)], bitOf(brick));
 }

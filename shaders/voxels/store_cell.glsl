@@ -34,7 +34,7 @@ void storeCell(VolumeMap map, VoxelPiece p, ivec3 cell) {
         uv_of * ((axes[j] - axes[dominant] * (along[j] * per)) * weights));
 
     Material m = materials.materials[d.material];
-    Place here = Place(mat3x4(v[0].uv, v[1].uv, v[2].uv) * b, vec4(1.0));
+    Interpolants here = Interpolants(mat3x4(v[0].uv, v[1].uv, v[2].uv) * b, vec4(1.0));
     if (isColored(m)) here.color = mat3x4(v[0].color, v[1].color, v[2].color) * b;
     vec4 base = baseColor(m, here, g);
     bool even = (!WARPED || CURVED) && map.curved == 0;

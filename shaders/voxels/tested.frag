@@ -22,7 +22,7 @@ void main() {
     vec4 base;
     vec3 reflected, n, light;
     if (!each) {
-        Place here = Place(uv, color);
+        Interpolants here = Interpolants(uv, color);
         base = baseColor(m, here, g);
         // Where coverage masks are exact, the merge cuts out holes instead.
         if (base.a < (EVEN ? min(m.alpha_cutoff, 0.01) : m.alpha_cutoff)) return;
@@ -86,7 +86,7 @@ void main() {
                     vec3 middle = 0.5 * (low + high);
                     vec2 shift = clamp(vec2(middle[axes.x], middle[axes.y]) * float(params.raster_size)
                         - gl_FragCoord.xy, -0.5, 0.5);
-                    Place there = Place(uv + uv_across * shift.x + uv_down * shift.y,
+                    Interpolants there = Interpolants(uv + uv_across * shift.x + uv_down * shift.y,
                         color + color_across * shift.x + color_down * shift.y);
                     base = baseColor(m, there, g);
                     if (base.a < m.alpha_cutoff) continue;

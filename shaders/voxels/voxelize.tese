@@ -43,7 +43,7 @@ void main() {
         b = vec3(1.0 / 3.0);
     }
     vec3 p = mat3(position[0], position[1], position[2]) * b;
-    Place at = Place(mat3x4(uv[0], uv[1], uv[2]) * b, mat3x4(color[0], color[1], color[2]) * b);
+    Interpolants at = Interpolants(mat3x4(uv[0], uv[1], uv[2]) * b, mat3x4(color[0], color[1], color[2]) * b);
     vec2 across = footprint;
     Gradient g = Gradient(vec4(across.x, 0.0, across.y, 0.0), vec4(0.0, across.x, 0.0, across.y));
     Material m = materials.materials[material];

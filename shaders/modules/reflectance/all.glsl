@@ -2,7 +2,7 @@
 // specular lobe.
 #include "common/brdf.glsl"
 
-vec3 reflectanceOf(Material m, vec3 base, Place at, Gradient g) {
+vec3 reflectanceOf(Material m, vec3 base, Interpolants at, Gradient g) {
     vec2 rm = roughnessMetallic(m, at, g);
     Surface s = bareSurface(vec3(0.0), base, rm.x, rm.y, dielectric(m));
     return sphericalAlbedo(s.albedo, s.f0, s.f90, rm.x);
