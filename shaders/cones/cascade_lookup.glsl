@@ -1,31 +1,8 @@
-// Start of cones, and lookups that stay inside their cascade.
+// Lookups that stay inside their cascade.
 #ifndef CASCADE_LOOKUP_GLSL
 #define CASCADE_LOOKUP_GLSL
-#include "cones/origin.glsl"
+#include "cones/cascade_weight.glsl"
 #include "modules/mips.glsl"
-
-// Width of the blend into the next cascade at a border [cells of the level].
-const float BLEND_CELLS = 6.0;
-
-float cascadeWeight(vec3 u, float level) {
-    vec3 inside = mix(vec3(1.0), min(u, 1.0 - u), CURVED_BORDERS);
-    return clamp(min(inside.x, min(inside.y, inside.z)) * float(params.voxel_dim)
-        / (BLEND_CELLS * exp2(max(level, 0.0))), 0.0, 1.0);
-}
-
-// Starts outside the voxels of the cone's own surface, `bias` cell extents off it.
-ConeOrigin coneOrigin(vec3 p, vec3 geometric, vec3 shading) {
-    int cascade = cascadeAt(p);
-    VolumeMap map = volume.maps[cascade];
-    float reach = cellReach(map, p, geometric), weight = 1.0;
-    if (CASCADE_COUNT > 1 && cascade < CASCADE_COUNT - 1) {
-        weight = cascadeWeight(worldToVolume(map, p), 0.0);
-        reach = mix(cellReach(volume.maps[cascade + 1], p, geometric), reach, weight);
-    }
-    float height = 2.0 * params.bias * reach;
-    return ConeOrigin(p + height * geometric, geometric, height, reach, cascade,
-        p + 2.0 * params.ray_bias * reach * geometric, weight);
-}
 
 // Keeps a lookup half a cell of its level away from the seams between stored cascades.
 vec4 sampleCascade(vec3 u, int cascade, vec3 dir, float level) {

@@ -1,9 +1,10 @@
 // Voxel cone tracing (thesis, Section 4.5.2): marches in world space, with lengths in local level-0 cells, so
-// that warps do not change it. modules/lookup places and reads the samples, modules/opacity computes the
+// that warps do not change it. cones/lookup.glsl places and reads the samples, modules/opacity computes the
 // opacity of a step.
 #ifndef CONE_GLSL
 #define CONE_GLSL
-#include "modules/lookup.glsl"
+#include "cones/cone_origin.glsl"
+#include "cones/lookup.glsl"
 #include "surfels/trace.glsl"
 #include "gather/emitters.glsl"
 

@@ -6,6 +6,7 @@
 #define CONE_GLSL
 #include "cones/origin.glsl"
 #include "modules/mips.glsl"
+#include "cones/level.glsl"
 #include "cones/sample.glsl"
 
 // The shading normal can point into the geometry.

@@ -1,4 +1,4 @@
-// Cone samples and the level that they read.
+// Samples of cones and rays, as the probe records them.
 #ifndef CONE_SAMPLE_GLSL
 #define CONE_SAMPLE_GLSL
 
@@ -18,10 +18,5 @@ struct ConeSample {
     bool outside; // no sample: the position is outside the volume
     bool last; // the next sample would be outside
 };
-
-// The level with cells as wide as the cone.
-float coneLevel(float voxel, float radius) {
-    return log2(max(2.0 * radius / voxel, 1.0)) + params.lod_offset;
-}
 
 #endif

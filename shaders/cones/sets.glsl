@@ -3,6 +3,7 @@
 #ifndef CONE_SETS_GLSL
 #define CONE_SETS_GLSL
 #include "common/frame.glsl"
+#include "cones/aperture.glsl"
 
 struct ConeSet {
     int count; // includes the axial cone
@@ -15,7 +16,7 @@ struct ConeSet {
 // Angles in degrees. params.cone_aperture is the full angle, from the set or from diffuse_aperture.
 ConeSet makeConeSet(int count, float axial_weight, float tilt) {
     return ConeSet(max(count, 4), axial_weight, cos(radians(tilt)), sin(radians(tilt)),
-        tan(radians(0.5 * params.cone_aperture)));
+        diffuseTangent());
 }
 
 #include "modules/cone_set.glsl"

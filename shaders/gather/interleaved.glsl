@@ -1,7 +1,7 @@
 // Traces a few narrow cones or rays per pixel, different ones for each pixel of an 8x8 block. Shading filters
 // over the block, so each surface sees up to 64 times as many (Segovia et al. 2006). The including module of
 // modules/trace defines vec4 traceAny(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use),
-// exactRange and SAMPLES_EMITTERS.
+// exactRange, diffuseTangent (tangent of half the aperture) and SAMPLES_EMITTERS.
 #include "gather/radiance.glsl"
 #include "gather/emitters.glsl"
 #include "common/ggx.glsl"
@@ -46,7 +46,7 @@ int specularRays(Surface s, vec3 v) {
 // then rays to emitters. One loop for all: the tracing code is large and is compiled only once.
 Gathered gather(ConeOrigin o, Surface s, vec3 face, vec3 v) {
     mat3 frame = frameOf(s.normal);
-    float tan_half = tan(radians(0.5 * params.cone_aperture)), tan_lobe = 0.25 * ggxAlpha(s.roughness);
+    float tan_half = diffuseTangent(), tan_lobe = 0.25 * ggxAlpha(s.roughness);
     int rays = gatherShare.rays, lobe = specularRays(s, v);
     int drawn = SAMPLES_EMITTERS && SCENE_EMITS && emitters.count > 0 ? gatherShare.emitters : 0;
     float candidates = float(drawn * CANDIDATES);

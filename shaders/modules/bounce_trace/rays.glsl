@@ -1,5 +1,5 @@
 // Surfels gather with rays through the voxels, and with rays to emitter samples.
-#include "modules/lookup.glsl"
+#include "surfels/ray_origin.glsl"
 #include "surfels/rays.glsl"
 
 #define BOUNCE_SAMPLES_EMITTERS (!WARPED && !CURVED) // bent rays do not separate emission

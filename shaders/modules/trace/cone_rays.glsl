@@ -1,8 +1,9 @@
 // Fills the same cones evenly with rays through the voxels, which isolates the error of filtered levels and
 // steps.
-#include "modules/lookup.glsl"
+#include "cones/cone_origin.glsl"
 #include "surfels/rays.glsl"
 #include "common/frame.glsl"
+#include "cones/aperture.glsl"
 
 #define SAMPLES_EMITTERS false
 

@@ -2,6 +2,7 @@
 // levels. Emitter samples replace the emission that filtered levels would hold.
 #define INTERLEAVED_CONES true
 #include "modules/cone.glsl"
+#include "cones/aperture.glsl"
 
 #define SAMPLES_EMITTERS (!WARPED && params.levels_emit == 0)
 

@@ -1,5 +1,5 @@
 // Rays through every voxel over the whole lobe, without cones.
-#include "modules/lookup.glsl"
+#include "cones/cone_origin.glsl"
 #include "surfels/rays.glsl"
 #include "gather/radiance.glsl"
 #include "common/ggx.glsl"

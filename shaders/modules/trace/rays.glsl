@@ -1,8 +1,12 @@
 // Rays through the voxels over any distance, and rays to emitter samples.
-#include "modules/lookup.glsl"
+#include "surfels/ray_origin.glsl"
 #include "surfels/rays.glsl"
 
 #define SAMPLES_EMITTERS (!WARPED && !CURVED) // bent rays do not separate emission
+
+float diffuseTangent() {
+    return 0.0;
+}
 
 float exactRange(ConeOrigin o, vec3 d, float tan_half) {
     return 1e30;

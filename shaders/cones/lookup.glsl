@@ -2,6 +2,7 @@
 // blends into the next one near the border.
 #include "cones/cascade_lookup.glsl"
 #include "modules/opacity.glsl"
+#include "cones/level.glsl"
 #include "cones/sample.glsl"
 
 // Cones that differ between neighbouring pixels round to whole levels, which halves the texture reads, and
