@@ -97,7 +97,7 @@ enum Command {
     Ablate(ablate::AblateArgs),
     /// Compare the voxels of an experiment with what its triangles exactly overlap.
     Voxels(voxels::VoxelsArgs),
-    /// Print what a graph does: order, lifetimes, barriers, memory, and what was left out.
+    /// Print the passes of a graph that run, with their shader files and results.
     Graph(graph::GraphArgs),
     /// Print a scene's counts, bounds, materials and missing files, or write it to another format.
     Scene(SceneArgs),

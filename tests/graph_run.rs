@@ -148,7 +148,7 @@ fn what_only_a_pass_that_is_off_writes_is_zeros() {
         command.args(["graph", "passes/graph.ron", "--want", "sum", "--set"]).arg(format!("off={off}"));
         command
     };
-    assert!(succeeds(&mut plan(r#"["make first"]"#)).contains("make first"), "left out, with the reason");
+    assert!(succeeds(&mut plan(r#"["make first"]"#)).contains("(--barriers prints why): make first"));
     let said = common::fails(&mut plan(r#"["make frist"]"#));
     assert!(said.contains("no pass 'make frist'") && said.contains("make first"), "{said}");
     let said = common::fails(&mut plan(r#"["add"]"#));

@@ -236,7 +236,7 @@ fn what_nothing_has_changed_sleeps() {
 fn what_gathers_over_frames_rests() {
     let lab = lab(root());
     // Something emits in cornell.
-    let (gather, rays) = ("gather from emitters", "rays and emitters");
+    let (gather, rays) = ("gather from emitters", "gather pixels and emitters");
     let gathering = ["bounce queue clear", "bounce history", gather, "inject"];
     for path in [BY_THREADS, BY_RASTER] {
         // Light has gone round 32 times after 64 frames.

@@ -33,7 +33,7 @@ pub struct GraphArgs {
     /// Print the parameters with their ranges and help, and the named values as set.
     #[arg(long)]
     params: bool,
-    /// Print every step with its barriers, and sizes, formats and lifetimes of resources.
+    /// Print every step with its reads, writes and barriers, all resources, and why other passes do not run.
     #[arg(long)]
     barriers: bool,
     /// Print a Graphviz picture.
@@ -107,7 +107,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         match (args.dot, args.barriers) {
             (true, _) => report::dot(&graph, &linked, &plan),
             (_, true) => report::text(&graph, &linked, &plan),
-            _ => report::summary(&graph, &plan),
+            _ => report::summary(&graph, &linked, &plan),
         }
     );
     Ok(())

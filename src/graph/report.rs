@@ -7,63 +7,73 @@ use super::param::Params;
 use super::plan::{Barrier, Plan, Step, Work, pack, schedule};
 use std::fmt::Write;
 
-/// What runs, stage by stage: work, what it reads and what it writes; memory; what was left out and why.
-pub fn summary(graph: &Graph, plan: &Plan) -> String {
-    let mut out = String::new();
+/// A screen: for each pass that runs, its stage, shader files and results; then memory, and the names of the others.
+pub fn summary(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
     let (ran, all, params) = (plan.passes().len(), graph.passes.len(), graph.params.list.len());
-    let _ = writeln!(out, "graph {}: {ran} of {all} passes run, {params} parameters", graph.name);
-    let mut stage = "";
-    for steps in plan.steps.chunk_by(|a, b| a.pass == b.pass) {
-        let Some(first) = steps.first() else { continue };
-        let pass = &graph.passes[first.pass].value;
-        if pass.stage() != stage {
-            stage = pass.stage();
-            let _ = writeln!(out, "\n{stage}");
-        }
-        let times = if steps.len() > 1 { format!(" x{}", steps.len()) } else { String::new() };
-        let named = |written: bool| {
-            let uses = first.uses.iter().filter(|u| if written { u.write } else { u.read && !u.write });
-            let mut names: Vec<String> = uses.map(|u| graph.title_of(u.res)).collect();
-            names.sort();
-            names.dedup();
-            names.join(" ")
-        };
-        let head = format!("  {}{times}: {}", pass.name.value, work_text(graph, first));
-        let _ = match first.work {
-            // It says what it writes.
-            Work::ClearTexture(..) | Work::ClearBuffer(..) => writeln!(out, "{head}"),
-            _ => writeln!(out, "{head}\n      {} -> {}", named(false), named(true)),
-        };
+    let mut out = format!("graph {}: {ran} of {all} passes run, {params} parameters", graph.name);
+    if plan.convergence.fresh > 1 {
+        let _ = write!(out, "; converges in {} frames", plan.convergence.fresh);
     }
+    out.push_str("\n\n");
+    let rows = rows(graph, linked, plan);
+    let width = |column: usize| rows.iter().map(|r| r[column].len()).max().unwrap_or(0);
+    let widths = [0, 1, 2].map(width);
+    for [stage, pass, shaders, results] in &rows {
+        let line = format!("{stage:<0$}  {pass:<1$}  {shaders:<2$}  {results}", widths[0], widths[1], widths[2]);
+        let _ = writeln!(out, "{}", line.trim_end());
+    }
+    out.push('\n');
     for settling in &plan.settling {
         let mut passes: Vec<&str> = settling.steps.iter().map(|i| graph.pass_name(plan.steps[*i].pass)).collect();
         passes.dedup();
         let _ = writeln!(out, "after {} still frames rest: {}", settling.frames, passes.join(", "));
     }
-    if plan.convergence.fresh > 1 {
-        let _ = writeln!(out, "converges in {} frames", plan.convergence.fresh);
-    }
-    let _ = writeln!(out, "\nmemory, MiB");
-    let star = |res: Res| if plan.is_transient(res) { "*" } else { "" };
-    let named = |res: Res| (format!("{}{}", graph.name_of(res), star(res)), plan.bytes_of(res));
-    let mut memory: Vec<(String, u64)> = plan.made().map(named).collect();
+    let mut memory: Vec<(&str, u64)> = plan.made().map(|res| (graph.name_of(res), plan.bytes_of(res))).collect();
     memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
     let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
-    // What is smaller than a tenth is not worth a word.
-    let (large, small): (Vec<_>, Vec<_>) = memory.iter().partition(|(_, bytes)| mib(*bytes) >= 0.1);
-    let items: Vec<String> = large.iter().map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes))).collect();
-    let (shared, saved) = shared(plan);
-    let total = mib(memory.iter().map(|(_, bytes)| bytes).sum::<u64>() - saved);
-    let stars = match saved {
-        0 => String::new(),
-        _ => format!("; transient ones (*) share {:.1}, which saves {:.1}", mib(shared), mib(saved)),
-    };
-    let _ = writeln!(out, "  {}, {} smaller ones; {total:.1} in all{stars}", items.join(", "), small.len());
-    let _ = writeln!(out, "\nleft out");
-    for (pass, why) in &plan.dropped {
-        let _ = writeln!(out, "  {}: {why}", graph.pass_name(*pass));
+    let total = mib(memory.iter().map(|(_, bytes)| bytes).sum::<u64>() - shared(plan).1);
+    let largest: Vec<String> =
+        memory.iter().take(6).map(|(name, bytes)| format!("{name} {:.1}", mib(*bytes))).collect();
+    let _ = writeln!(out, "memory: {total:.1} MiB; the largest: {}", largest.join(", "));
+    if !plan.dropped.is_empty() {
+        let names: Vec<&str> = plan.dropped.iter().map(|(pass, _)| graph.pass_name(*pass)).collect();
+        let _ = writeln!(out, "left out (--barriers prints why): {}", names.join(", "));
     }
     out
+}
+
+/// Stage, name, shader files and results of each pass that runs. The passes of a stage that clear share a row.
+fn rows(graph: &Graph, linked: &[Linked], plan: &Plan) -> Vec<[String; 4]> {
+    let mut rows: Vec<[String; 4]> = Vec::new();
+    let mut stage = "";
+    let mut clears: Option<usize> = None;
+    for steps in plan.steps.chunk_by(|a, b| a.pass == b.pass) {
+        let Some(first) = steps.first() else { continue };
+        let pass = &graph.passes[first.pass].value;
+        let is_new = pass.stage() != stage;
+        if is_new {
+            (stage, clears) = (pass.stage(), None);
+        }
+        let stage = if is_new { stage.to_owned() } else { String::new() };
+        let mut results: Vec<&str> = first.uses.iter().filter(|u| u.write).map(|u| graph.name_of(u.res)).collect();
+        results.sort_unstable();
+        results.dedup();
+        let results = results.join(" ");
+        if let Work::ClearTexture(..) | Work::ClearBuffer(..) = first.work {
+            match clears {
+                Some(row) => rows[row][3] += &format!(" {results}"),
+                None => {
+                    clears = Some(rows.len());
+                    rows.push([stage, "(clears)".into(), String::new(), format!("-> {results}")]);
+                }
+            }
+            continue;
+        }
+        let times = if steps.len() > 1 { format!(" x{}", steps.len()) } else { String::new() };
+        let shaders: Vec<&str> = linked[first.pass].stages.iter().map(|s| s.file.as_str()).collect();
+        rows.push([stage, format!("{}{times}", pass.name.value), shaders.join(" "), format!("-> {results}")]);
+    }
+    rows
 }
 
 /// Bytes of the memory that transient resources share, and how much more they had alone. Devices round sizes up.
