@@ -64,6 +64,7 @@ record() {
             keep_json moving "$work/moving.json" "${way[@]}"
             ;;
         scenes) sweep configs/sweeps/scenes.ron --reference 1024 ;;
+        exposures) sweep configs/sweeps/thesis.ron --reference 1024 ;;
         lamps) sweep configs/sweeps/lamps.ron --reference 512 ;;
         sponza) # the chart alone
             run sweep configs/sweeps/sponza.ron --reference 4096 -o "$work/sponza"
@@ -79,5 +80,5 @@ record() {
     esac
 }
 
-[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms moving scenes lamps sponza voxels
+[[ $# -gt 0 ]] || set -- thesis rays pixels cells rooms moving scenes exposures lamps sponza voxels
 for name; do record "$name"; done

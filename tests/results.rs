@@ -173,6 +173,45 @@ fn scenes() -> String {
     format!("*{}*\n\nEach cell: rays / cones / thesis.\n\n{}", record.said, table(&head, &lines))
 }
 
+/// The thesis in every scene with its preset, and with the exposure and steps of the lowest FLIP there, beside the other presets.
+fn exposures() -> String {
+    type Line = BTreeMap<String, String>;
+    let (record, scenes) = (record("exposures"), record("scenes"));
+    let done: Vec<&Line> = record.lines.iter().filter(|l| l["outcome"] == "done").collect();
+    let mut names: Vec<&String> = done.iter().map(|l| &l["scene"]).collect();
+    names.dedup();
+    let line = |name: &String| {
+        let all = || done.iter().copied().filter(|l| l["scene"] == *name);
+        let preset = all().find(|l| l["injection_exposure"] == "0" && l["diffuse_steps"] == "32").unwrap();
+        let best = |column: &str| all().min_by(|a, b| number(a, column).total_cmp(&number(b, column))).unwrap();
+        let other = |method: &str| {
+            let fits = |l: &&Line| l["experiment"] == method && l["scene"] == *name && l["outcome"] == "done";
+            scenes.lines.iter().find(fits).map_or(f64::NAN, |l| number(l, "total flip"))
+        };
+        let found = best("total flip");
+        let exposure = if found["injection_exposure"] == "0" { "E / pi" } else { &found["injection_exposure"] };
+        let (one, energy) = ("total, 1 bounces flip", "total energy_ratio");
+        vec![
+            name.clone(),
+            format!("{:.3} ({:.2})", number(preset, "total flip"), number(preset, energy)),
+            format!("{:.3} ({:.2})", number(found, "total flip"), number(found, energy)),
+            format!("{exposure}, {}", found["diffuse_steps"]),
+            format!("{:.3}, {:.3}", number(preset, one), number(best(one), one)),
+            format!("{:.3}, {:.3}", other("rays"), other("cones")),
+        ]
+    };
+    let lines: Vec<Vec<String>> = names.into_iter().map(line).collect();
+    let head = [
+        "scene",
+        "preset: FLIP (energy)",
+        "best: FLIP (energy)",
+        "exposure, steps",
+        "one bounce: preset, best",
+        "rays, cones",
+    ];
+    format!("*{}*\n\n{}", record.said, table(&head, &lines))
+}
+
 /// Rays to emitters: what they bring and cost.
 fn lamps() -> String {
     let record = record("lamps");
@@ -263,6 +302,7 @@ fn block(name: &str) -> String {
         "moving" => moving(),
         "scenes" => scenes(),
         "lamps" => lamps(),
+        "exposures" => exposures(),
         "voxels" => voxels(),
         "presets" => presets(),
         times_of => times(times_of),

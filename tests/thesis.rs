@@ -12,7 +12,7 @@ use glam::{DVec3, DVec4};
 const DIM: usize = 64;
 const LEVELS: u32 = 6;
 /// Of the thesis: samples a diffuse cone, and its bias and height in voxels.
-const STEPS: usize = 12;
+const STEPS: usize = 32;
 const APERTURE: f64 = 45.0;
 
 /// A sample as the probe tells it.

@@ -4,6 +4,11 @@
 
 const float PI = 3.14159265359;
 
+// Of linear Rec. 709 colour.
+float luminance(vec3 c) {
+    return dot(c, vec3(0.2126, 0.7152, 0.0722));
+}
+
 // Index of the largest component's axis. >= handles ties at 45 degrees.
 uint dominantAxis(vec3 v) {
     vec3 a = abs(v);

@@ -5,6 +5,7 @@
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/voxels.glsl"
+#include "inject/exposure.glsl"
 
 layout(local_size_x = 128) in;
 
@@ -16,6 +17,6 @@ void main() {
     if (surfel >= voxelCounter.count || axisOfSurfel(surfel) < 0) return;
     ivec3 cell = cellOfSurfel(surfel);
     float opacity = texelFetch(voxelColor, cell, 0).a;
-    vec3 emission = meanEmission(sideBase(surfel, 0)) / params.injection_exposure;
+    vec3 emission = meanEmission(sideBase(surfel, 0)) / injectionExposure();
     imageStore(injected, cell, vec4(emission * opacity, opacity));
 }

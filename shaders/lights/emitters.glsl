@@ -3,6 +3,7 @@
 // sampled.
 #ifndef EMITTERS_GLSL
 #define EMITTERS_GLSL
+#include "common/math.glsl"
 
 struct Emitter {
     vec3 a; // world
@@ -22,10 +23,6 @@ layout(std430) readonly buffer Emitters {
     uint pad1;
     Emitter list[];
 } emitters;
-
-float luminance(vec3 c) {
-    return dot(c, vec3(0.2126, 0.7152, 0.0722));
-}
 
 // An emitter sample, seen from a point.
 struct EmitterSample {
