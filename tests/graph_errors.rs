@@ -605,7 +605,7 @@ fn named_values() {
     assert_snapshot!(values(r#""bytes": Bool("bright")"#), @r#"
     passes/graph.ron:9:24: error: unknown name 'Bool'
         |     values: { "bytes": Bool("bright") },
-        = help: known: Float, Int
+        = help: known: Float, Int, Signature
     "#);
     assert_snapshot!(values(r#""bytes": "cells * 8""#), @r#"
     passes/graph.ron:9:24: error: Expected identifier
@@ -732,14 +732,14 @@ fn parameters() {
 
 #[test]
 fn passes_of_two_kinds_and_of_none() {
-    assert_snapshot!(graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "comment: \"later\""), @r#"
-    passes/graph.ron:19:9: error: pass 'prepare' does nothing: give it dispatch, draw, clear or copy
-        |         (name: "prepare", comment: "later"),
+    assert_snapshot!(graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "stage: \"later\""), @r#"
+    passes/graph.ron:19:9: error: pass 'prepare' does nothing: give it dispatch, draw or clear
+        |         (name: "prepare", stage: "later"),
     "#);
     assert_snapshot!(graph("dispatch: Groups(1, 1, 1)", "dispatch: Groups(1, 1, 1), clear: \"work\""), @r#"
-    passes/graph.ron:19:9: error: pass 'prepare' does several things: dispatch, draw, clear and copy exclude each other
+    passes/graph.ron:19:9: error: pass 'prepare' does several things: dispatch, draw and clear exclude each other
         |         (name: "prepare", shaders: ["prepare.comp"], dispatch: Groups(1, 1, 1), clear: "work"),
-    passes/graph.ron:19:9: error: pass 'prepare' clears or copies: it takes no shaders
+    passes/graph.ron:19:9: error: pass 'prepare' clears: it takes no shaders
         |         (name: "prepare", shaders: ["prepare.comp"], dispatch: Groups(1, 1, 1), clear: "work"),
     "#);
     assert_snapshot!(graph("shaders: [\"prepare.comp\"], ", ""), @r#"
@@ -761,13 +761,6 @@ fn passes_of_two_kinds_and_of_none() {
     assert_snapshot!(graph("(name: \"scatter\", ", "(name: \"scatter\", topology: patches, "), @r#"
     passes/graph.ron:23:9: error: pass 'scatter': patches need both a .tesc and a .tese shader, and they need patches
         |         (name: "scatter", topology: patches, shaders: ["full.vert", "scatter.frag"], draw: Fullscreen,
-    "#);
-    assert_snapshot!(graph("dispatch: Groups(1, 1, 1)", "copy: (from: \"work\", to: \"count\")"), @r#"
-    passes/graph.ron:19:9: error: pass 'prepare' clears or copies: it takes no shaders
-        |         (name: "prepare", shaders: ["prepare.comp"], copy: (from: "work", to: "count")),
-    passes/graph.ron:19:79: error: no buffer is named 'count'
-        |         (name: "prepare", shaders: ["prepare.comp"], copy: (from: "work", to: "count")),
-        = help: known: work
     "#);
     assert_snapshot!(graph("each_mip: (texture: \"grid\", from: 1)", "each_mip: (texture: \"grid\", from: 1), repeat: 2"), @r#"
     passes/graph.ron:21:9: error: pass 'reduce' has both repeat and each_mip
@@ -1179,25 +1172,11 @@ fn sizes() {
 
 #[test]
 fn what_no_device_can_do() {
-    // Depth is cleared where it is attached; copies need two textures of one size; sRGB is no storage format.
+    // Depth is cleared where it is attached; sRGB is no storage format.
     assert_snapshot!(graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "clear: \"depth\""), @r#"
     passes/graph.ron:19:34: error: 'depth' is a depth texture: clear it where it is attached, depth: (clear: 1.0)
         |         (name: "prepare", clear: "depth"),
     "#);
-    assert_snapshot!(
-        graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "copy: (from: \"picture\", to: \"count\")"),
-        @r#"
-        passes/graph.ron:19:40: error: 'picture' and 'count' differ in size, mips or texel size
-            |         (name: "prepare", copy: (from: "picture", to: "count")),
-        "#
-    );
-    assert_snapshot!(
-        graph("shaders: [\"prepare.comp\"], dispatch: Groups(1, 1, 1)", "copy: (from: \"picture\", to: \"picture\")"),
-        @r#"
-        passes/graph.ron:19:55: error: 'picture' is copied to itself
-            |         (name: "prepare", copy: (from: "picture", to: "picture")),
-        "#
-    );
     assert_snapshot!(
         bench()
             .edit("passes/graph.ron", "options: [\"rgba8\", \"rgba16f\"]", "options: [\"rgba8_srgb\", \"rgba16f\"]")

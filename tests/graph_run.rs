@@ -273,7 +273,7 @@ const IMAGES: &str = r#"(
         (name: "source", shaders: ["source.comp"], dispatch: Cover("source")),
         (name: "blur x", shaders: ["blur_x.comp"], dispatch: Cover("wide")),
         (name: "blur y", shaders: ["blur_y.comp"], dispatch: Cover("blurred")),
-        (name: "pyramid base", copy: (from: "blurred", to: "base")),
+        (name: "pyramid base", shaders: ["base.comp"], dispatch: Cover("base")),
         (name: "pyramid begin", shaders: ["begin.comp"], dispatch: Cover("pyramid")),
         (name: "pyramid", each_mip: (texture: "pyramid", from: 1), shaders: ["half.comp"], dispatch: Cover("dst"),
             bind: { "src": (of: "pyramid", mip: "mip - 1"), "dst": (of: "pyramid", mip: "mip") }),
@@ -284,8 +284,8 @@ const IMAGES: &str = r#"(
         (name: "size", shaders: ["size.comp"], dispatch: Groups(1, 1, 1)),
         (name: "no marks", clear: "marked", value: (7, 0, 0, 0)),
         (name: "mark", shaders: ["mark.comp"], dispatch: Indirect("list", 0)),
-        (name: "keep marks", copy: (from: "marked", to: "kept")),
-        (name: "keep list", copy: (from: "list", to: "listCopy")),
+        (name: "keep marks", shaders: ["keep.comp"], dispatch: Cover("kept")),
+        (name: "keep list", shaders: ["keep_list.comp"], dispatch: Threads("4 + edge * edge", 1, 1)),
         (name: "nothing packed", clear: "packed"),
         (name: "pack", shaders: ["pack.comp"], dispatch: Cover("source"),
             bind: { "packed": (of: "packed", as: "r32ui") }),
@@ -294,6 +294,36 @@ const IMAGES: &str = r#"(
 )"#;
 
 const IMAGE_SHADERS: &[(&str, &str)] = &[
+    (
+        "base.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        uniform sampler2D blurred;
+        uniform writeonly image2D base;
+        void main() {
+            ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+            imageStore(base, p, texelFetch(blurred, p, 0));
+        }",
+    ),
+    (
+        "keep.comp",
+        "layout(local_size_x = 8, local_size_y = 8) in;
+        uniform usampler2D marked;
+        uniform writeonly uimage2D kept;
+        void main() {
+            ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+            imageStore(kept, p, texelFetch(marked, p, 0));
+        }",
+    ),
+    (
+        "keep_list.comp",
+        "layout(local_size_x = 64) in;
+        layout(std430) readonly buffer List { uint words[]; } list;
+        layout(std430) writeonly buffer ListCopy { uint words[]; } listCopy;
+        void main() {
+            uint i = gl_GlobalInvocationID.x;
+            if (i < listCopy.words.length()) listCopy.words[i] = list.words[i];
+        }",
+    ),
     (
         "source.comp",
         "layout(local_size_x = 8, local_size_y = 8) in;
@@ -822,9 +852,9 @@ fn hazards_of_every_kind_over_many_frames() {
             buffers: { "b": (size: 256), "log": (size: 256) },
             passes: [
                 (name: "b to t", shaders: ["b_to_t.comp"], dispatch: Groups(1, 1, 1)),
-                (name: "t to u", copy: (from: "t", to: "u")),
+                (name: "t to u", shaders: ["t_to_u.comp"], dispatch: Groups(1, 1, 1)),
                 (name: "u to b", shaders: ["u_to_b.comp"], dispatch: Groups(1, 1, 1), bind: { "past": (of: "t", history: true) }),
-                (name: "keep b", copy: (from: "b", to: "log")),
+                (name: "keep b", shaders: ["keep_b.comp"], dispatch: Groups(1, 1, 1)),
                 (name: "t again", shaders: ["t_again.comp"], dispatch: Groups(1, 1, 1)),
                 (name: "draw u", shaders: ["full.vert", "add.frag"], draw: Fullscreen, color: [(to: "u", blend: add)]),
             ],
@@ -837,6 +867,23 @@ fn hazards_of_every_kind_over_many_frames() {
                 layout(std430) readonly buffer B { uint n[]; } b;
                 uniform writeonly image2D t;
                 void main() { imageStore(t, ivec2(gl_LocalInvocationID.xy), vec4(b.n[gl_LocalInvocationIndex] + 1u)); }",
+            ),
+            (
+                "t_to_u.comp",
+                "layout(local_size_x = 8, local_size_y = 8) in;
+                uniform sampler2D t;
+                uniform writeonly image2D u;
+                void main() {
+                    ivec2 p = ivec2(gl_LocalInvocationID.xy);
+                    imageStore(u, p, texelFetch(t, p, 0));
+                }",
+            ),
+            (
+                "keep_b.comp",
+                "layout(local_size_x = 64) in;
+                layout(std430) readonly buffer B { uint n[]; } b;
+                layout(std430) writeonly buffer Log { uint n[]; } log;
+                void main() { log.n[gl_LocalInvocationIndex] = b.n[gl_LocalInvocationIndex]; }",
             ),
             (
                 "u_to_b.comp",
@@ -891,7 +938,7 @@ fn what_is_transient_shares_memory_and_changes_nothing() {
             (name: "start", shaders: ["start.comp"], dispatch: Groups(64, 1, 1)),
             (name: "a to t", shaders: ["a_to_t.comp"], dispatch: Cover("t")),
             (name: "draw", shaders: ["full.vert", "draw.frag"], draw: Fullscreen, color: [(to: "drawn", clear: (0, 0, 0, 0))]),
-            (name: "copy", copy: (from: "drawn", to: "copied")),
+            (name: "copy", shaders: ["copy.comp"], dispatch: Cover("copied")),
             (name: "drawn to b", shaders: ["drawn_to_b.comp"], dispatch: Groups(64, 1, 1)),
             (name: "a anew", clear: "a"),
             (name: "a again", shaders: ["a_again.comp"], dispatch: Groups(64, 1, 1)),
@@ -911,6 +958,17 @@ fn what_is_transient_shares_memory_and_changes_nothing() {
                 "{line}{}void main() {{ a.list[i()] = float(i()) + params.first; }}",
                 buffer("writeonly", "A", "a")
             ),
+        ),
+        (
+            "copy.comp",
+            "layout(local_size_x = 8, local_size_y = 8) in;
+            uniform sampler2D drawn;
+            uniform writeonly image2D copied;
+            void main() {
+                ivec2 p = ivec2(gl_GlobalInvocationID.xy);
+                imageStore(copied, p, texelFetch(drawn, p, 0));
+            }"
+            .to_string(),
         ),
         (
             "a_to_t.comp",
@@ -1275,7 +1333,7 @@ fn named_values_reach_expressions_and_shaders() {
 }
 
 #[test]
-fn clears_and_copies_of_a_part_keep_the_rest() {
+fn clears_and_stores_of_a_part_keep_the_rest() {
     let bench = Bench::new(
         r#"(
             textures: {
@@ -1288,13 +1346,20 @@ fn clears_and_copies_of_a_part_keep_the_rest() {
                     color: [(to: "stack", layer: "index", clear: (0, 0, 0, 0))]),
                 (name: "fill long", clear: "long", value: (7, 0, 0, 0)),
                 (name: "fill short", clear: "short", value: (5, 0, 0, 0)),
-                (name: "copy", copy: (from: "short", to: "long")),
+                (name: "copy", shaders: ["copy.comp"], dispatch: Groups(1, 1, 1)),
                 (name: "add", shaders: ["add.comp"], dispatch: Cover("sum")),
             ],
         )"#,
         &[
             ("full.vert", FULL),
             ("one.frag", "layout(location = 0) out vec4 color; void main() { color = vec4(1.0); }"),
+            (
+                "copy.comp",
+                "layout(local_size_x = 16) in;
+                layout(std430) readonly buffer Short { uint words[]; } short_buffer;
+                layout(std430) writeonly buffer Long { uint words[]; } long_buffer;
+                void main() { long_buffer.words[gl_LocalInvocationIndex] = short_buffer.words[gl_LocalInvocationIndex]; }",
+            ),
             (
                 "add.comp",
                 "layout(local_size_x = 4, local_size_y = 4) in;
@@ -1314,7 +1379,11 @@ fn clears_and_copies_of_a_part_keep_the_rest() {
         "passes/graph.ron",
         &std::fs::read_to_string(bench.path("passes/graph.ron"))
             .unwrap()
-            .replace("dispatch: Cover(\"sum\")", "dispatch: Cover(\"sum\"), bind: { \"long_buffer\": (of: \"long\") }"),
+            .replace("dispatch: Cover(\"sum\")", "dispatch: Cover(\"sum\"), bind: { \"long_buffer\": (of: \"long\") }")
+            .replace(
+                "dispatch: Groups(1, 1, 1))",
+                "dispatch: Groups(1, 1, 1), bind: { \"long_buffer\": (of: \"long\"), \"short_buffer\": (of: \"short\") })",
+            ),
     );
     let lab = bench.lab();
     let mut session = bench.run(&lab, &["sum"], 2);

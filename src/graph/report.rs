@@ -165,8 +165,6 @@ fn work_text(graph: &Graph, step: &Step) -> String {
         Work::DrawIndirect(b, o) => format!("draw sized by {} at byte {o}{view}", buffer(b)),
         Work::ClearTexture(t, ..) => format!("clear {}", texture(t)),
         Work::ClearBuffer(b, v) => format!("fill {} with {v}", buffer(b)),
-        Work::CopyTexture(a, b) => format!("copy {} to {}", texture(a), texture(b)),
-        Work::CopyBuffer(a, b) => format!("copy {} to {}", buffer(a), buffer(b)),
     }
 }
 

@@ -152,8 +152,6 @@ pub struct DrawState {
     pub depth_write: bool,
     /// Clamp depth instead of clipping.
     pub depth_clamp: bool,
-    /// Constant and slope depth bias.
-    pub depth_bias: Option<(f32, f32)>,
     /// Samples of attachment-less rasterisation; 1 otherwise.
     pub samples: u32,
     /// Overestimating conservative rasterisation.
@@ -322,15 +320,11 @@ fn graphics(
     let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
     let mut conservative = vk::PipelineRasterizationConservativeStateCreateInfoEXT::default()
         .conservative_rasterization_mode(vk::ConservativeRasterizationModeEXT::OVERESTIMATE);
-    let bias = state.depth_bias.unwrap_or_default();
     let mut raster = vk::PipelineRasterizationStateCreateInfo::default()
         .polygon_mode(vk::PolygonMode::FILL)
         .cull_mode(state.cull)
         .front_face(vk::FrontFace::COUNTER_CLOCKWISE)
         .depth_clamp_enable(state.depth_clamp)
-        .depth_bias_enable(state.depth_bias.is_some())
-        .depth_bias_constant_factor(bias.0)
-        .depth_bias_slope_factor(bias.1)
         .rasterizer_discard_enable(state.discard)
         .line_width(1.0);
     if state.conservative {

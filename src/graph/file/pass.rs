@@ -124,13 +124,9 @@ pub struct PassDecl {
     pub mip: Option<Ex>,
     /// The value it is cleared to.
     pub value: Option<(f64, f64, f64, f64)>,
-    /// A copy.
-    pub copy: Option<Loc<CopyDecl>>,
     /// Textures that are read in place of those it writes while it is off, where both have the same shape: a filter's input.
     #[serde(default)]
     pub instead: Entries<Loc<String>>,
-    /// A note to readers.
-    pub comment: Option<String>,
 }
 
 impl PassDecl {
@@ -310,8 +306,6 @@ pub struct Raster {
     pub cull: Cull,
     /// Clamp depth instead of clipping.
     pub depth_clamp: bool,
-    /// Constant and slope bias.
-    pub depth_bias: Option<(f32, f32)>,
     /// Conservative rasterisation.
     pub conservative: Option<Conservative>,
     /// No rasterisation.
@@ -337,14 +331,4 @@ pub enum Cull {
 pub enum Conservative {
     /// Every touched pixel.
     Overestimate,
-}
-
-/// A copy.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CopyDecl {
-    /// From.
-    pub from: Loc<String>,
-    /// To.
-    pub to: Loc<String>,
 }

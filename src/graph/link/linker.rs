@@ -186,7 +186,7 @@ impl<'g> Linker<'g> {
     /// What a pass uses by itself, whatever its shaders say.
     fn mark_used(&mut self, pass: &PassDecl) {
         let names = pass.color.0.iter().map(|c| &c.value.to).chain(pass.depth.iter().map(|d| &d.value.to));
-        let names = names.chain(&pass.clear).chain(pass.copy.iter().flat_map(|c| [&c.value.from, &c.value.to]));
+        let names = names.chain(&pass.clear);
         let names = names.chain(pass.bind.0.iter().map(|(_, bind)| &bind.value.of)).map(|name| &name.value);
         let names = names.chain(pass.command().map(|(command, _)| &command.path.value.buffer));
         self.used.extend(names.cloned());

@@ -3,21 +3,19 @@
 use super::check::{Check, files_of};
 use crate::diagnostics::{At, Loc, nearest};
 use crate::files::read_input_text;
-use crate::graph::file::{Bind, Command, CopyDecl, Dispatch, Draw, PassDecl, Topology};
+use crate::graph::file::{Bind, Command, Dispatch, Draw, PassDecl, Topology};
 use crate::shader::{MAX_BYTES, is_inside};
 use crate::vulkan::{Format, Stage};
 
 impl Check<'_> {
     pub(super) fn pass(&mut self, pass: &PassDecl, at: At) {
         let name = &pass.name.value;
-        let kinds = [pass.dispatch.is_some(), pass.draw.is_some(), pass.clear.is_some(), pass.copy.is_some()];
+        let kinds = [pass.dispatch.is_some(), pass.draw.is_some(), pass.clear.is_some()];
         match kinds.iter().filter(|k| **k).count() {
-            0 => self.error(at, format!("pass '{name}' does nothing: give it dispatch, draw, clear or copy")),
+            0 => self.error(at, format!("pass '{name}' does nothing: give it dispatch, draw or clear")),
             1 => {}
-            _ => self.error(
-                at,
-                format!("pass '{name}' does several things: dispatch, draw, clear and copy exclude each other"),
-            ),
+            _ => self
+                .error(at, format!("pass '{name}' does several things: dispatch, draw and clear exclude each other")),
         }
         self.exprs(pass.conditions().chain(pass.over_frames()).chain(&pass.repeat).chain(&pass.mip));
         if pass.repeat.is_some() && pass.each_mip.is_some() {
@@ -60,9 +58,6 @@ impl Check<'_> {
             let message = format!("'{name}' is a depth texture: clear it where it is attached, depth: (clear: 1.0)");
             self.error(target.at, message);
         }
-        if let Some(copy) = &pass.copy {
-            self.copy(&copy.value);
-        }
     }
 
     /// Whether a texture's format is one of depth; nothing where it is none, which was told where it stands. A choice of
@@ -71,20 +66,6 @@ impl Check<'_> {
         let name = &self.graph.textures[self.graph.texture(texture)?].1.value.format.value;
         let first = self.graph.params.param(name).and_then(|p| p.kind.options().first());
         Format::named(first.unwrap_or(name)).map(|f| f.is_depth())
-    }
-
-    fn copy(&mut self, copy: &CopyDecl) {
-        if copy.from.value == copy.to.value {
-            self.error(copy.to.at, format!("'{}' is copied to itself", copy.to.value));
-        }
-        let of_buffers = [&copy.from, &copy.to].iter().any(|name| self.graph.buffer(&name.value).is_some());
-        for name in [&copy.from, &copy.to] {
-            if of_buffers {
-                self.buffer_name(name)
-            } else {
-                self.texture_name(name)
-            };
-        }
     }
 
     fn stages(&mut self, pass: &PassDecl, at: At) {
@@ -133,8 +114,8 @@ impl Check<'_> {
                 format!("pass '{name}': patches need both a .tesc and a .tese shader, and they need patches"),
             );
         }
-        if (pass.clear.is_some() || pass.copy.is_some()) && !pass.shaders.0.is_empty() {
-            self.error(at, format!("pass '{name}' clears or copies: it takes no shaders"));
+        if pass.clear.is_some() && !pass.shaders.0.is_empty() {
+            self.error(at, format!("pass '{name}' clears: it takes no shaders"));
         }
     }
 

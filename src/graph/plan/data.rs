@@ -81,10 +81,6 @@ pub enum Work {
     ClearTexture(usize, (u32, u32), [f64; 4]),
     /// Fill a buffer.
     ClearBuffer(usize, u32),
-    /// Copy a texture.
-    CopyTexture(usize, usize),
-    /// Copy a buffer.
-    CopyBuffer(usize, usize),
 }
 
 /// An attachment of a step.

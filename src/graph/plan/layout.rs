@@ -1,6 +1,6 @@
 //! Layouts of textures at each step, and the usage flags that follow from all steps.
 
-use super::data::{Plan, Step, Work};
+use super::data::{Plan, Step};
 use super::uses::UseKind;
 use crate::diagnostics::Diagnostic;
 use crate::graph::definition::{Graph, Res};
@@ -18,8 +18,6 @@ pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
         }
     }
     for step in &mut plan.steps {
-        // Clears stay in GENERAL too; for copies the validation layer insists on the layouts made for them.
-        let copy = matches!(step.work, Work::CopyTexture(..));
         for u in &mut step.uses {
             let t = match u.res {
                 Res::Texture(t, _) => t,
@@ -34,9 +32,8 @@ pub fn layouts(graph: &Graph, plan: &mut Plan, errors: &mut Vec<Diagnostic>) {
                 UseKind::Color => (Layout::COLOR_ATTACHMENT_OPTIMAL, vk::ImageUsageFlags::COLOR_ATTACHMENT),
                 UseKind::Depth => (Layout::DEPTH_ATTACHMENT_OPTIMAL, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
                 UseKind::DepthRead => (Layout::DEPTH_READ_ONLY_OPTIMAL, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT),
-                UseKind::Transfer if stored[t] && !copy => (Layout::GENERAL, vk::ImageUsageFlags::TRANSFER_DST),
-                UseKind::Transfer if u.write => (Layout::TRANSFER_DST_OPTIMAL, vk::ImageUsageFlags::TRANSFER_DST),
-                UseKind::Transfer => (Layout::TRANSFER_SRC_OPTIMAL, vk::ImageUsageFlags::TRANSFER_SRC),
+                UseKind::Clear if stored[t] => (Layout::GENERAL, vk::ImageUsageFlags::TRANSFER_DST),
+                UseKind::Clear => (Layout::TRANSFER_DST_OPTIMAL, vk::ImageUsageFlags::TRANSFER_DST),
                 _ => (Layout::SHADER_READ_ONLY_OPTIMAL, vk::ImageUsageFlags::SAMPLED),
             };
             u.layout = layout;

@@ -7,7 +7,7 @@ use super::uses::{Use, UseKind, merge};
 use crate::diagnostics::{At, Loc};
 use crate::graph::definition::{Graph, Res};
 use crate::graph::expr::{Ex, Var};
-use crate::graph::file::{Command, CopyDecl, DISPATCH_WORDS, DRAW_WORDS, Dispatch, Draw, PassDecl};
+use crate::graph::file::{Command, DISPATCH_WORDS, DRAW_WORDS, Dispatch, Draw, PassDecl};
 use crate::graph::link::{Bound, BoundCase, Layouts, Linked, Target};
 use crate::shader::Resource;
 use crate::vulkan::{DeviceInfo, Stage, vk};
@@ -254,44 +254,19 @@ impl<'a> Planner<'a, '_> {
                 }
             });
         }
-        if let Some(target) = &pass.clear {
-            let res = self.graph().resource(&target.value)?;
-            let v = pass.value.unwrap_or_default();
-            let (mips, work) = match res {
-                Res::Buffer(buffer, _) => ((0, 1), Work::ClearBuffer(buffer, v.0 as u32)),
-                Res::Texture(texture, _) => {
-                    let mips = match &pass.mip {
-                        Some(ex) => (self.numbers.count(ex, 0, "mip"), 1),
-                        None => (0, self.textures[texture].mips),
-                    };
-                    (mips, Work::ClearTexture(texture, mips, [v.0, v.1, v.2, v.3]))
-                }
-            };
-            step.uses.push(Use::transfer(res, mips, false, true));
-            return Some(work);
-        }
-        self.copy(&pass.copy.as_ref()?.value, step)
-    }
-
-    fn copy(&mut self, copy: &CopyDecl, step: &mut Step) -> Option<Work> {
-        let (from, to) = (self.graph().resource(&copy.from.value)?, self.graph().resource(&copy.to.value)?);
-        let (mips, longer, work) = match (from, to) {
-            (Res::Buffer(a, _), Res::Buffer(b, _)) => {
-                // Of a longer target what it held stays needed.
-                ((0, 1), self.buffers[b].size > self.buffers[a].size, Work::CopyBuffer(a, b))
+        let res = self.graph().resource(&pass.clear.as_ref()?.value)?;
+        let v = pass.value.unwrap_or_default();
+        let (mips, work) = match res {
+            Res::Buffer(buffer, _) => ((0, 1), Work::ClearBuffer(buffer, v.0 as u32)),
+            Res::Texture(texture, _) => {
+                let mips = match &pass.mip {
+                    Some(ex) => (self.numbers.count(ex, 0, "mip"), 1),
+                    None => (0, self.textures[texture].mips),
+                };
+                (mips, Work::ClearTexture(texture, mips, [v.0, v.1, v.2, v.3]))
             }
-            (Res::Texture(from, _), Res::Texture(to, _)) => {
-                let (a, b) = (&self.textures[from], &self.textures[to]);
-                if (a.extent, a.layers, a.mips, a.format.bytes) != (b.extent, b.layers, b.mips, b.format.bytes) {
-                    let (a, b) = (&copy.from.value, &copy.to.value);
-                    self.numbers.error(copy.from.at, format!("'{a}' and '{b}' differ in size, mips or texel size"));
-                }
-                ((0, a.mips), false, Work::CopyTexture(from, to))
-            }
-            _ => return None,
         };
-        step.uses.push(Use::transfer(from, mips, true, false));
-        step.uses.push(Use::transfer(to, mips, longer, true));
+        step.uses.push(Use::clear(res, mips));
         Some(work)
     }
 

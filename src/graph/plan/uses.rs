@@ -17,8 +17,8 @@ pub enum UseKind {
     Depth,
     /// Depth attachment that is only tested.
     DepthRead,
-    /// Clear or copy.
-    Transfer,
+    /// A clear.
+    Clear,
     /// A buffer in a shader.
     Buffer,
     /// Sizes of a dispatch or draw.
@@ -90,11 +90,10 @@ impl Use {
         Use { read, write, overwrite, ..Use::new(Res::Texture(texture, false), (mip, 1), kind, stages, access) }
     }
 
-    /// A clear or one side of a copy: what writes and reads nothing overwrites.
-    pub fn transfer(res: Res, mips: (u32, u32), read: bool, write: bool) -> Use {
-        let access = if write { Access::TRANSFER_WRITE } else { Access::TRANSFER_READ };
-        let overwrite = write && !read;
-        Use { read, write, overwrite, ..Use::new(res, mips, UseKind::Transfer, Stages::ALL_TRANSFER, access) }
+    /// A clear, which replaces the content.
+    pub fn clear(res: Res, mips: (u32, u32)) -> Use {
+        let cleared = Use::new(res, mips, UseKind::Clear, Stages::ALL_TRANSFER, Access::TRANSFER_WRITE);
+        Use { read: false, write: true, overwrite: true, ..cleared }
     }
 
     /// Sizes of a dispatch or draw.

@@ -153,7 +153,6 @@ fn draw_state(pass: &PassDecl, step: &Step, plan: &Plan) -> (DrawState, Attachme
         depth_test: pass.depth.as_ref().map(|d| compare(d.value.test.unwrap_or(Compare::Less))),
         depth_write: pass.depth.as_ref().is_some_and(|d| d.value.write),
         depth_clamp: raster.depth_clamp,
-        depth_bias: raster.depth_bias,
         samples: step.samples,
         conservative: raster.conservative.is_some(),
         discard: raster.discard,

@@ -200,16 +200,6 @@ impl Recorder<'_> {
                     commands.fill(buffer, value);
                 }
             }
-            Work::CopyTexture(a, b) => {
-                if let (Ok(from), Ok(to)) = (image(a), image(b)) {
-                    commands.copy_image(from, layout(a), to, layout(b));
-                }
-            }
-            Work::CopyBuffer(a, b) => {
-                if let (Some(from), Some(to)) = (buffer(a), buffer(b)) {
-                    commands.copy_buffer(from, to, from.size.min(to.size));
-                }
-            }
         }
         if raster {
             commands.end_rendering();
