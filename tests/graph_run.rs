@@ -621,7 +621,7 @@ fn pixels_of_a_triangle_by_samples() {
             buffers: { "hits": (size: "32 * 32 * 4") },
             passes: [
                 (name: "no hits", clear: "hits"),
-                (name: "draw", shaders: ["corner.vert", "hit.frag"], draw: Vertices(3),
+                (name: "draw", shaders: ["corner.vert", "hit.frag"], draw: Fullscreen,
                     raster: (size: (32, 32), samples: "sample_count")),
             ],
         )"#,
@@ -686,15 +686,15 @@ fn raster_stages_targets_and_blending() {
                 (name: "gradient", shaders: ["full.vert", "gradient.frag"], draw: Fullscreen, color: [(to: "gradient")]),
                 (name: "sum begin", clear: "sum", value: (1, 0, 0, 0)),
                 (name: "sum", repeat: 3, shaders: ["full.vert", "index.frag"], draw: Fullscreen, color: [(to: "sum", blend: add)]),
-                (name: "quads", topology: points, shaders: ["point.vert", "quad.geom", "one.frag"], draw: Vertices(6),
+                (name: "quads", topology: points, shaders: ["point.vert", "quad.geom", "one.frag"], draw: Fullscreen,
                     color: [(to: "quads", clear: (0, 0, 0, 0))]),
-                (name: "plain", shaders: ["triangle.vert", "one.frag"], draw: Vertices(3), color: [(to: "plain", clear: (0, 0, 0, 0))]),
+                (name: "plain", shaders: ["triangle.vert", "one.frag"], draw: Fullscreen, color: [(to: "plain", clear: (0, 0, 0, 0))]),
                 (name: "curved", topology: patches, shaders: ["triangle.vert", "split.tesc", "flat.tese", "one.frag"],
-                    draw: Vertices(3), color: [(to: "curved", clear: (0, 0, 0, 0))]),
+                    draw: Fullscreen, color: [(to: "curved", clear: (0, 0, 0, 0))]),
                 (name: "no points", clear: "points"),
-                (name: "points", topology: patches, shaders: ["triangle.vert", "split.tesc", "count.tese"], draw: Vertices(3),
+                (name: "points", topology: patches, shaders: ["triangle.vert", "split.tesc", "count.tese"], draw: Fullscreen,
                     raster: (discard: true)),
-                (name: "near", shaders: ["half.vert"], draw: Vertices(6), depth: (to: "near", clear: 1.0)),
+                (name: "near", shaders: ["half.vert"], draw: Fullscreen, depth: (to: "near", clear: 1.0)),
                 (name: "lit", shaders: ["full.vert", "lit.frag"], draw: Fullscreen, color: [(to: "lit")]),
                 (name: "layers", repeat: 3, shaders: ["full.vert", "layer.frag"], draw: Fullscreen,
                     color: [(to: "layers", layer: "index", mip: 1)]),
@@ -712,7 +712,10 @@ fn raster_stages_targets_and_blending() {
                 "#include \"params.glsl\"
                 layout(location = 0) out vec4 color; void main() { color = vec4(1.0, pass.index, 0.0, 0.25); }",
             ),
-            ("point.vert", "void main() { gl_Position = vec4(float(gl_VertexIndex), 0.0, 0.0, 1.0); gl_PointSize = 1.0; }"),
+            (
+                "point.vert",
+                "void main() { gl_Position = vec4(float(gl_VertexIndex), 0.0, 0.0, 1.0); gl_PointSize = 1.0; }",
+            ),
             (
                 "quad.geom",
                 "layout(points) in;
@@ -761,8 +764,8 @@ fn raster_stages_targets_and_blending() {
             (
                 "half.vert",
                 "void main() {
-                    vec2 corner = vec2[](vec2(0), vec2(1, 0), vec2(0, 1), vec2(0, 1), vec2(1, 0), vec2(1))[gl_VertexIndex];
-                    gl_Position = vec4(corner.x - 1.0, corner.y * 2.0 - 1.0, 0.25, 1.0);
+                    vec2 corner = vec2[](vec2(0, -4), vec2(0, 4), vec2(-4, 0))[gl_VertexIndex];
+                    gl_Position = vec4(corner, 0.25, 1.0);
                 }",
             ),
             (
@@ -801,7 +804,7 @@ fn raster_stages_targets_and_blending() {
     );
     for (i, v) in reds(&mut session, "quads", 0).iter().enumerate() {
         let (x, y) = at(i);
-        assert_eq!(*v, f32::from(u8::from(x < 24 && x % 4 < 2 && (3..8).contains(&y))), "quads at {x}, {y}");
+        assert_eq!(*v, f32::from(u8::from(x < 12 && x % 4 < 2 && (3..8).contains(&y))), "quads at {x}, {y}");
     }
     let plain = reds(&mut session, "plain", 0);
     let split = reds(&mut session, "curved", 0);

@@ -161,7 +161,7 @@ fn work_text(graph: &Graph, step: &Step) -> String {
         Work::Dispatch([x, y, z]) => format!("dispatch {x}x{y}x{z} groups"),
         Work::DispatchIndirect(b, o) => format!("dispatch sized by {} at byte {o}", buffer(b)),
         Work::Scene(which) => format!("draw the scene ({which:?}){view}{samples}").to_lowercase(),
-        Work::Vertices(n) => format!("draw {n} vertices{view}{samples}"),
+        Work::Fullscreen => format!("draw 3 vertices{view}{samples}"),
         Work::DrawIndirect(b, o) => format!("draw sized by {} at byte {o}{view}", buffer(b)),
         Work::ClearTexture(t, ..) => format!("clear {}", texture(t)),
         Work::ClearBuffer(b, v) => format!("fill {} with {v}", buffer(b)),

@@ -166,9 +166,6 @@ impl PassDecl {
         if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = self.dispatch.as_ref().map(|d| &d.value) {
             list.extend([x, y, z]);
         }
-        if let Some(Draw::Vertices(n)) = self.draw.as_ref().map(|d| &d.value) {
-            list.push(n);
-        }
         list.extend(self.bind.0.iter().flat_map(|(_, bind)| bind.value.mip.iter().chain(&bind.value.layer)));
         list.extend(self.color.0.iter().flat_map(|target| target.value.mip.iter().chain(&target.value.layer)));
         list.extend(self.depth.iter().flat_map(|d| &d.value.layer));
@@ -202,8 +199,6 @@ pub enum Draw {
     },
     /// One triangle over the whole picture.
     Fullscreen,
-    /// So many vertices without a buffer.
-    Vertices(Ex),
     /// Counts read from a buffer (VkDrawIndirectCommand).
     Indirect(Command),
 }

@@ -3,7 +3,7 @@
 use super::check::{Check, files_of};
 use crate::diagnostics::{At, Loc, nearest};
 use crate::files::read_input_text;
-use crate::graph::file::{Bind, Command, Dispatch, Draw, PassDecl, Topology};
+use crate::graph::file::{Bind, Command, Dispatch, PassDecl, Topology};
 use crate::shader::{MAX_BYTES, is_inside};
 use crate::vulkan::{Format, Stage};
 
@@ -31,9 +31,6 @@ impl Check<'_> {
             Some(Dispatch::Cover(target)) => drop(self.texture_name(target)),
             Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) => self.exprs([x, y, z]),
             _ => {}
-        }
-        if let Some(Draw::Vertices(n)) = pass.draw.as_ref().map(|d| &d.value) {
-            self.expr(n);
         }
         if let Some((command, _)) = pass.command() {
             self.indirect(command);

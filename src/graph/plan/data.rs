@@ -73,8 +73,8 @@ pub enum Work {
     DispatchIndirect(usize, u64),
     /// The scene's triangles.
     Scene(Which),
-    /// Vertices.
-    Vertices(u32),
+    /// Three vertices.
+    Fullscreen,
     /// Vertices from a buffer.
     DrawIndirect(usize, u64),
     /// Clear mips of a texture.

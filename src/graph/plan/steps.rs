@@ -57,7 +57,7 @@ impl<'a> Planner<'a, '_> {
         let mut step = Step {
             pass: number,
             index,
-            work: Work::Vertices(0),
+            work: Work::Fullscreen,
             cases: Vec::new(),
             bindings: Vec::new(),
             stripped: Vec::new(),
@@ -245,8 +245,7 @@ impl<'a> Planner<'a, '_> {
         if let Some(draw) = &pass.draw {
             return Some(match &draw.value {
                 Draw::Scene { what } => Work::Scene(*what),
-                Draw::Fullscreen => Work::Vertices(3),
-                Draw::Vertices(n) => Work::Vertices(self.numbers.count(n, 0, "vertex count")),
+                Draw::Fullscreen => Work::Fullscreen,
                 Draw::Indirect(command) => {
                     let (buffer, offset) = self.command(command, DRAW_WORDS)?;
                     step.uses.push(Use::indirect(buffer));

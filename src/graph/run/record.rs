@@ -151,7 +151,7 @@ impl Recorder<'_> {
     }
 
     fn record_step(&self, commands: &mut Commands<'_>, step: &Step, gpu: &StepGpu, parity: usize) {
-        let raster = matches!(step.work, Work::Scene(_) | Work::Vertices(_) | Work::DrawIndirect(..));
+        let raster = matches!(step.work, Work::Scene(_) | Work::Fullscreen | Work::DrawIndirect(..));
         if raster {
             let color: Vec<_> = step
                 .color
@@ -183,7 +183,7 @@ impl Recorder<'_> {
                 }
             }
             Work::Scene(which) => self.draw_scene(commands, which),
-            Work::Vertices(n) => commands.draw(n, 1),
+            Work::Fullscreen => commands.draw(3, 1),
             Work::DrawIndirect(b, offset) => {
                 if let Some(buffer) = buffer(b) {
                     commands.draw_indirect(buffer, offset);
