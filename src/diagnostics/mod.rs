@@ -272,6 +272,7 @@ fn explain(error: &ron::Error) -> (String, Option<String>) {
             String::from("expected a comma"),
             Some(String::from("one is missing before this, or a whole number has a point")),
         ),
+        ron::Error::ExpectedRawValue => (String::from("expected one value"), None),
         ron::Error::ExceededRecursionLimit => (TOO_DEEP.into(), None),
         ron::Error::Message(text) => (text.clone(), None),
         other => (other.to_string(), None),

@@ -211,7 +211,7 @@ impl Graph {
     /// Buffers of the checks that are made where these resources are wanted.
     pub fn checked_with(&self, wanted: &[String]) -> Vec<String> {
         let made = |c: &&CheckDecl| c.with.as_ref().is_none_or(|texture| wanted.contains(&texture.value));
-        self.checks.iter().map(|c| &c.value).filter(made).map(|c| c.buffer().to_string()).collect()
+        self.checks.iter().map(|c| &c.value).filter(made).map(|c| c.field.value.buffer.clone()).collect()
     }
 
     /// What a tool is told.

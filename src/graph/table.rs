@@ -1,6 +1,5 @@
 //! Tables of a graph with their bytes, and the cells that these become.
 
-use super::file::{CellKind, ColumnDecl, RowCount, TableDecl};
 use std::fmt;
 
 /// A table with its bytes.
@@ -27,6 +26,30 @@ pub struct Column {
     pub kind: CellKind,
     /// Unit, for people.
     pub unit: String,
+}
+
+/// Type of a column's values: 32-bit numbers, one or several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "named after GLSL's types")]
+pub enum CellKind {
+    Uint,
+    Int,
+    Float,
+    Vec2,
+    Vec3,
+    Vec4,
+}
+
+impl CellKind {
+    /// Size in bytes.
+    pub fn bytes(self) -> usize {
+        match self {
+            CellKind::Uint | CellKind::Int | CellKind::Float => 4,
+            CellKind::Vec2 => 8,
+            CellKind::Vec3 => 12,
+            CellKind::Vec4 => 16,
+        }
+    }
 }
 
 /// A value of a table.
@@ -87,25 +110,19 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
     bytes.try_into().ok().map(u32::from_ne_bytes)
 }
 
-/// A table whose bytes stand in the file; nothing where it goes by names.
-pub fn by_bytes(decl: &TableDecl) -> Option<Table> {
-    let RowCount::Word(rows) = decl.rows.value else { return None };
-    let column = |c: &ColumnDecl| Some(Column { name: c.name.clone(), at: c.at?, kind: c.kind?, unit: c.unit.clone() });
-    let columns = decl.columns.0.iter().map(|c| column(&c.value)).collect::<Option<_>>()?;
-    Some(Table { rows, start: decl.start?, stride: decl.stride?, columns })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn table(text: &str) -> Table {
-        by_bytes(&crate::diagnostics::options().from_str(text).unwrap()).unwrap()
+    fn column((name, at, kind): (&str, u32, CellKind)) -> Column {
+        Column { name: name.into(), at, kind, unit: String::new() }
     }
 
-    const PAIRS: &str = r#"(buffer: "b", rows: 1, start: 8, stride: 16, title: "t", help: "h", columns: [
-        (name: "n", at: 0, as: int), (name: "k", at: 0, as: uint), (name: "x", at: 4, as: float), (name: "v", at: 4, as: vec3),
-    ])"#;
+    fn pairs() -> Table {
+        use CellKind::{Float, Int, Uint, Vec3};
+        let columns = [("n", 0, Int), ("k", 0, Uint), ("x", 4, Float), ("v", 4, Vec3)];
+        Table { rows: 1, start: 8, stride: 16, columns: columns.map(column).into() }
+    }
 
     fn buffer(rows: u32, floats: &[f32]) -> Vec<u8> {
         let mut words = vec![7, rows];
@@ -116,7 +133,7 @@ mod tests {
     #[test]
     fn rows_become_cells() {
         let minus_two = f32::from_bits((-2i32).cast_unsigned());
-        let cells = decode(&table(PAIRS), &buffer(1, &[minus_two, 1.5, 2.0, 3.0]));
+        let cells = decode(&pairs(), &buffer(1, &[minus_two, 1.5, 2.0, 3.0]));
         let vector = Cell::Vector(vec![1.5, 2.0, 3.0]);
         assert_eq!(cells, [[Cell::Int(-2), Cell::Uint(0xffff_fffe), Cell::Float(1.5), vector]]);
         let text: Vec<String> = cells[0].iter().map(ToString::to_string).collect();
@@ -126,12 +143,10 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_not_read() {
         // The word asks for more rows than there are bytes; the last row is cut short; there is no row word at all.
-        assert_eq!(decode(&table(PAIRS), &buffer(u32::MAX, &[0.0; 11])).len(), 2);
-        assert_eq!(decode(&table(PAIRS), &buffer(0, &[0.0; 8])).len(), 0);
-        assert_eq!(decode(&table(PAIRS), &[0; 4]).len(), 0);
-        let dense = table(
-            r#"(buffer: "b", rows: 0, start: 4, stride: 4, title: "t", help: "h", columns: [(name: "n", at: 0, as: uint)])"#,
-        );
+        assert_eq!(decode(&pairs(), &buffer(u32::MAX, &[0.0; 11])).len(), 2);
+        assert_eq!(decode(&pairs(), &buffer(0, &[0.0; 8])).len(), 0);
+        assert_eq!(decode(&pairs(), &[0; 4]).len(), 0);
+        let dense = Table { rows: 0, start: 4, stride: 4, columns: vec![column(("n", 0, CellKind::Uint))] };
         let mut bytes = vec![0xff; 4];
         bytes.resize(4 * (MAX_ROWS + 10), 0);
         assert_eq!(decode(&dense, &bytes).len(), MAX_ROWS);

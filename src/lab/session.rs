@@ -211,9 +211,9 @@ impl Session {
         // Checks of one buffer share one reading of it: each waits for the device.
         let mut read = BTreeMap::new();
         for check in self.graph.checks.iter().map(|c| &c.value) {
-            let Some(buffer) = self.graph.buffer(check.buffer()) else { continue };
+            let Some(buffer) = self.graph.buffer(&check.field.value.buffer) else { continue };
             // Mistakes were told with the shaders; what none of them declares none of them writes.
-            let Ok(Some(word)) = layouts.check(check) else { continue };
+            let Ok(Some(word)) = layouts.check(&check.field) else { continue };
             let bytes = match read.entry(buffer) {
                 Entry::Occupied(entry) => entry.into_mut(),
                 Entry::Vacant(entry) => entry.insert(self.program.read_buffer(buffer)?),

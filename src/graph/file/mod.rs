@@ -9,5 +9,5 @@ mod whole;
 pub use pass::*;
 pub use resource::*;
 pub use section::*;
-pub use table::{CellKind, ColumnDecl, RowCount, TableDecl};
+pub use table::{ColumnDecl, TableDecl};
 pub use whole::{GraphFile, Retired};

@@ -1,6 +1,6 @@
 //! Passes.
 
-use super::resource::{Bind, Command, Compare};
+use super::resource::{Bind, Compare, Path};
 use crate::diagnostics::{Entries, Items, Loc, nested, offset_in_file};
 use crate::graph::expr::Ex;
 use crate::vulkan::Blend;
@@ -150,8 +150,8 @@ impl PassDecl {
         self.bind.0.iter().find(|(key, _)| key.value == name).map(|(_, bind)| &bind.value)
     }
 
-    /// Where the sizes of its dispatch or draw lie, and 32-bit words there, if a buffer holds them.
-    pub fn command(&self) -> Option<(&Command, u32)> {
+    /// The member that holds the sizes of its dispatch or draw, and 32-bit words there, if a buffer holds them.
+    pub fn command(&self) -> Option<(&Loc<Path>, u32)> {
         match (self.dispatch.as_ref().map(|d| &d.value), self.draw.as_ref().map(|d| &d.value)) {
             (Some(Dispatch::Indirect(command)), _) => Some((command, DISPATCH_WORDS)),
             (_, Some(Draw::Indirect(command))) => Some((command, DRAW_WORDS)),
@@ -185,7 +185,7 @@ pub enum Dispatch {
     /// So many groups.
     Groups(Ex, Ex, Ex),
     /// Groups read from a buffer (VkDispatchIndirectCommand).
-    Indirect(Command),
+    Indirect(Loc<Path>),
 }
 
 /// What a raster pass draws.
@@ -200,7 +200,7 @@ pub enum Draw {
     /// One triangle over the whole picture.
     Fullscreen,
     /// Counts read from a buffer (VkDrawIndirectCommand).
-    Indirect(Command),
+    Indirect(Loc<Path>),
 }
 
 /// `Scene` alone is all of it.

@@ -58,27 +58,16 @@ pub struct SceneNeeds {
     pub when: Option<Ex>,
 }
 
-/// A word of a buffer that must be zero: `field`, or `buffer` and `word`.
+/// A 32-bit whole number in a buffer that must be zero.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CheckDecl {
     /// The member of a buffer's block, `buffer.member`.
-    pub field: Option<Loc<Path>>,
-    /// The buffer.
-    pub buffer: Option<Loc<String>>,
-    /// Index of the 32-bit word.
-    pub word: Option<u32>,
+    pub field: Loc<Path>,
     /// A texture: the check is made where it is wanted. Always where nothing is said.
     pub with: Option<Loc<String>>,
     /// What it means when it is not zero, and what to do.
     pub message: String,
-}
-
-impl CheckDecl {
-    /// The buffer.
-    pub fn buffer(&self) -> &str {
-        self.field.as_ref().map_or_else(|| self.buffer.as_ref().map_or("", |b| &b.value), |f| &f.value.buffer)
-    }
 }
 
 /// Settings that make no sense together.

@@ -4,7 +4,7 @@
 use super::linked::{Linked, Target};
 use crate::diagnostics::{Diagnostic, Loc, nearest};
 use crate::graph::definition::Graph;
-use crate::graph::file::{CheckDecl, Command, DISPATCH_WORDS, Path};
+use crate::graph::file::{DISPATCH_WORDS, Path};
 use crate::shader::layout::Scalar;
 use crate::shader::{Compiled, Layout};
 
@@ -65,27 +65,22 @@ impl<'l> Layouts<'l> {
     ///
     /// # Errors
     /// No such member, or one that is something else.
-    pub(in crate::graph) fn command(&self, command: &Command, words: u32) -> Result<Option<u64>, Diagnostic> {
-        if let Some(offset) = command.offset {
-            return Ok(Some(offset));
-        }
-        let Some(found) = self.find(&command.path)? else { return Ok(None) };
-        let block = self.of(&command.path.value.buffer);
+    pub(in crate::graph) fn command(&self, path: &Loc<Path>, words: u32) -> Result<Option<u64>, Diagnostic> {
+        let Some(found) = self.find(path)? else { return Ok(None) };
+        let block = self.of(&path.value.buffer);
         if block.is_some_and(|b| b.has_uints(&found, words)) {
             return Ok(Some(u64::from(found.0)));
         }
         let what = if words == DISPATCH_WORDS { "a dispatch takes its groups" } else { "a draw takes its counts" };
-        let message =
-            format!("'{}' is of type {}; {what} from a uvec{words} or {words} uints", command.path.value, found.1);
-        Err(self.graph.sources.error(command.path.at, message))
+        let message = format!("'{}' is of type {}; {what} from a uvec{words} or {words} uints", path.value, found.1);
+        Err(self.graph.sources.error(path.at, message))
     }
 
     /// The 32-bit word of a check; nothing where no compiled shader declares the buffer.
     ///
     /// # Errors
     /// No such member, or one that is no whole number.
-    pub fn check(&self, check: &CheckDecl) -> Result<Option<u32>, Diagnostic> {
-        let Some(field) = &check.field else { return Ok(check.word) };
+    pub fn check(&self, field: &Loc<Path>) -> Result<Option<u32>, Diagnostic> {
         let Some((offset, layout)) = self.find(field)? else { return Ok(None) };
         match layout {
             Layout::Scalar(Scalar::Uint | Scalar::Int) => Ok(Some(offset / 4)),

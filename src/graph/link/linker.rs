@@ -188,7 +188,7 @@ impl<'g> Linker<'g> {
         let names = pass.color.0.iter().map(|c| &c.value.to).chain(pass.depth.iter().map(|d| &d.value.to));
         let names = names.chain(&pass.clear);
         let names = names.chain(pass.bind.0.iter().map(|(_, bind)| &bind.value.of)).map(|name| &name.value);
-        let names = names.chain(pass.command().map(|(command, _)| &command.path.value.buffer));
+        let names = names.chain(pass.command().map(|(path, _)| &path.value.buffer));
         self.used.extend(names.cloned());
     }
 

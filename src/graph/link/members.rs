@@ -2,8 +2,8 @@
 
 use super::layouts::{Declared, Layouts};
 use crate::diagnostics::{At, Diagnostic, Loc, nearest};
-use crate::graph::file::{BufferSize, CellKind, ColumnDecl, Path, RowCount, TableDecl};
-use crate::graph::table::{Column, Table, by_bytes};
+use crate::graph::file::{BufferSize, ColumnDecl, Path, TableDecl};
+use crate::graph::table::{CellKind, Column, Table};
 use crate::shader::Layout;
 use crate::shader::layout::Scalar;
 use std::collections::BTreeSet;
@@ -13,27 +13,13 @@ use std::collections::BTreeSet;
 /// # Errors
 /// Members that are not there, or that no table can show.
 fn resolve(decl: &TableDecl, layouts: &Layouts<'_>) -> Result<Option<Table>, Vec<Diagnostic>> {
-    let Some(list) = &decl.list else { return Ok(by_bytes(decl)) };
     let error = |at: At, message: String| vec![layouts.graph.sources.error(at, message)];
-    let rows = match &decl.rows.value {
-        RowCount::Word(word) => Some(*word),
-        RowCount::Field(path) => {
-            let path = Loc { value: path.clone(), at: decl.rows.at };
-            match layouts.find(&path).map_err(|e| vec![e])? {
-                Some((byte, Layout::Scalar(Scalar::Uint))) => Some(byte / 4),
-                Some((_, other)) => {
-                    return Err(error(
-                        path.at,
-                        format!("'{}' is of type {other}; rows are counted by a uint", path.value),
-                    ));
-                }
-                None => None,
-            }
-        }
-    };
-    let (Some(rows), Some((start, found))) = (rows, layouts.find(list).map_err(|e| vec![e])?) else {
-        return Ok(None);
-    };
+    let find = |path| layouts.find(path).map_err(|e| vec![e]);
+    let (list, count) = (&decl.list, &decl.rows);
+    let (Some((byte, rows)), Some((start, found))) = (find(count)?, find(list)?) else { return Ok(None) };
+    if rows != Layout::Scalar(Scalar::Uint) {
+        return Err(error(count.at, format!("'{}' is of type {rows}; rows are counted by a uint", count.value)));
+    }
     let Layout::Array { of, stride, .. } = found else {
         return Err(error(list.at, format!("'{}' is of type {found}; the rows of a table are an array's", list.value)));
     };
@@ -44,7 +30,7 @@ fn resolve(decl: &TableDecl, layouts: &Layouts<'_>) -> Result<Option<Table>, Vec
             Err((message, help)) => wrong.push(layouts.graph.sources.error(column.at, message).help(help)),
         }
     }
-    if wrong.is_empty() { Ok(Some(Table { rows, start, stride, columns })) } else { Err(wrong) }
+    if wrong.is_empty() { Ok(Some(Table { rows: byte / 4, start, stride, columns })) } else { Err(wrong) }
 }
 
 /// With its bytes in a row.
@@ -87,17 +73,17 @@ pub(super) fn mistakes(
     let mut found = Vec::new();
     let mut named: Vec<&Loc<Path>> = Vec::new();
     let commands = graph.passes.iter().filter_map(|pass| pass.value.command());
-    for (command, words) in commands.filter(|(c, _)| c.offset.is_none()) {
-        found.extend(layouts.command(command, words).err());
-        named.push(&command.path);
+    for (path, words) in commands {
+        found.extend(layouts.command(path, words).err());
+        named.push(path);
     }
-    for check in &graph.checks {
-        found.extend(layouts.check(&check.value).err());
-        named.extend(&check.value.field);
+    for field in graph.checks.iter().map(|check| &check.value.field) {
+        found.extend(layouts.check(field).err());
+        named.push(field);
     }
     for table in &graph.tables {
         found.extend(resolve(&table.value, layouts).err().into_iter().flatten());
-        named.extend(table.value.paths());
+        named.push(&table.value.list);
     }
     let mut buffers: BTreeSet<&str> = named.iter().map(|path| path.value.buffer.as_str()).collect();
     for (name, buffer) in &graph.buffers {

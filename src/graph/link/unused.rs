@@ -17,8 +17,8 @@ pub(super) fn unused(graph: &Graph, used: &HashSet<String>, shaders: &[Texts]) -
     wanted.extend(graph.output.as_deref());
     wanted.extend(graph.hdr.as_deref());
     wanted.extend(graph.parts.iter().map(|p| p.texture.as_str()));
-    wanted.extend(graph.checks.iter().map(|c| c.value.buffer()));
-    wanted.extend(graph.tables.iter().map(|t| t.value.buffer()));
+    wanted.extend(graph.checks.iter().map(|c| c.value.field.value.buffer.as_str()));
+    wanted.extend(graph.tables.iter().map(|t| t.value.list.value.buffer.as_str()));
     let of_tools = graph.tools.iter().flat_map(|t| &t.1.value.resources.0);
     wanted.extend(of_tools.map(|(_, name)| name.value.as_str()));
     let mut findings = Vec::new();

@@ -231,12 +231,8 @@ impl<'g> Check<'g> {
         tool.settings.0.iter().for_each(|view| self.settings(&view.value.set));
     }
 
-    pub(super) fn check(&mut self, check: &CheckDecl, at: At) {
-        match (&check.field, &check.buffer, check.word) {
-            (Some(field), None, None) => self.member(field),
-            (None, Some(buffer), Some(_)) => drop(self.buffer_name(buffer)),
-            _ => self.error(at, String::from("a check needs either field, or buffer and word")),
-        }
+    pub(super) fn check(&mut self, check: &CheckDecl) {
+        self.member(&check.field);
         if let Some(texture) = &check.with {
             self.texture_name(texture);
         }
@@ -252,12 +248,7 @@ impl<'g> Check<'g> {
 
     pub(super) fn tables(&mut self, tables: &[Loc<TableDecl>]) {
         for (i, table) in tables.iter().enumerate() {
-            if let Some(name) = &table.value.buffer {
-                self.buffer_name(name);
-            }
-            for path in table.value.paths() {
-                self.member(path);
-            }
+            self.member(&table.value.list);
             if tables[..i].iter().any(|t| t.value.title == table.value.title) {
                 self.error(table.at, format!("two tables have the title '{}'", table.value.title));
             }

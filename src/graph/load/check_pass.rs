@@ -3,7 +3,7 @@
 use super::check::{Check, files_of};
 use crate::diagnostics::{At, Loc, nearest};
 use crate::files::read_input_text;
-use crate::graph::file::{Bind, Command, Dispatch, PassDecl, Topology};
+use crate::graph::file::{Bind, Dispatch, PassDecl, Path, Topology};
 use crate::shader::{MAX_BYTES, is_inside};
 use crate::vulkan::{Format, Stage};
 
@@ -116,16 +116,11 @@ impl Check<'_> {
         }
     }
 
-    fn indirect(&mut self, command: &Command) {
-        let (path, at) = (&command.path.value, command.path.at);
-        if self.buffer_name(&Loc { value: path.buffer.clone(), at }) {
-            if !self.graph.buffers.iter().any(|(n, b)| *n == path.buffer && b.value.indirect) {
-                self.error(at, format!("buffer '{}' is not declared with `indirect: true`", path.buffer));
-            }
-            if path.member.is_empty() == command.offset.is_none() {
-                let message = format!("say where: Indirect(\"{0}.member\"), or Indirect(\"{0}\", byte)", path.buffer);
-                self.error(at, message);
-            }
+    fn indirect(&mut self, path: &Loc<Path>) {
+        self.member(path);
+        let buffer = &path.value.buffer;
+        if self.graph.buffers.iter().any(|(name, b)| name == buffer && !b.value.indirect) {
+            self.error(path.at, format!("buffer '{buffer}' is not declared with `indirect: true`"));
         }
     }
 

@@ -110,7 +110,7 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         check.tool(&tool.value);
     }
     for item in &graph.checks {
-        check.check(&item.value, item.at);
+        check.check(&item.value);
     }
     check.exprs(graph.refuse.iter().map(|r| &r.when));
     if let Some(name) = &file.pointer {

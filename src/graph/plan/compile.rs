@@ -81,7 +81,6 @@ pub fn plan(
         numbers.errors.extend(nobody_writes(set, wanted, &steps, *res));
     }
     written_anew(&textures, &buffers, &mut steps);
-    checks(&mut numbers, &buffers);
     let max_edge = max_edge(&mut numbers);
     if !numbers.errors.is_empty() {
         return Err(numbers.errors);
@@ -148,18 +147,6 @@ fn written_anew(textures: &[TexturePlan], buffers: &[BufferPlan], steps: &mut [S
         let this = |u: &&mut Use| u.res == res && u.mips == (mip, 1);
         if let Some(first) = steps.iter_mut().flat_map(|s| &mut s.uses).filter(this).find(|u| u.write) {
             first.overwrite |= !first.read;
-        }
-    }
-}
-
-fn checks(numbers: &mut Numbers<'_>, buffers: &[BufferPlan]) {
-    let graph = numbers.set.graph;
-    for check in graph.checks.iter().map(|c| &c.value) {
-        let size = graph.buffer(check.buffer()).map_or(0, |b| buffers[b].size);
-        if let (Some(buffer), Some(word)) = (&check.buffer, check.word)
-            && (u64::from(word) + 1) * 4 > size
-        {
-            numbers.error(buffer.at, format!("'{}' has {size} bytes and no word {word}", buffer.value));
         }
     }
 }

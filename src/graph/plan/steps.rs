@@ -7,7 +7,7 @@ use super::uses::{Use, UseKind, merge};
 use crate::diagnostics::{At, Loc};
 use crate::graph::definition::{Graph, Res};
 use crate::graph::expr::{Ex, Var};
-use crate::graph::file::{Command, DISPATCH_WORDS, DRAW_WORDS, Dispatch, Draw, PassDecl};
+use crate::graph::file::{DISPATCH_WORDS, DRAW_WORDS, Dispatch, Draw, PassDecl, Path};
 use crate::graph::link::{Bound, BoundCase, Layouts, Linked, Target};
 use crate::shader::Resource;
 use crate::vulkan::{DeviceInfo, Stage, vk};
@@ -227,8 +227,8 @@ impl<'a> Planner<'a, '_> {
         let local = link.stages.iter().find(|s| s.stage == Stage::Compute).map_or([1; 3], |s| s.interface.local_size);
         if let Some(dispatch) = &pass.dispatch {
             let threads = match &dispatch.value {
-                Dispatch::Indirect(command) => {
-                    let (buffer, offset) = self.command(command, DISPATCH_WORDS)?;
+                Dispatch::Indirect(path) => {
+                    let (buffer, offset) = self.command(path, DISPATCH_WORDS)?;
                     step.uses.push(Use::indirect(buffer));
                     return Some(Work::DispatchIndirect(buffer, offset));
                 }
@@ -246,8 +246,8 @@ impl<'a> Planner<'a, '_> {
             return Some(match &draw.value {
                 Draw::Scene { what } => Work::Scene(*what),
                 Draw::Fullscreen => Work::Fullscreen,
-                Draw::Indirect(command) => {
-                    let (buffer, offset) = self.command(command, DRAW_WORDS)?;
+                Draw::Indirect(path) => {
+                    let (buffer, offset) = self.command(path, DRAW_WORDS)?;
                     step.uses.push(Use::indirect(buffer));
                     Work::DrawIndirect(buffer, offset)
                 }
@@ -270,11 +270,11 @@ impl<'a> Planner<'a, '_> {
     }
 
     /// The buffer and byte of a command of so many 32-bit words, which lies in it.
-    fn command(&mut self, command: &Command, words: u32) -> Option<(usize, u64)> {
-        let at = command.path.at;
-        let buffer = self.graph().buffer(&command.path.value.buffer)?;
+    fn command(&mut self, path: &Loc<Path>, words: u32) -> Option<(usize, u64)> {
+        let at = path.at;
+        let buffer = self.graph().buffer(&path.value.buffer)?;
         let name = &self.graph().buffers[buffer].0;
-        let offset = match self.layouts.command(command, words) {
+        let offset = match self.layouts.command(path, words) {
             Ok(Some(offset)) => offset,
             Ok(None) => {
                 self.numbers.error(at, format!("no shader that runs declares '{name}', so its members have no place"));
@@ -286,9 +286,7 @@ impl<'a> Planner<'a, '_> {
             }
         };
         let (size, bytes) = (self.buffers[buffer].size, u64::from(words) * 4);
-        if !offset.is_multiple_of(4) {
-            self.numbers.error(at, format!("a command begins at a multiple of 4 bytes, which {offset} is not"));
-        } else if offset.checked_add(bytes).is_none_or(|end| end > size) {
+        if offset + bytes > size {
             self.numbers.error(
                 at,
                 format!("a command of {bytes} bytes at byte {offset} ends outside '{name}', which has {size} bytes"),

@@ -183,7 +183,7 @@ impl Run<'_> {
         }
         if number == 0
             && let Some(number) = self.desired.table
-            && let Some(name) = session.graph.tables.get(number).map(|t| t.value.buffer().to_string())
+            && let Some(name) = session.graph.tables.get(number).map(|t| t.value.list.value.buffer.clone())
             && let Some(table) = session.table(number)
         {
             let bytes = session.buffer(&name)?;

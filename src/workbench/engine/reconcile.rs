@@ -21,7 +21,7 @@ impl Run<'_> {
             && let (Some(table), Some(loaded)) = (self.desired.table, &self.sides[0].loaded)
             && let Some(table) = loaded.graph.tables.get(table)
         {
-            wanted.push(table.value.buffer().to_string());
+            wanted.push(table.value.list.value.buffer.clone());
         }
         Key {
             graph: side.graph.clone(),

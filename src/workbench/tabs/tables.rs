@@ -1,8 +1,7 @@
 //! Buffers of the graph as tables.
 
 use super::Tab;
-use crate::graph::file::CellKind;
-use crate::graph::table::{Cell, Column, Table, decode};
+use crate::graph::table::{Cell, CellKind, Column, Table, decode};
 use crate::workbench::Workbench;
 use egui::{Align2, FontId, Ui};
 use egui_extras::{Column as Width, TableBuilder};
@@ -253,10 +252,9 @@ mod tests {
     use super::*;
 
     fn table() -> (Table, Vec<Vec<Cell>>) {
-        let text = r#"(buffer: "b", rows: 0, start: 4, stride: 16, title: "t", help: "h", columns: [
-            (name: "cone", at: 0, as: uint), (name: "at", at: 4, as: vec3, unit: "m")])"#;
-        let decl: crate::graph::file::TableDecl = crate::diagnostics::options().from_str(text).unwrap();
-        let table = crate::graph::table::by_bytes(&decl).unwrap();
+        let column = |name: &str, at, kind, unit: &str| Column { name: name.into(), at, kind, unit: unit.into() };
+        let columns = vec![column("cone", 0, CellKind::Uint, ""), column("at", 4, CellKind::Vec3, "m")];
+        let table = Table { rows: 0, start: 4, stride: 16, columns };
         let rows: [(u32, [f32; 3]); 3] = [(2, [0.1, 1.0, 2.0]), (0, [3.0, 1e-7, -4.0]), (2, [f32::NAN, 0.0, 7.0])];
         let mut bytes = 3_u32.to_ne_bytes().to_vec();
         for (cone, at) in rows {
