@@ -125,7 +125,7 @@ fn bench() -> Bench {
         ("configs/run.ron", RUN),
         ("shaders/prepare.comp", PREPARE),
         ("shaders/fill.comp", FILL),
-        ("shaders/include/light.glsl", LIGHT),
+        ("shaders/light.glsl", LIGHT),
         ("shaders/reduce.comp", REDUCE),
         ("shaders/full.vert", FULL),
         ("shaders/scatter.frag", SCATTER),
@@ -215,12 +215,12 @@ fn a_graph_is_read_again_when_one_of_its_files_has_changed() {
     let first = read().unwrap();
     assert!(Arc::ptr_eq(&first, &read().unwrap()), "nothing has changed");
     // A shader is no part of it, but whether the file of a module is there.
-    let bench = bench.edit("shaders/include/light.glsl", "2.0", "3.0");
+    let bench = bench.edit("shaders/light.glsl", "2.0", "3.0");
     assert!(Arc::ptr_eq(&first, &read().unwrap()), "a shader has changed");
     let bench = bench.edit("passes/shared.ron", "default: 0.5", "default: 0.75");
     let second = read().unwrap();
     assert_eq!([&first, &second].map(|g| g.params.get("level").unwrap().to_string()), ["0.5", "0.75"]);
-    let gone = bench.path("shaders/include/light.glsl");
+    let gone = bench.path("shaders/light.glsl");
     std::fs::rename(&gone, gone.with_extension("gone")).unwrap();
     assert!(read().unwrap_err()[0].message.contains("no shader file 'light.glsl'"));
     std::fs::rename(gone.with_extension("gone"), &gone).unwrap();
@@ -866,21 +866,21 @@ fn texts_of_shaders() {
     shaders/fill.comp:6: error: '' :  syntax error, unexpected RIGHT_BRACE, expecting RIGHT_PAREN or COMMA
         | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light() }
     ");
-    assert_snapshot!(shader("include/light.glsl", "params.level *", "params.levle *"), @r"
-    shaders/include/light.glsl:3: error: 'levle' : no such field in structure 'params'
+    assert_snapshot!(shader("light.glsl", "params.level *", "params.levle *"), @r"
+    shaders/light.glsl:3: error: 'levle' : no such field in structure 'params'
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
         = help: did you mean 'level'?
-    shaders/include/light.glsl:3: error: '*' :  wrong operand types: no operation '*' exists that takes a left-hand operand of type 'layout( column_major std140) uniform block{...}' and a right operand of type ' temp float' (or there is no acceptable conversion)
+    shaders/light.glsl:3: error: '*' :  wrong operand types: no operation '*' exists that takes a left-hand operand of type 'layout( column_major std140) uniform block{...}' and a right operand of type ' temp float' (or there is no acceptable conversion)
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:3: error: 'constructor' : can't convert
+    shaders/light.glsl:3: error: 'constructor' : can't convert
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:3: error: ' temp 4-component vector of float' : cannot construct with these arguments
+    shaders/light.glsl:3: error: ' temp 4-component vector of float' : cannot construct with these arguments
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:3: error: 'return' : cannot convert return value to function return type
+    shaders/light.glsl:3: error: 'return' : cannot convert return value to function return type
         | return vec4(params.levle * (params.bright ? 2.0 : 1.0));
     ");
-    assert_snapshot!(shader("include/light.glsl", "vec4 light", "vec3 light"), @r"
-    shaders/include/light.glsl:3: error: 'return' : cannot convert return value to function return type
+    assert_snapshot!(shader("light.glsl", "vec4 light", "vec3 light"), @r"
+    shaders/light.glsl:3: error: 'return' : cannot convert return value to function return type
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
     shaders/fill.comp:6: error: 'imageStore' : no matching overloaded function found
         | void main() { imageStore(grid, ivec3(gl_GlobalInvocationID), light()); }
@@ -898,26 +898,26 @@ fn texts_of_shaders() {
     passes/graph.ron:19:37: error: shader 'prepare.comp' has no line `#version 460`, which must be its first
         |         (name: "prepare", shaders: ["prepare.comp"], dispatch: Groups(1, 1, 1)),
     "#);
-    assert_snapshot!(shader("include/light.glsl", "#include", "#include \"light.glsl\"\n#include"), @r#"
-    shaders/include/light.glsl:1: error: '#include' : too many includes (4096 at most, 32 of them nested): light.glsl > light.glsl > light.glsl > light.glsl > ... > light.glsl > light.glsl > light.glsl for header name: light.glsl
+    assert_snapshot!(shader("light.glsl", "#include", "#include \"light.glsl\"\n#include"), @r#"
+    shaders/light.glsl:1: error: '#include' : too many includes (4096 at most, 32 of them nested): light.glsl > light.glsl > light.glsl > light.glsl > ... > light.glsl > light.glsl > light.glsl for header name: light.glsl
         | #include "light.glsl"
-    shaders/include/light.glsl:4: error: 'params' : undeclared identifier
+    shaders/light.glsl:4: error: 'params' : undeclared identifier
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:4: error: 'level' : vector swizzle too long
+    shaders/light.glsl:4: error: 'level' : vector swizzle too long
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:4: error: 'level' : unknown swizzle selection
+    shaders/light.glsl:4: error: 'level' : unknown swizzle selection
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:4: error: 'bright' : vector swizzle too long
+    shaders/light.glsl:4: error: 'bright' : vector swizzle too long
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:4: error: 'bright' : unknown swizzle selection
+    shaders/light.glsl:4: error: 'bright' : unknown swizzle selection
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:4: error: 'bright' : vector swizzle selection out of range
+    shaders/light.glsl:4: error: 'bright' : vector swizzle selection out of range
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:4: error: '' : boolean expression expected
+    shaders/light.glsl:4: error: '' : boolean expression expected
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
-    shaders/include/light.glsl:3: error: 'light' : function already has a body
+    shaders/light.glsl:3: error: 'light' : function already has a body
         | vec4 light() {
-    shaders/include/light.glsl:4: error: 'return' : void function cannot return a value
+    shaders/light.glsl:4: error: 'return' : void function cannot return a value
         | return vec4(params.level * (params.bright ? 2.0 : 1.0));
     "#);
     assert_snapshot!(shader("prepare.comp", "void main()", "void other()"), @r"
@@ -928,12 +928,12 @@ fn texts_of_shaders() {
     assert_snapshot!(
         bench()
             .edit("shaders/reduce.comp", "#version 460", "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"light.glsl\"")
-            .edit("shaders/include/light.glsl", "return vec4(", "return vec5(")
+            .edit("shaders/light.glsl", "return vec4(", "return vec5(")
             .findings(),
         @r"
-        shaders/include/light.glsl:3: error: 'vec5' : no matching overloaded function found
+        shaders/light.glsl:3: error: 'vec5' : no matching overloaded function found
             | return vec5(params.level * (params.bright ? 2.0 : 1.0));
-        shaders/include/light.glsl:3: error: 'return' : cannot convert return value to function return type
+        shaders/light.glsl:3: error: 'return' : cannot convert return value to function return type
             | return vec5(params.level * (params.bright ? 2.0 : 1.0));
         "
     );

@@ -35,7 +35,7 @@ impl Bench {
             bench.write(&format!("shaders/{name}"), &glsl(text));
         }
         let scene = std::fs::read_to_string(common::root().join("shaders/common/scene.glsl")).unwrap();
-        bench.write("shaders/include/scene.glsl", &scene);
+        bench.write("shaders/scene.glsl", &scene);
         bench
     }
 

@@ -60,9 +60,9 @@ impl Project {
         let project = Project(tempfile::tempdir().unwrap());
         project.write("passes/graph.ron", GRAPH);
         project.write("shaders/fill.comp", &FILL.replace("scene.sky", "sceneInfo.sky"));
-        project.write("shaders/include/wave.glsl", WAVE);
+        project.write("shaders/wave.glsl", WAVE);
         let include = std::fs::read_to_string(root().join("shaders/common/scene.glsl")).unwrap();
-        project.write("shaders/include/scene.glsl", &include);
+        project.write("shaders/scene.glsl", &include);
         project.write("configs/run.ron", "(graph: \"graph.ron\", scene: \"furnace\", size: (64, 64))");
         project
     }
@@ -389,15 +389,15 @@ fn a_capture_is_replayed_texel_by_texel() {
         "experiment.ron",
         "graph/passes/graph.ron",
         "graph/shaders/fill.comp",
-        "graph/shaders/include/scene.glsl",
-        "graph/shaders/include/wave.glsl",
+        "graph/shaders/scene.glsl",
+        "graph/shaders/wave.glsl",
         "picture.exr",
         "picture.png",
         "resources/light.exr",
         "stats.json",
     ];
     assert_eq!(files, expected);
-    assert_eq!(project.text("captures/one/graph/shaders/include/wave.glsl"), WAVE);
+    assert_eq!(project.text("captures/one/graph/shaders/wave.glsl"), WAVE);
     assert_eq!((manifest.frames, manifest.step, manifest.size), (3, 0.1, [64, 64]));
     assert_eq!((manifest.scene.spec.as_str(), manifest.scene.sha256.len()), ("furnace", 64));
     let when = manifest.when.as_bytes();
@@ -409,7 +409,7 @@ fn a_capture_is_replayed_texel_by_texel() {
     assert_eq!((&stats["schema"], &stats["experiment"]), (&"conelab-stats-1".into(), &"run".into()));
 
     // The project does not matter any more, nor where the capture is.
-    project.edit("shaders/include/wave.glsl", "0.3", "0.7");
+    project.edit("shaders/wave.glsl", "0.3", "0.7");
     project.edit("passes/graph.ron", "default: 0.5", "default: 0.25");
     let elsewhere = tempfile::tempdir().unwrap();
     std::fs::rename(&here, elsewhere.path().join("moved")).unwrap();
@@ -424,15 +424,15 @@ fn a_capture_is_replayed_texel_by_texel() {
     assert_eq!(picture("again/picture.png"), picture("moved/picture.png"));
 
     // A shader that was changed is named, and what it did is counted.
-    let shader = elsewhere.path().join("moved/graph/shaders/include/wave.glsl");
+    let shader = elsewhere.path().join("moved/graph/shaders/wave.glsl");
     std::fs::write(&shader, WAVE.replace("0.3", "0.4")).unwrap();
-    std::fs::write(elsewhere.path().join("moved/graph/shaders/include/extra.glsl"), "").unwrap();
+    std::fs::write(elsewhere.path().join("moved/graph/shaders/extra.glsl"), "").unwrap();
     let output = replay(&[]).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stdout).unwrap();
     let lines: Vec<&str> = said.lines().collect();
-    assert_eq!(lines[0], "graph/shaders/include/wave.glsl has changed since the capture");
-    assert_eq!(lines[1], "graph/shaders/include/extra.glsl has been added since the capture");
+    assert_eq!(lines[0], "graph/shaders/wave.glsl has changed since the capture");
+    assert_eq!(lines[1], "graph/shaders/extra.glsl has been added since the capture");
     assert!(
         lines[2].starts_with("picture.png: ") && lines[2].contains(" of 4096 texels differ, by at most "),
         "{said}"

@@ -52,12 +52,9 @@ pub fn module_include(name: &str) -> String {
     format!("modules/{name}.glsl")
 }
 
-/// Path of a shader or include in a folder of shaders; older graphs keep includes in `include/`.
+/// Path of a shader or include in a folder of shaders.
 pub fn find(folder: &Path, name: &str) -> Option<PathBuf> {
-    if !is_inside(name) {
-        return None;
-    }
-    [folder.join("include").join(name), folder.join(name)].into_iter().find(|p| p.is_file())
+    is_inside(name).then(|| folder.join(name)).filter(|path| path.is_file())
 }
 
 /// Whether a name stays inside its folder. Names come from the text of graphs and shaders.
@@ -297,11 +294,7 @@ impl ShaderCompiler {
                 let name = folder.join(entry.file_name());
                 match entry.file_type() {
                     Ok(kind) if kind.is_dir() && folder.components().count() < 4 => folders.push(name),
-                    Ok(kind) if kind.is_file() => {
-                        // Those in `include` go by their bare names.
-                        let name = name.strip_prefix("include").unwrap_or(&name);
-                        names.push(name.to_string_lossy().into_owned());
-                    }
+                    Ok(kind) if kind.is_file() => names.push(name.to_string_lossy().into_owned()),
                     _ => {}
                 }
             }

@@ -11,7 +11,7 @@ use std::path::{Component, Path, PathBuf};
 pub struct Folders {
     /// Graphs.
     pub passes: PathBuf,
-    /// Shaders, with `include/` inside.
+    /// Shaders.
     pub shaders: PathBuf,
 }
 

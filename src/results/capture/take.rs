@@ -216,9 +216,7 @@ fn write_sources(
     let others: Vec<_> = options.filter_map(|file| compiler.texts(file, &generated).ok()).collect();
     let compiled = linked.iter().flat_map(|l| &l.stages).map(|s| &*s.texts);
     for (name, text) in others.iter().chain(compiled).flatten().filter(|t| !generated.contains_key(t.0)) {
-        let include = Path::new("include").join(name);
-        let place = if folders.shaders.join(&include).is_file() { include } else { PathBuf::from(name) };
-        wanted.insert(Path::new("shaders").join(place), text);
+        wanted.insert(Path::new("shaders").join(name), text);
     }
     // Graphs without shaders have an empty folder.
     std::fs::create_dir_all(sources.join("shaders")).map_err(|e| failed(&sources, e))?;
