@@ -63,7 +63,6 @@ pub struct GraphFile {
     /// Parameters that cost time and quality, and the values worth trying.
     pub fit: Entries<Items<RawText>>,
     /// Settings from the ideal to the method: what each step costs is the method's error, split.
-    #[serde(alias = "ladder")]
     pub ablation: Items<ViewDecl>,
     /// What tools are told, by their names.
     pub tools: Entries<ToolDecl>,
