@@ -477,9 +477,9 @@ impl Commands<'_> {
         unsafe { self.gpu.device.cmd_fill_buffer(self.handle, buffer.handle, 0, vk::WHOLE_SIZE, value) };
     }
 
-    /// Clears mips of an image in a layout.
-    pub fn clear(&mut self, image: &Image, layout: vk::ImageLayout, value: vk::ClearColorValue, mips: (u32, u32)) {
-        let range = vk::ImageSubresourceRange { base_mip_level: mips.0, level_count: mips.1, ..whole(image) };
+    /// Clears an image in a layout.
+    pub fn clear(&mut self, image: &Image, layout: vk::ImageLayout, value: vk::ClearColorValue) {
+        let range = whole(image);
         unsafe { self.gpu.device.cmd_clear_color_image(self.handle, image.handle, layout, &value, &[range]) };
     }
 

@@ -120,8 +120,6 @@ pub struct PassDecl {
     pub raster: Raster,
     /// The texture or buffer that is cleared.
     pub clear: Option<Loc<String>>,
-    /// The mip that is cleared; all when absent.
-    pub mip: Option<Ex>,
     /// The value it is cleared to.
     pub value: Option<(f64, f64, f64, f64)>,
     /// Textures that are read in place of those it writes while it is off, where both have the same shape: a filter's input.
@@ -161,8 +159,7 @@ impl PassDecl {
 
     /// All its expressions.
     pub fn expressions(&self) -> Vec<&Ex> {
-        let mut list: Vec<&Ex> =
-            self.conditions().chain(self.over_frames()).chain(&self.repeat).chain(&self.mip).collect();
+        let mut list: Vec<&Ex> = self.conditions().chain(self.over_frames()).chain(&self.repeat).collect();
         if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = self.dispatch.as_ref().map(|d| &d.value) {
             list.extend([x, y, z]);
         }

@@ -17,7 +17,7 @@ impl Check<'_> {
             _ => self
                 .error(at, format!("pass '{name}' does several things: dispatch, draw and clear exclude each other")),
         }
-        self.exprs(pass.conditions().chain(pass.over_frames()).chain(&pass.repeat).chain(&pass.mip));
+        self.exprs(pass.conditions().chain(pass.over_frames()).chain(&pass.repeat));
         if pass.repeat.is_some() && pass.each_mip.is_some() {
             self.error(at, format!("pass '{name}' has both repeat and each_mip"));
         }

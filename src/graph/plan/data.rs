@@ -77,8 +77,8 @@ pub enum Work {
     Fullscreen,
     /// Vertices from a buffer.
     DrawIndirect(usize, u64),
-    /// Clear mips of a texture.
-    ClearTexture(usize, (u32, u32), [f64; 4]),
+    /// Clear a texture.
+    ClearTexture(usize, [f64; 4]),
     /// Fill a buffer.
     ClearBuffer(usize, u32),
 }

@@ -256,16 +256,12 @@ impl<'a> Planner<'a, '_> {
         let res = self.graph().resource(&pass.clear.as_ref()?.value)?;
         let v = pass.value.unwrap_or_default();
         let (mips, work) = match res {
-            Res::Buffer(buffer, _) => ((0, 1), Work::ClearBuffer(buffer, v.0 as u32)),
+            Res::Buffer(buffer, _) => (1, Work::ClearBuffer(buffer, v.0 as u32)),
             Res::Texture(texture, _) => {
-                let mips = match &pass.mip {
-                    Some(ex) => (self.numbers.count(ex, 0, "mip"), 1),
-                    None => (0, self.textures[texture].mips),
-                };
-                (mips, Work::ClearTexture(texture, mips, [v.0, v.1, v.2, v.3]))
+                (self.textures[texture].mips, Work::ClearTexture(texture, [v.0, v.1, v.2, v.3]))
             }
         };
-        step.uses.push(Use::clear(res, mips));
+        step.uses.push(Use::clear(res, (0, mips)));
         Some(work)
     }
 

@@ -193,7 +193,7 @@ impl Program {
                 if self.plan.textures[t].format.is_depth() {
                     commands.clear_depth(image, dst, 1.0);
                 } else {
-                    commands.clear(image, dst, vk::ClearColorValue::default(), (0, vk::REMAINING_MIP_LEVELS));
+                    commands.clear(image, dst, vk::ClearColorValue::default());
                 }
                 let barriers: Vec<_> = (0u32..)
                     .zip(&self.resting[places])

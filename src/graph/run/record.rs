@@ -189,10 +189,10 @@ impl Recorder<'_> {
                     commands.draw_indirect(buffer, offset);
                 }
             }
-            Work::ClearTexture(t, mips, value) => {
+            Work::ClearTexture(t, value) => {
                 if let Ok(image) = image(t) {
                     let value = clear_value(self.plan.textures[t].format.channels, value);
-                    commands.clear(image, layout(t), value, mips);
+                    commands.clear(image, layout(t), value);
                 }
             }
             Work::ClearBuffer(b, value) => {
