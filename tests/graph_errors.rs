@@ -1066,7 +1066,7 @@ fn keys_of_bind_that_no_shader_uses() {
         = help: known: count, grid, last
     "#);
     assert_snapshot!(graph("bind: { \"src\": (of: \"grid\", mip: \"mip - 1\")", "bind: { \"src\": (of: \"work\", mip: \"mip - 1\")"), @r#"
-    passes/graph.ron:22:33: error: 'work' is a buffer: it has no mip, layer, format or sampler
+    passes/graph.ron:22:33: error: 'work' is a buffer: it has no mip, format or sampler
         |             bind: { "src": (of: "work", mip: "mip - 1"), "dst": (of: "grid", mip: "mip") }),
     "#);
 }
@@ -1155,7 +1155,7 @@ fn sizes() {
         |             raster: (size: ("cells * 1000", "cells"), samples: "4")),
     "#);
     assert_snapshot!(graph("mip: \"mip - 1\"", "mip: \"mip + 1\""), @r#"
-    passes/graph.ron:22:33: error: mip 7 or layer 0 of 'grid' does not exist: it has 7 mips and 1 layers
+    passes/graph.ron:22:33: error: 'grid' has 7 mips, counted from 0, and no mip 7
         |             bind: { "src": (of: "grid", mip: "mip + 1"), "dst": (of: "grid", mip: "mip") }),
     "#);
     assert_snapshot!(graph("Groups(1, 1, 1)", "Groups(100000, 1, 1)"), @r#"
@@ -1800,7 +1800,7 @@ fn aliases_and_samplers() {
         = help: declare it as 3D
     ");
     assert_snapshot!(alias("\"ghost\": [(when: \"bright\", of: \"work\", mip: 1), (of: \"depth\", history: true)]"), @r#"
-    passes/graph.ron:9:47: error: 'work' is a buffer: it has no mip, layer, format or sampler
+    passes/graph.ron:9:47: error: 'work' is a buffer: it has no mip, format or sampler
         |     aliases: { "ghost": [(when: "bright", of: "work", mip: 1), (of: "depth", history: true)] },
     passes/graph.ron:9:69: error: 'depth' is not declared with `history: true`
         |     aliases: { "ghost": [(when: "bright", of: "work", mip: 1), (of: "depth", history: true)] },

@@ -239,7 +239,7 @@ impl Graph {
     /// Expressions of the aliases.
     pub(super) fn alias_expressions(&self) -> impl Iterator<Item = &Ex> {
         let cases = self.aliases.iter().flat_map(|a| &a.cases);
-        cases.flat_map(|c| c.when.iter().chain(&c.bind.mip).chain(&c.bind.layer))
+        cases.flat_map(|c| c.when.iter().chain(&c.bind.mip))
     }
 
     /// Expressions of what is needed of the scene.

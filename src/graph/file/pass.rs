@@ -163,7 +163,7 @@ impl PassDecl {
         if let Some(Dispatch::Threads(x, y, z) | Dispatch::Groups(x, y, z)) = self.dispatch.as_ref().map(|d| &d.value) {
             list.extend([x, y, z]);
         }
-        list.extend(self.bind.0.iter().flat_map(|(_, bind)| bind.value.mip.iter().chain(&bind.value.layer)));
+        list.extend(self.bind.0.iter().flat_map(|(_, bind)| &bind.value.mip));
         list.extend(self.color.0.iter().flat_map(|target| target.value.mip.iter().chain(&target.value.layer)));
         list.extend(self.depth.iter().flat_map(|d| &d.value.layer));
         list.extend(self.raster.size.iter().flat_map(|size| [&size.value.0, &size.value.1]));

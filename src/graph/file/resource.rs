@@ -112,7 +112,6 @@ pub struct AliasDecl {
     pub when: Option<Ex>,
     pub of: Loc<String>,
     pub mip: Option<Ex>,
-    pub layer: Option<Ex>,
     #[serde(rename = "as")]
     pub format: Option<Loc<String>>,
     #[serde(default)]
@@ -128,8 +127,6 @@ pub struct Bind {
     pub of: Loc<String>,
     /// One mip.
     pub mip: Option<Ex>,
-    /// One layer.
-    pub layer: Option<Ex>,
     /// Viewed as another format.
     #[serde(rename = "as")]
     pub format: Option<Loc<String>>,
@@ -146,7 +143,6 @@ impl Bind {
         Bind {
             of: self.of.clone(),
             mip: by.mip.clone().or(self.mip.clone()),
-            layer: by.layer.clone().or(self.layer.clone()),
             format: by.format.clone().or(self.format.clone()),
             history: by.history || self.history,
             sampler: by.sampler.or(self.sampler),

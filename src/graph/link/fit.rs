@@ -81,11 +81,11 @@ pub fn describe(resource: &Resource) -> String {
 }
 
 /// Shape of a texture as a binding sees it.
-pub fn bound_shape(texture: &TextureDecl, decl: Option<&Bind>) -> Shape {
-    match (texture.size.0.len(), &texture.layers, decl.and_then(|d| d.layer.as_ref())) {
-        (3, ..) => Shape::D3,
-        (_, Some(_), None) => Shape::D2Array,
-        _ => Shape::D2,
+pub fn bound_shape(texture: &TextureDecl) -> Shape {
+    match &texture.layers {
+        _ if texture.is_volume() => Shape::D3,
+        Some(_) => Shape::D2Array,
+        None => Shape::D2,
     }
 }
 
@@ -100,7 +100,7 @@ fn misfit(
     let wrong = |message: String, help: &str| Some((message, Some(help.into())));
     let declares = || format!("the shader declares {}", describe(resource));
     let (shape, wanted) = match resource {
-        Resource::Sampled { shape, .. } | Resource::Storage { shape, .. } => (*shape, bound_shape(texture, bind)),
+        Resource::Sampled { shape, .. } | Resource::Storage { shape, .. } => (*shape, bound_shape(texture)),
         _ => return Some((format!("'{name}' is a texture, and {}", declares()), None)),
     };
     if shape != wanted {

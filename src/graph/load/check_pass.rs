@@ -128,15 +128,15 @@ impl Check<'_> {
         let graph = self.graph;
         let (name, at) = (&bind.of.value, bind.of.at);
         let has_history = if let Some(buffer) = graph.buffer(name) {
-            if bind.mip.is_some() || bind.layer.is_some() || bind.format.is_some() || bind.sampler.is_some() {
-                self.error(at, format!("'{name}' is a buffer: it has no mip, layer, format or sampler"));
+            if bind.mip.is_some() || bind.format.is_some() || bind.sampler.is_some() {
+                self.error(at, format!("'{name}' is a buffer: it has no mip, format or sampler"));
             }
             graph.buffers[buffer].1.value.history
         } else if self.texture_name(&bind.of)
             && let Some(texture) = graph.texture(name)
         {
             let texture = &graph.textures[texture].1.value;
-            self.exprs(bind.mip.iter().chain(&bind.layer));
+            self.exprs(&bind.mip);
             let declared = |f: &str| texture.format.value == f || texture.views.0.iter().any(|v| v.value == f);
             if let Some(format) = bind.format.as_ref().filter(|f| !declared(&f.value)) {
                 let message = format!("'{name}' is not declared to be viewed as '{}'", format.value);

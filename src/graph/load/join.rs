@@ -122,8 +122,8 @@ pub(super) fn add_aliases(
             }
         }
         let cases = list.value.into_iter().map(|case| {
-            let AliasDecl { when, of, mip, layer, format, history, sampler } = case.value;
-            AliasCase { when, bind: Bind { of, mip, layer, format, history, sampler } }
+            let AliasDecl { when, of, mip, format, history, sampler } = case.value;
+            AliasCase { when, bind: Bind { of, mip, format, history, sampler } }
         });
         new.push(Alias { name: name.value, at: name.at, cases: cases.collect() });
     }
@@ -134,7 +134,7 @@ pub(super) fn add_aliases(
         }
         let NamedSampler { of, filter, mip_filter, address, compare } = sampler.value;
         let sampler = Some(SamplerDecl { filter, mip_filter, address, compare });
-        let bind = Bind { of, mip: None, layer: None, format: None, history: false, sampler };
+        let bind = Bind { of, mip: None, format: None, history: false, sampler };
         new.push(Alias { name: name.value, at: name.at, cases: vec![AliasCase { when: None, bind }] });
     }
     known.retain(|old| !new.iter().any(|a| a.name == old.name));

@@ -107,8 +107,6 @@ pub struct BindingPlan {
     pub texture: usize,
     /// First mip and their number.
     pub mips: (u32, u32),
-    /// First layer and their number.
-    pub layers: (u32, u32),
     /// View format.
     pub format: Option<Format>,
     /// Last frame's copy.

@@ -86,9 +86,8 @@ impl<'a> Planner<'a, '_> {
         for binding in &step.bindings {
             let texture = &self.textures[binding.texture];
             let [x, y, z] = texture.mip_extent(binding.mips.0);
-            let texels = [x, y, if texture.volume { z } else { binding.layers.1 }];
-            let covered = shader.interface.covers.contains(&link.bound[binding.bound].binding)
-                && binding.layers.1 == texture.layers;
+            let texels = [x, y, if texture.volume { z } else { texture.layers }];
+            let covered = shader.interface.covers.contains(&link.bound[binding.bound].binding);
             if covered && threads.iter().zip(texels).all(|(threads, texels)| *threads >= texels) {
                 let res = Res::Texture(binding.texture, binding.history);
                 let stores = |u: &&mut Use| u.res == res && u.mips == binding.mips && u.kind == UseKind::Storage;
@@ -110,24 +109,20 @@ impl<'a> Planner<'a, '_> {
                 });
             }
             Target::Texture(t) => {
-                let all = (self.textures[t].mips, self.textures[t].layers);
+                let all = self.textures[t].mips;
                 let storage = matches!(bound.resource, Resource::Storage { .. });
                 let mip = decl.and_then(|d| d.mip.as_ref()).map(|ex| self.numbers.count(ex, 0, "mip"));
-                let layer = decl.and_then(|d| d.layer.as_ref()).map(|ex| self.numbers.count(ex, 0, "layer"));
                 let mips = match mip {
                     Some(m) => (m, 1),
                     None if storage => (0, 1),
-                    None => (0, all.0),
+                    None => (0, all),
                 };
-                let layers = layer.map_or((0, all.1), |l| (l, 1));
                 let at = decl.map_or(self.graph().textures[t].1.at, |d| d.of.at);
-                if mips.0 + mips.1 > all.0 || layers.0 + layers.1 > all.1 {
+                if mips.0 + mips.1 > all {
                     let name = &self.graph().textures[t].0;
-                    let message = format!(
-                        "mip {} or layer {} of '{name}' does not exist: it has {} mips and {} layers",
-                        mips.0, layers.0, all.0, all.1
-                    );
-                    return self.numbers.error(at, message);
+                    return self
+                        .numbers
+                        .error(at, format!("'{name}' has {all} mips, counted from 0, and no mip {}", mips.0));
                 }
                 let history = decl.is_some_and(|d| d.history);
                 let view = decl.and_then(|d| d.format.as_ref());
@@ -141,7 +136,6 @@ impl<'a> Planner<'a, '_> {
                     bound: i,
                     texture: t,
                     mips,
-                    layers,
                     format: view,
                     history,
                     layout: vk::ImageLayout::UNDEFINED,

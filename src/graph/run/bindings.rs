@@ -128,7 +128,7 @@ impl Sets {
         let (texture, planned) = (&offered.graph.textures[plan.texture].1.value, &offered.plan.textures[plan.texture]);
         let format = plan.format.unwrap_or(planned.format);
         let desc = ViewDesc {
-            kind: match bound_shape(texture, case.bind.as_ref()) {
+            kind: match bound_shape(texture) {
                 Shape::D2 => vk::ImageViewType::TYPE_2D,
                 Shape::D2Array => vk::ImageViewType::TYPE_2D_ARRAY,
                 Shape::D3 => vk::ImageViewType::TYPE_3D,
@@ -136,7 +136,7 @@ impl Sets {
             format: format.vk,
             aspect: format.aspect(),
             mips: plan.mips,
-            layers: plan.layers,
+            layers: (0, planned.layers),
             usage: match bound.resource {
                 Resource::Storage { .. } => vk::ImageUsageFlags::STORAGE,
                 _ => vk::ImageUsageFlags::SAMPLED,
