@@ -73,6 +73,8 @@ pub struct Scored {
     pub noisy: bool,
     /// Name of the experiment or graph that it is a variant of; empty where there is one alone.
     pub experiment: String,
+    /// Whether it is an experiment as it is, beside points with other settings.
+    pub preset: bool,
 }
 
 /// Everything that is shown.
@@ -203,7 +205,15 @@ impl Data {
             let noisy = within_noise(*scores.get(RELMSE).unwrap_or(&f64::INFINITY), dot.noise.get(part).copied());
             let experiment = if several.contains(experiment_of(dot)) { &dot.graph } else { experiment_of(dot) };
             let experiment = experiment.to_string();
-            (error.is_finite() && dot.ms > 0.0).then_some(Scored { index, ms: dot.ms, error, noisy, experiment })
+            let preset = self.names.len() > 1 && dot.labels.keys().all(|name| name == "experiment");
+            (error.is_finite() && dot.ms > 0.0).then_some(Scored {
+                index,
+                ms: dot.ms,
+                error,
+                noisy,
+                experiment,
+                preset,
+            })
         })
         .collect()
     }

@@ -12,7 +12,7 @@ const FRONT: RGBColor = RGBColor(200, 60, 40);
 
 /// The chart as SVG: its circles are the dots in their order, of a colour for each experiment; those on the front are larger and
 /// joined by a red line, and red where there is one experiment; those that are not told apart from the reference's noise are
-/// hollow.
+/// hollow. Experiments as they are have a square around them. The key stands in the corner with the fewest points.
 pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, LabError> {
     drawn(title, SIZE, |area| draw(area, title, metric, dots))
 }
@@ -44,6 +44,11 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
         let style = if d.noisy { color.stroke_width(2) } else { color.mix(0.85).filled() };
         Circle::new(place(d), if on_front { 6 } else { 4 }, style)
     }))?;
+    chart.draw_series(dots.iter().filter(|d| d.preset).map(|d| {
+        let square = Rectangle::new([(-9, -9), (9, 9)], BLACK.stroke_width(1));
+        let name = Text::new(d.experiment.clone(), (12, -14), (FONT, 13));
+        EmptyElement::at(place(d)) + square + name
+    }))?;
     if experiments.len() > 1 {
         for name in &experiments {
             let color = color_of(name);
@@ -53,13 +58,35 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
         }
         chart
             .configure_series_labels()
-            .position(SeriesLabelPosition::LowerLeft)
+            .position(free_corner(&dots.iter().map(place).collect::<Vec<_>>(), (xs, ys), experiments.len()))
             .background_style(WHITE.mix(0.8))
             .border_style(BLACK.mix(0.2))
             .label_font((FONT, 15))
             .draw()?;
     }
     Ok(())
+}
+
+/// The corner where a key of so many lines covers the fewest points; both axes are logarithmic.
+fn free_corner(points: &[(f64, f64)], (xs, ys): ((f64, f64), (f64, f64)), lines: usize) -> SeriesLabelPosition {
+    use SeriesLabelPosition::{LowerLeft, LowerRight, UpperLeft, UpperRight};
+    // Shares of the axes that it takes: about 130 pixels, and 24 for each line.
+    let (width, height) = (0.18, 0.06 + 0.055 * lines as f64);
+    let share = |v: f64, (low, high): (f64, f64)| (v / low).ln() / (high / low).ln();
+    let covered = |right: bool, upper: bool| {
+        let is_within = |(x, y): &&(f64, f64)| {
+            let (x, y) = (share(*x, xs), share(*y, ys));
+            (if right { x > 1.0 - width } else { x < width }) && (if upper { y > 1.0 - height } else { y < height })
+        };
+        points.iter().filter(is_within).count()
+    };
+    let corners = [
+        (LowerLeft, covered(false, false)),
+        (UpperLeft, covered(false, true)),
+        (UpperRight, covered(true, true)),
+        (LowerRight, covered(true, false)),
+    ];
+    corners.into_iter().min_by_key(|c| c.1).map_or(LowerLeft, |c| c.0)
 }
 
 /// The range of some numbers above 0 with room on both sides, at least a factor of 2.
@@ -81,6 +108,7 @@ mod tests {
             error,
             noisy: false,
             experiment: experiment.into(),
+            preset: false,
         };
         let dots = [dot(1.0, 0.2, "threads"), dot(2.0, 0.1, "threads"), dot(3.0, 0.3, "raster")];
         let svg = scatter("Sponza", "relMSE", &dots).unwrap();
@@ -92,6 +120,9 @@ mod tests {
         let colours = fills(&svg);
         assert!(colours[0] == colours[1] && colours[1] != colours[2], "{colours:?}");
         assert!(["threads", "raster"].iter().all(|name| svg.contains(name)));
+        assert_eq!(svg.matches("threads").count(), 1, "in the key alone");
+        let marked = [Scored { preset: true, ..dot(1.0, 0.2, "threads") }, dot(2.0, 0.1, "raster")];
+        assert_eq!(scatter("Sponza", "relMSE", &marked).unwrap().matches("threads").count(), 2);
         // The front is red where there is one experiment, and there is no key.
         let one = scatter("Sponza", "relMSE", &dots[..2]).unwrap();
         assert!(fills(&one).iter().all(|c| *c != colours[0]) && !one.contains("threads"));
