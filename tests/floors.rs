@@ -29,7 +29,7 @@ const GRAPH: [&[&str]; 9] = [
     &["load", "evaluated"],
     &["link"],
     &["plan"],
-    &["effect", "report", "outline"],
+    &["effect", "report", "outline", "signature"],
     &["run"],
 ];
 

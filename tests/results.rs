@@ -189,7 +189,7 @@ fn exposures() -> String {
             scenes.lines.iter().find(fits).map_or(f64::NAN, |l| number(l, "total flip"))
         };
         let found = best("total flip");
-        let exposure = if found["injection_exposure"] == "0" { "E / pi" } else { &found["injection_exposure"] };
+        let exposure = if found["injection_exposure"] == "0" { "preset" } else { &found["injection_exposure"] };
         let (one, energy) = ("total, 1 bounces flip", "total energy_ratio");
         vec![
             name.clone(),
