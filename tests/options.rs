@@ -148,6 +148,8 @@ fn options(param: &Param) -> Vec<String> {
         (_, "volume_turn") => "30".into(),
         (_, "probe") => "(16, 12)".into(),
         (_, "volume_size") => "(8, 8, 8)".into(),
+        // The scene has no sun: 0 is 1 there.
+        (_, "injection_exposure") => "3".into(),
         (Kind::Int | Kind::Float, _) => between(param, number(&param.default)).to_string(),
         (Kind::Vector(_) | Kind::Colour, _) => match &param.default {
             Value::Vector(v) => Value::Vector(v.iter().map(|x| between(param, *x)).collect()).to_string(),
