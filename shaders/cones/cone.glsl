@@ -14,9 +14,10 @@ vec4 stopped(vec3 color, float alpha) {
     return vec4(color / alpha, 1.0);
 }
 
-// Length of the exact part of a cone [m]: its axis is traced against surfels while the cone is at most
-// 2^-lod_offset cells wide, and reads coarser levels beyond that. Interleaved cones measure this in the cells
+// Length of the exact part of a cone [m]. Up to there the cone is at most 2^-lod_offset cells wide and would
+// read level 0, so its axis is traced against surfels instead. Interleaved cones measure this in the cells
 // of the coarsest cascade, the largest. Warped cells bend rays, so their exact part is near_cells long.
+// near_cells = 0: no part is exact.
 float exactRange(ConeOrigin o, vec3 d, float tan_half) {
     float near = params.near_cells * cellLength(volume.maps[o.cascade], o.surface, d);
     if (WARPED || params.near_cells == 0.0) return near;
@@ -45,7 +46,8 @@ vec4 traceCone(ConeOrigin o, vec3 d, float tan_half, int steps, RayUse use) {
                 1.0, 0.0);
             return met.light;
         }
-        // The ray starts at o.surface, the cone at o.position, which is almost `bias` cells higher.
+        // On a miss the cone continues where the ray ended. The ray starts at o.surface, the cone at
+        // o.position, which is almost `bias` cells higher.
         along = max(met.distance, min(along, range));
     }
     vec3 color = vec3(0.0);

@@ -3,7 +3,7 @@
 #define CONE_LEVEL_GLSL
 #include "params.glsl"
 
-// The level with cells as wide as the cone.
+// The level with cells 2^lod_offset times as wide as the cone. Callers clamp it.
 float coneLevel(float voxel, float radius) {
     return log2(max(2.0 * radius / voxel, 1.0)) + params.lod_offset;
 }

@@ -32,8 +32,8 @@ Cone coneFrom(ConeOrigin o, vec3 d, float tan_half, out float first_cell) {
     return cone;
 }
 
-// Cones wider than this (tangent of half the aperture, 12 degrees) avoid coarse levels with cells that
-// contain the surface that they leave: an open plane would shadow itself. Narrow cones stay clear of it
+// Cones with an aperture above 12 degrees (this is the tangent of its half) avoid coarse levels with cells
+// that contain the surface that they leave: an open plane would shadow itself. Narrow cones stay clear of it
 // anyway.
 const float CLEARED = 0.105;
 

@@ -16,7 +16,7 @@ struct ConeSample {
     float advance; // to the next sample [m]
     vec4 texel; // radiance premultiplied by opacity, and opacity
     bool outside; // no sample: the position is outside the volume
-    bool last; // the next sample would be outside
+    bool last; // the position is outside, and the border cells are repeated: the cone ends here
 };
 
 #endif

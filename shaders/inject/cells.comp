@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Directional radiance of each cell, summed over its sides and premultiplied by opacity. Input of filtered
-// levels and of the voxel view.
+// Radiance of each cell in six directions: the mean over its sides, weighted by projected area and
+// premultiplied by opacity. Input of filtered levels and of the voxel view.
 #include "params.glsl"
 #include "volume/volume.glsl"
 #include "voxels/directions.glsl"

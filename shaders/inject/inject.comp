@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Outgoing radiance of each voxel side: albedo / pi * E * max(0, n.l) * visibility, summed over all lights,
-// plus albedo times the gathered mean radiance, plus emission. Runs over the list of surfels, so each surface
-// is lit once.
+// Outgoing radiance of each voxel side: albedo / pi * E * mean cosine (meanCosine in surfels/sides.glsl) *
+// visibility, summed over all lights, plus albedo times the gathered mean radiance, plus emission. Runs over
+// the list of surfels, so each surface is lit once.
 #include "params.glsl"
 #include "common/math.glsl"
 #include "volume/volume.glsl"

@@ -1,4 +1,4 @@
-// Ray tracing against surfel planes: exact near the origin, where filtered levels are too coarse.
+// Exact tracing of a ray against surfel planes, up to a range that callers choose.
 #ifndef SURFEL_TRACE_GLSL
 #define SURFEL_TRACE_GLSL
 #include "cones/origin.glsl"

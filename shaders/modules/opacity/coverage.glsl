@@ -1,6 +1,6 @@
 // Opacities of successive steps add up, instead of multiplying transmittances, until the cone is full. A step
-// adds the texel's opacity times its length in cells of the level (anisotropic mips) or voxels (isotropic).
-// Thin walls stay closed at every level; corners darken slightly too much.
+// adds the texel's opacity times the step's length in cells of the level (anisotropic mips) or voxels
+// (isotropic). Thin walls stay closed at every level; corners darken slightly too much.
 #include "modules/mips.glsl"
 
 // Opacity that a step adds to a cone with transmittance `remaining`. a: of the texel. advance: of the step.
@@ -9,7 +9,8 @@ float stepAlpha(float a, float remaining, float advance, float voxel, float cell
     return min(a * advance / opacityLength(voxel, cell), remaining);
 }
 
-// Weights of the three directional texels along dir: the crossings along each axis add up.
+// Weights of the three directional texels along dir: the crossings along each axis add up, so the sum may
+// exceed 1. stepAlpha clamps.
 vec3 directionWeights(vec3 dir) {
     return abs(dir);
 }
