@@ -173,7 +173,7 @@ fn scenes() -> String {
     format!("*{}*\n\nEach cell: rays / cones / thesis.\n\n{}", record.said, table(&head, &lines))
 }
 
-/// The thesis in every scene with its preset, and with the exposure and steps of the lowest FLIP there, beside the other presets.
+/// The thesis in every scene with its preset, with the exposure and steps of the lowest FLIP, and the FLIP of the other presets.
 fn exposures() -> String {
     type Line = BTreeMap<String, String>;
     let (record, scenes) = (record("exposures"), record("scenes"));

@@ -4,7 +4,7 @@
 
 const float PI = 3.14159265359;
 
-// Of linear Rec. 709 colour.
+// The colour is linear Rec. 709.
 float luminance(vec3 c) {
     return dot(c, vec3(0.2126, 0.7152, 0.0722));
 }

@@ -9,7 +9,7 @@
 
 layout(std430) buffer VoxelBlocks { uvec4 list[]; } voxelBlocks; // xy: bits of 64 bricks; z: first index
 layout(std430) buffer VoxelBricks { uvec4 words[]; } voxelBricks;
-// By brick index: 64 * block + index in the block.
+// Holds 64 * block + index in the block for each brick index.
 layout(std430) buffer VoxelBrickIds { uint bricks[]; } voxelBrickIds;
 
 // Blocks along an edge of a cascade. The last ones may extend beyond it.

@@ -74,9 +74,9 @@ pub struct Named {
     pub at: At,
     /// Whether it is an integer, rounded down; else it is a float.
     pub whole: bool,
-    /// What it is; 0 of a signature.
+    /// Its expression; 0 for a signature.
     pub expr: Ex,
-    /// The stage whose settings it stands for, if it is a signature.
+    /// The stage that it represents, if it is a signature.
     pub signs: Option<String>,
 }
 

@@ -28,7 +28,7 @@ pub fn signed(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> Vec<Value>
     values
 }
 
-/// A pass's bindings of the block of parameters.
+/// The bindings of the block of parameters.
 fn params_of(link: &Linked) -> impl Iterator<Item = &Bound> {
     let is_params = |target: &Target| matches!(target, Target::External(e) if EXTERNALS[*e].name == "params");
     link.bound.iter().filter(move |b| b.cases.iter().any(|c| is_params(&c.target)))

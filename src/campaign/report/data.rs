@@ -73,7 +73,7 @@ pub struct Scored {
     pub noisy: bool,
     /// Name of the experiment or graph that it is a variant of; empty where there is one alone.
     pub experiment: String,
-    /// Whether it is an experiment as it is, beside points with other settings.
+    /// Whether it is an unchanged experiment among points with other settings.
     pub preset: bool,
 }
 

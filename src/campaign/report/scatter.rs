@@ -12,7 +12,7 @@ const FRONT: RGBColor = RGBColor(200, 60, 40);
 
 /// The chart as SVG: its circles are the dots in their order, of a colour for each experiment; those on the front are larger and
 /// joined by a red line, and red where there is one experiment; those that are not told apart from the reference's noise are
-/// hollow. Experiments as they are have a square around them. The key stands in the corner with the fewest points.
+/// hollow. Presets have a square around them. The key is in the corner with the fewest points.
 pub fn scatter(title: &str, metric: &str, dots: &[Scored]) -> Result<String, LabError> {
     drawn(title, SIZE, |area| draw(area, title, metric, dots))
 }
@@ -67,7 +67,7 @@ fn draw(area: &Area, title: &str, metric: &str, dots: &[Scored]) -> Result<(), F
     Ok(())
 }
 
-/// The corner where a key of so many lines covers the fewest points; both axes are logarithmic.
+/// The corner where a key with that number of lines covers the fewest points; both axes are logarithmic.
 fn free_corner(points: &[(f64, f64)], (xs, ys): ((f64, f64), (f64, f64)), lines: usize) -> SeriesLabelPosition {
     use SeriesLabelPosition::{LowerLeft, LowerRight, UpperLeft, UpperRight};
     // Shares of the axes that it takes: about 130 pixels, and 24 for each line.
