@@ -378,6 +378,40 @@ fn defaults_are_of_parameters_that_are_there() {
     "#);
 }
 
+/// A fixed parameter is in expressions and shaders still; nothing that the graph offers would set it.
+#[test]
+fn a_fixed_parameter_keeps_its_default() {
+    let more = r#"    defaults: { "size": 16 },
+    fixed: ["size"],
+    views: [
+        (title: "fine", help: "Fine.", set: { "size": 32 }),
+        (title: "bright", help: "Bright.", set: { "steady": true }),
+    ],
+    fit: { "size": [8, 16], "grid": ["even"] },"#;
+    let fixed = graph(more);
+    assert_eq!(value(&fixed, "area", &[]), Value::Int(1024));
+    let mut params = fixed.params.clone();
+    params.set("size", "16").unwrap();
+    assert_eq!(params.set("size", "8").unwrap_err(), "'size' is fixed at 16 in this graph");
+    assert!(params.offered().all(|p| p.name != "size"));
+    assert_eq!(fixed.views.iter().map(|v| v.value.title.as_str()).collect::<Vec<_>>(), ["bright"]);
+    assert_eq!(fixed.fit.iter().map(|axis| axis.0.as_str()).collect::<Vec<_>>(), ["grid"]);
+    assert_snapshot!(mistakes("    fixed: [\"sise\"],"), @r#"
+    passes/graph.ron:3:13: error: no parameter 'sise' to fix
+        |     fixed: ["sise"],
+        = help: did you mean 'size'?
+    "#);
+}
+
+#[test]
+fn the_shipped_graphs_offer_at_most_45_parameters() {
+    let workspace = Workspace { root: common::root().to_path_buf(), cache: None };
+    for name in ["cones.ron", "rays.ron", "thesis.ron", "warps.ron", "temporal.ron"] {
+        let count = workspace.load(name).unwrap().graph.params.offered().count();
+        assert!(count <= 45, "{name} has {count}");
+    }
+}
+
 #[test]
 fn a_module_is_fixed_or_chosen() {
     const CHOSEN: &str = r#"    params: [

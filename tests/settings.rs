@@ -96,7 +96,9 @@ fn no_setting_makes_a_nan() {
     let seed = common::number("CONELAB_FUZZ_SEED").unwrap_or(1);
     let lab = lab(root());
     let home = Workspace { root: root().to_path_buf(), cache: None };
-    let graphs = GRAPHS.map(|name| (name, load(&home.graph_path(name), &home.folders()).unwrap().params.list));
+    let graphs = GRAPHS.map(|name| {
+        (name, load(&home.graph_path(name), &home.folders()).unwrap().params.offered().cloned().collect::<Vec<_>>())
+    });
     let (mut refused, mut failed) = (0, 0);
     for i in 0..count {
         let mut random = Random::new((seed + i) as u64);

@@ -99,7 +99,7 @@ impl Workspace {
         };
         let mut findings: Vec<Diagnostic> = Vec::new();
         let mut settings = vec![graph.params.clone()];
-        for param in graph.params.list.iter().filter(|p| p.is_module()) {
+        for param in graph.params.offered().filter(|p| p.is_module()) {
             for option in param.kind.options().iter().filter(|o| Value::Choice((*o).clone()) != param.default) {
                 let mut params = graph.params.clone();
                 findings.extend(params.set(&param.name, option).err().map(|e| Diagnostic::error(Place::default(), e)));

@@ -49,7 +49,8 @@ pub fn changes(params: &Params, only: &[String]) -> Result<Vec<Change>, LabError
 }
 
 fn change(param: &Param, value: &Value) -> Option<Change> {
-    let plain = param.plain.as_ref().filter(|plain| *plain != value && !is_plainer(param, value, plain))?;
+    let worth = |plain: &&Value| !param.fixed && *plain != value && !is_plainer(param, value, plain);
+    let plain = param.plain.as_ref().filter(worth)?;
     Some(Change { name: param.name.clone(), from: value.clone(), to: plain.clone() })
 }
 

@@ -18,6 +18,8 @@ pub struct GraphFile {
     pub params: Items<Decl>,
     /// Other defaults for parameters of included files.
     pub defaults: Entries<RawText>,
+    /// Parameters of included files that keep their default: nobody can set them.
+    pub fixed: Items<String>,
     /// Parameters that the panel shows first: name, title in plain words.
     pub pinned: Entries<String>,
     /// Modules that nobody chooses: name, file in the shader folder.

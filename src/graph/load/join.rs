@@ -1,7 +1,7 @@
 //! The files of a graph as one.
 
 use super::findings::Findings;
-use crate::diagnostics::{Entries, Items, Loc};
+use crate::diagnostics::{Entries, Items, Loc, RawText};
 use crate::graph::definition::{Alias, AliasCase};
 use crate::graph::file::{AliasDecl, Bind, GraphFile, NamedSampler, PassDecl, SamplerDecl, Size, TextureDecl};
 
@@ -21,6 +21,7 @@ pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
         }
     }
     append(&mut all.params, file.params);
+    append(&mut all.fixed, file.fixed);
     append(&mut all.outputs, file.outputs);
     append(&mut all.checks, file.checks);
     append(&mut all.refuse, file.refuse);
@@ -39,6 +40,17 @@ pub(super) fn add(all: &mut GraphFile, file: GraphFile) {
     later(&mut all.scene, file.scene);
     later(&mut all.caption, file.caption);
     later(&mut all.pointer, file.pointer);
+}
+
+/// Leaves out settings that included files offer and that would set a fixed parameter.
+pub(super) fn leave_out_fixed(file: &mut GraphFile) {
+    let is_free = |name: &Loc<String>| file.fixed.0.iter().all(|fixed| fixed.value != name.value);
+    let are_free = |set: &Entries<RawText>| set.0.iter().all(|(name, _)| is_free(name));
+    file.pinned.0.retain(|(name, _)| is_free(name));
+    file.fit.0.retain(|(name, _)| is_free(name));
+    file.compare.0.retain(|c| are_free(&c.value.a) && are_free(&c.value.b));
+    file.views.0.retain(|view| are_free(&view.value.set));
+    file.ablation.0.retain(|step| are_free(&step.value.set));
 }
 
 fn append<T>(all: &mut Items<T>, more: Items<T>) {

@@ -47,10 +47,12 @@ pub fn load(path: &Path, folders: &Folders) -> Result<Graph, Vec<Diagnostic>> {
         results.extend(more.output.iter().chain(&more.hdr).chain(&more.outputs.0).chain(parts).cloned());
         join::add(&mut file, more);
     }
+    join::leave_out_fixed(&mut file);
     let mut textures = by_name(file.textures);
     join::sizes_of_others(&mut textures, &mut found);
     let mut list = params::declared(&file.params.0, &mut found);
     params::set_defaults(&mut list, &file.defaults, &mut found);
+    params::fix(&mut list, &file.fixed, &mut found);
     let pass_names = passes.iter().map(|p| p.value.name.value.clone()).collect();
     let retired = [texts(&retired.parameters), texts(&file.retired)].concat();
     let params = Params { retired, passes: pass_names, ..Params::new(list) };

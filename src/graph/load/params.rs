@@ -1,7 +1,7 @@
 //! Parameters of a graph's files, and their defaults.
 
 use super::findings::Findings;
-use crate::diagnostics::{Entries, Loc, RawText};
+use crate::diagnostics::{Entries, Items, Loc, RawText};
 use crate::graph::param::{Decl, OFF, Param};
 
 /// Variables that every expression may use beside parameters.
@@ -74,6 +74,19 @@ pub(super) fn declared(decls: &[Loc<Decl>], found: &mut Findings) -> Vec<Param> 
         }
     }
     list
+}
+
+/// Fixes parameters at their defaults.
+pub(super) fn fix(list: &mut [Param], names: &Items<String>, found: &mut Findings) {
+    for Loc { value: name, at } in &names.0 {
+        match list.iter_mut().find(|p| p.name == *name) {
+            Some(param) => param.fixed = true,
+            None => {
+                let message = format!("no parameter '{name}' to fix");
+                found.unknown(*at, name, message, list.iter().map(|p| p.name.as_str()));
+            }
+        }
+    }
 }
 
 /// Changes defaults, the later one last.

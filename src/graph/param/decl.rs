@@ -170,6 +170,7 @@ impl<T> Fields<T> {
             effective: self.effective,
             option_help,
             files: Vec::new(),
+            fixed: false,
         };
         param.check(&param.default).map_err(|e| format!("default of {e}"))?;
         param.plain.iter().try_for_each(|v| param.check(v)).map_err(|e| format!("plain value of {e}"))?;

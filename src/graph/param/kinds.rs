@@ -140,6 +140,8 @@ pub struct Param {
     pub option_help: Vec<String>,
     /// Of a module: the shader file of each option; empty for all others.
     pub files: Vec<String>,
+    /// Whether the graph keeps it at its default.
+    pub fixed: bool,
 }
 
 impl Param {
@@ -248,6 +250,9 @@ impl Param {
         };
         let value = value.map_err(|_| format!("'{}': expected {}, got {text}", self.name, self.expected()))?;
         self.check(&value)?;
+        if self.fixed && value != self.default {
+            return Err(format!("'{}' is fixed at {} in this graph", self.name, self.default));
+        }
         Ok(value)
     }
 }

@@ -30,6 +30,11 @@ impl Params {
         Params { list, values, ..Params::default() }
     }
 
+    /// Those that may be set.
+    pub fn offered(&self) -> impl Iterator<Item = &Param> {
+        self.list.iter().filter(|p| !p.fixed)
+    }
+
     /// Each with its value.
     fn pairs(&self) -> impl Iterator<Item = (&Param, &Value)> {
         self.list.iter().zip(&self.values)

@@ -68,12 +68,12 @@ impl Panel {
             }
             for (number, group) in groups(graph).into_iter().enumerate() {
                 let of_group = |p: &&Param| p.group == group;
-                let list: Vec<&Param> = graph.params.list.iter().filter(of_group).filter(|p| wanted(p, side)).collect();
+                let list: Vec<&Param> = graph.params.offered().filter(of_group).filter(|p| wanted(p, side)).collect();
                 if list.is_empty() {
                     continue;
                 }
                 any = true;
-                let count = graph.params.list.iter().filter(of_group).filter(|p| is_changed(graph, side, p)).count();
+                let count = graph.params.offered().filter(of_group).filter(|p| is_changed(graph, side, p)).count();
                 let title = if group.is_empty() { "Other" } else { group };
                 let title = match count {
                     0 => RichText::new(title),
@@ -104,7 +104,7 @@ impl Panel {
     fn top(&mut self, ui: &mut Ui, graph: &Graph, side: &mut SideRequest) {
         let top = egui::vec2(ui.available_width(), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(top, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let any = graph.params.list.iter().any(|p| is_changed(graph, side, p));
+            let any = graph.params.offered().any(|p| is_changed(graph, side, p));
             let reset = egui::Button::new(RichText::new("reset all")).small();
             if ui.add_enabled(any, reset).clicked() {
                 side.params.clear();
@@ -212,7 +212,7 @@ fn elsewhere(ui: &mut Ui, name: &str, title: &str, instead: &str, side: &mut Sid
 
 fn groups(graph: &Graph) -> Vec<&str> {
     let mut groups: Vec<&str> = Vec::new();
-    for param in &graph.params.list {
+    for param in graph.params.offered() {
         if !groups.contains(&param.group.as_str()) {
             groups.push(&param.group);
         }
