@@ -385,6 +385,10 @@ fn graph_explains_itself() {
         assert!(rows().filter(|l| !l.starts_with(' ')).count() == stages, "{text}");
         assert!(rows().all(|l| l.contains(" -> ")), "{text}");
     }
+    let wide = graph(&["passes/cones.ron", "--set", "opacity=layers", "--set", "diffuse_aperture=0"]);
+    let row = wide.lines().find(|l| l.contains("inject/clear.comp")).unwrap();
+    assert!(row.ends_with("  volume voxelBlocks voxelBricks -> voxelRadiance"), "{row}");
+    assert!(wide.contains("opacity modules/opacity/layers.glsl") && wide.contains("diffuse_aperture 6 deg"), "{wide}");
     let layers = graph(&["passes/cones.ron", "--set", "mips=isotropic"]);
     assert!(layers.contains("filter/isotropic.comp") && !layers.contains("filter/anisotropic.comp"), "{layers}");
 

@@ -107,7 +107,7 @@ pub fn run(args: &GraphArgs) -> Result<(), LabError> {
         match (args.dot, args.barriers) {
             (true, _) => report::dot(&graph, &linked, &plan),
             (_, true) => report::text(&graph, &linked, &plan),
-            _ => report::summary(&graph, &linked, &plan),
+            _ => report::summary(&set, &linked, &plan),
         }
     );
     Ok(())

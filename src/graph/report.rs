@@ -1,15 +1,18 @@
 //! A plan for people: order, lifetimes, barriers, memory, and what was left out; or a Graphviz picture.
 
 use super::definition::{Graph, Res};
+use super::effect::effective;
 use super::evaluated::Evaluated;
 use super::link::Linked;
-use super::param::Params;
-use super::plan::{Barrier, Plan, Step, Work, pack, schedule};
+use super::param::{Param, Params};
+use super::plan::{Barrier, Plan, Step, Use, Work, pack, schedule};
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// A screen: for each pass that runs, its stage, shader files and results; then memory, and the names of the others.
-pub fn summary(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
-    let (ran, all, params) = (plan.passes().len(), graph.passes.len(), graph.params.list.len());
+pub fn summary(set: &Evaluated<'_>, linked: &[Linked], plan: &Plan) -> String {
+    let graph = set.graph;
+    let (ran, all, params) = (plan.passes().len(), graph.passes.len(), graph.params.offered().count());
     let mut out = format!("graph {}: {ran} of {all} passes run, {params} parameters", graph.name);
     if plan.convergence.fresh > 1 {
         let _ = write!(out, "; converges in {} frames", plan.convergence.fresh);
@@ -27,6 +30,17 @@ pub fn summary(graph: &Graph, linked: &[Linked], plan: &Plan) -> String {
         let mut passes: Vec<&str> = settling.steps.iter().map(|i| graph.pass_name(plan.steps[*i].pass)).collect();
         passes.dedup();
         let _ = writeln!(out, "after {} still frames rest: {}", settling.frames, passes.join(", "));
+    }
+    let modules = set.params.modules().chain(graph.modules.iter().map(|(name, file)| (name.as_str(), file.as_str())));
+    let mut modules: Vec<String> = modules.map(|(name, file)| format!("{name} {file}")).collect();
+    modules.sort();
+    if !modules.is_empty() {
+        let _ = writeln!(out, "modules: {}", modules.join(", "));
+    }
+    let automatic = |p: &Param| Some(format!("{} {} {}", p.name, effective(set, p)?, p.unit));
+    let automatic: Vec<String> = set.params.list.iter().filter_map(automatic).collect();
+    if !automatic.is_empty() {
+        let _ = writeln!(out, "automatic: {}", automatic.join(", "));
     }
     let mut memory: Vec<(&str, u64)> = plan.made().map(|res| (graph.name_of(res), plan.bytes_of(res))).collect();
     memory.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
@@ -55,10 +69,11 @@ fn rows(graph: &Graph, linked: &[Linked], plan: &Plan) -> Vec<[String; 4]> {
             (stage, clears) = (pass.stage(), None);
         }
         let stage = if is_new { stage.to_owned() } else { String::new() };
-        let mut results: Vec<&str> = first.uses.iter().filter(|u| u.write).map(|u| graph.name_of(u.res)).collect();
-        results.sort_unstable();
-        results.dedup();
-        let results = results.join(" ");
+        let names = |wanted: fn(&Use) -> bool| {
+            let names: BTreeSet<&str> = first.uses.iter().filter(|u| wanted(u)).map(|u| graph.name_of(u.res)).collect();
+            names.into_iter().collect::<Vec<_>>().join(" ")
+        };
+        let (reads, results) = (names(|u| u.read && !u.write), names(|u| u.write));
         if let Work::ClearTexture(..) | Work::ClearBuffer(..) = first.work {
             match clears {
                 Some(row) => rows[row][3] += &format!(" {results}"),
@@ -71,7 +86,7 @@ fn rows(graph: &Graph, linked: &[Linked], plan: &Plan) -> Vec<[String; 4]> {
         }
         let times = if steps.len() > 1 { format!(" x{}", steps.len()) } else { String::new() };
         let shaders: Vec<&str> = linked[first.pass].stages.iter().map(|s| s.file.as_str()).collect();
-        rows.push([stage, format!("{}{times}", pass.name.value), shaders.join(" "), format!("-> {results}")]);
+        rows.push([stage, format!("{}{times}", pass.name.value), shaders.join(" "), format!("{reads} -> {results}")]);
     }
     rows
 }
@@ -192,7 +207,7 @@ fn lifetime(plan: &Plan, res: Res) -> String {
 pub fn params(params: &Params) -> String {
     let mut out = String::new();
     let mut group = None;
-    for p in &params.list {
+    for p in params.offered() {
         if group != Some(&p.group) {
             let _ = writeln!(out, "\n{}", if p.group.is_empty() { "(no group)" } else { &p.group });
             group = Some(&p.group);
@@ -205,6 +220,11 @@ pub fn params(params: &Params) -> String {
         for (option, help) in p.kind.options().iter().zip(&p.option_help).filter(|(_, help)| !help.is_empty()) {
             let _ = writeln!(out, "      - {option}: {help}");
         }
+    }
+    let fixed: Vec<String> =
+        params.list.iter().filter(|p| p.fixed).map(|p| format!("{} = {}", p.name, p.default)).collect();
+    if !fixed.is_empty() {
+        let _ = writeln!(out, "\nfixed in this graph: {}", fixed.join(", "));
     }
     out
 }
